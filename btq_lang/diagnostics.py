@@ -1,0 +1,89 @@
+"""Diagnostics as data: what is wrong, where, what belongs to it, and how to mend it.
+
+Nothing here renders or decides: rules detect, `render` prints, editors show.  A span counts from the start of its
+`anchor`, the piece of a file that moves as one (a tree, a requirement); `None` is the start of the file itself.  What
+leaves the workspace has no anchors left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from btq_lang.rules import RULES, Severity
+from btq_lang.text import Span
+
+
+class Tag(Enum):
+    """How an editor may show the place besides underlining it (LSP's DiagnosticTag)."""
+
+    UNNECESSARY = 1
+    DEPRECATED = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A span in a file.
+
+    Attributes:
+        path: the file; None is the file of the diagnostic.
+        anchor: the item the span counts from; None with a path is that file's start, None without a path is whatever
+            the diagnostic itself counts from.
+    """
+
+    span: Span
+    path: str | None = None
+    anchor: object | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """Another place that a reader needs to see to understand the diagnostic."""
+
+    place: Place
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One edit of a fix: the text at `place` becomes `text`."""
+
+    place: Place
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A change that mends a diagnostic.
+
+    Attributes:
+        title: what it does, as a button says it: "Replace `Rety` by `Retry`".
+        safe: it keeps the meaning and removes the diagnostic; `btq check --fix` applies only these.
+    """
+
+    title: str
+    changes: tuple[Change, ...]
+    safe: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A finding of one rule."""
+
+    rule: str
+    span: Span
+    message: str
+    related: tuple[Related, ...] = ()
+    notes: tuple[str, ...] = ()
+    fixes: tuple[Fix, ...] = ()
+    tags: tuple[Tag, ...] = ()
+    severity: Severity = field(default=None)  # type: ignore[assignment]  # filled from the rule's table below
+
+    def __post_init__(self) -> None:
+        if self.severity is None:
+            object.__setattr__(self, "severity", RULES[self.rule].severity)
+
+
+def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix:
+    """The commonest fix: one replacement beside the diagnostic."""
+    return Fix(title, (Change(Place(span), text),), safe)

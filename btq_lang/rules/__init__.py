@@ -1,0 +1,109 @@
+"""The rules: one row a rule, one page a rule (`<name>.md` beside this file), which is its documentation and its test.
+
+The table knows names, severities and one line each; detection lives in the lexer, the parser and `checks/`.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from pathlib import Path
+from typing import NamedTuple
+
+
+class Severity(Enum):
+    """How bad a finding is, worst first.  ERROR: the file cannot be built or the engine refuses it."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+    HINT = "hint"
+
+
+class Rule(NamedTuple):
+    """A rule's name, its severity where nobody configured another, and what it finds in one line."""
+
+    name: str
+    severity: Severity
+    summary: str
+
+
+def page(rule: str) -> str:
+    """The page of a rule, in Markdown.
+
+    Raises:
+        KeyError: there is no such rule.
+    """
+    return Path(__file__).with_name(f"{RULES[rule].name}.md").read_text(encoding="utf-8")
+
+
+_E, _W, _H = Severity.ERROR, Severity.WARNING, Severity.HINT
+
+_TABLE = (
+    # What the lexer and the parser find.
+    Rule("syntax-error", _E, "something else was expected here"),
+    Rule("inconsistent-indentation", _E, "indentation that fits no open block, or mixes tabs and blanks"),
+    Rule("unclosed-bracket", _E, "a `(` without its `)`"),
+    Rule("unclosed-string", _E, "a string without its closing quote"),
+    Rule("unclosed-comment", _E, "a `/*` without its `*/`"),
+    Rule("misplaced-comment", _E, "a comment sign inside a word or value that should be quoted"),
+    Rule("unknown-escape", _H, "a backslash that escapes nothing"),
+    Rule("string-over-items", _H, "a string that runs past the start of another item: a quote is probably missing"),
+    Rule("unknown-unit", _E, "a unit that is in no table"),
+    Rule("nested-too-deep", _E, "more levels than the engine reads"),
+    Rule("clause-after-children", _E, "satisfices, satisfies or tags behind a node's children"),
+    Rule("clause-as-node", _W, "a word that begins a requirement's clause stands as a node"),
+    Rule("second-root", _E, "a Root beside or inside another"),
+    Rule("duplicate-attribute", _E, "two values for one attribute"),
+    Rule("tree-root-count", _E, "a tree without exactly one node at its top"),
+    # Nodes and their ports.
+    Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
+    Rule("not-an-engine-node", _W, "a word of the published language that is no node of the engine"),
+    Rule("newer-engine-node", _E, "a built-in that the target version of the engine does not have"),
+    Rule("category-mismatch", _W, "a node used as another category than its model declares"),
+    Rule("unknown-port", _E, "a port that the node does not provide"),
+    Rule("missing-port", _E, "a port that must be given and is not"),
+    Rule("unknown-attribute", _W, "an `_attribute` that the engine ignores silently"),
+    Rule("invalid-literal", _E, "a value that the port's type refuses"),
+    Rule("trailing-text-in-number", _W, "text behind a number that the engine drops silently"),
+    Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or of another dimension"),
+    Rule("child-count", _E, "more or fewer children than the node takes"),
+    Rule("switch-cases", _E, "a Switch whose cases and children do not match"),
+    Rule("parallel-threshold", _E, "a Parallel threshold that its children cannot reach"),
+    Rule("duplicate-instance-name", _W, "two nodes of one tree with the same name"),
+    Rule("forbidden-name", _E, "a name that the engine refuses"),
+    Rule("classic-placeholder", _H, "a ScriptAction or ScriptCondition without code that stands for a skill"),
+    Rule("placeholder-clash", _E, "two placeholders whose names become the same node ID"),
+    # Trees and files.
+    Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
+    Rule("duplicate-tree", _E, "two trees with one ID"),
+    Rule("recursive-tree", _E, "a tree that contains itself"),
+    Rule("unused-tree", _W, "a tree that nothing refers to"),
+    Rule("unreachable-tree", _W, "a tree that only unused trees refer to"),
+    Rule("unknown-main-tree", _E, "no way to tell which tree is the mission"),
+    Rule("tree-named-like-node", _E, "a tree whose ID is the name of a node"),
+    Rule("missing-include", _E, "an included file that cannot be found"),
+    Rule("cyclic-include", _E, "a file that includes itself: the engine crashes"),
+    Rule("duplicate-definition", _E, "two definitions of one name"),
+    # Scripts.
+    Rule("script-error", _E, "a script that the engine refuses"),
+    Rule("empty-script", _E, "a script without any statement"),
+    Rule("script-version", _W, "a script that means different things in versions of the engine"),
+    # Requirements and qualities.
+    Rule("unknown-requirement", _E, "a requirement that is defined nowhere"),
+    Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
+    Rule("unused-requirement", _W, "a requirement that nothing refers to"),
+    Rule("requirement-without-text", _W, "a requirement that says nothing"),
+    Rule("unknown-quality", _W, "a quality name that no model of ISO/IEC 25010 has"),
+    Rule("old-quality-name", _H, "an alias or a name of another edition"),
+    Rule("ambiguous-quality", _W, "a quality name that means several things"),
+    Rule("prose-constraint", _H, "SuccessIf or FailureIf in prose that no tool can check"),
+    Rule("subtraction-without-blanks", _H, "`a-b` read as one name where `a` and `b` exist"),
+    # Traps of the engine's semantics.
+    Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
+    Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
+    Rule("while-skip-is-success", _W, "`_while` halts the node and the parent goes on as if it had succeeded"),
+    Rule("unreachable-child", _W, "a child that can never run"),
+    Rule("condition-without-recheck", _W, "a condition behind a memory Fallback that cannot interrupt what runs"),
+)
+
+RULES = {rule.name: rule for rule in _TABLE}

@@ -1,0 +1,115 @@
+"""Text, spans and edits: what every other module counts in.
+
+One invariant: an offset is an index into a Python string.  Lines and columns exist only at the edges (a terminal, an
+editor), and `LineIndex` is the only place that turns one into the other, in the unit the reader asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+Encoding = Literal["code-points", "utf-8", "utf-16"]
+
+# A line ends with these and with nothing else: str.splitlines would also cut at form feeds and U+2028.
+LINE_END = re.compile(r"\r\n|\n|\r")
+
+
+class Span(NamedTuple):
+    """A half-open range of offsets."""
+
+    start: int
+    end: int
+
+    def shifted(self, by: int) -> Span:
+        return Span(self.start + by, self.end + by)
+
+
+class Position(NamedTuple):
+    """A line and a column, both counted from 0."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """Replace the text at `span` by `text`."""
+
+    span: Span
+    text: str
+
+
+def apply_edits(text: str, edits: Iterable[Edit]) -> str:
+    """Apply edits that do not overlap, in any order.
+
+    Raises:
+        ValueError: two edits overlap.
+    """
+    pieces: list[str] = []
+    at = 0
+    for edit in sorted(edits, key=lambda edit: edit.span):
+        if edit.span.start < at:
+            raise ValueError(f"edits overlap at offset {edit.span.start}")
+        pieces += (text[at : edit.span.start], edit.text)
+        at = edit.span.end
+    return "".join([*pieces, text[at:]])
+
+
+class LineIndex:
+    """Where the lines of a text begin, to turn offsets into positions and back."""
+
+    __slots__ = ("_starts", "_text")
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._starts = [0, *(end.end() for end in LINE_END.finditer(text))]
+
+    @property
+    def line_count(self) -> int:
+        return len(self._starts)
+
+    def line(self, line: int) -> str:
+        """The text of a line, without its line end."""
+        start = self._starts[line]
+        end = self._starts[line + 1] if line + 1 < len(self._starts) else len(self._text)
+        return self._text[start:end].rstrip("\r\n")
+
+    def position(self, offset: int, encoding: Encoding = "code-points") -> Position:
+        """The position of an offset, its column counted in `encoding`; an offset outside the text is clamped."""
+        offset = max(0, min(offset, len(self._text)))
+        line = bisect_right(self._starts, offset) - 1
+        before = self._text[self._starts[line] : offset]
+        return Position(line, _width(before, encoding))
+
+    def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
+        """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""
+        if position.line < 0:
+            return 0
+        if position.line >= len(self._starts):
+            return len(self._text)
+        text = self.line(position.line)
+        column = max(0, position.column)
+        if encoding != "code-points" and not text.isascii():
+            return self._starts[position.line] + _index(text, column, encoding)
+        return self._starts[position.line] + min(column, len(text))
+
+
+def _width(text: str, encoding: Encoding) -> int:
+    if encoding == "code-points" or text.isascii():
+        return len(text)
+    if encoding == "utf-8":
+        return len(text.encode("utf-8", "surrogatepass"))
+    return len(text) + sum(character > "\uffff" for character in text)
+
+
+def _index(text: str, column: int, encoding: Encoding) -> int:
+    width = 0
+    for index, character in enumerate(text):
+        if width >= column:
+            return index
+        width += _width(character, encoding)
+    return len(text)
