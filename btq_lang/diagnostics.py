@@ -7,9 +7,9 @@ leaves the workspace has no anchors left.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 
+from btq_lang.record import record
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import Span
 
@@ -21,7 +21,7 @@ class Tag(Enum):
     DEPRECATED = 2
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Place:
     """A span in a file.
 
@@ -36,7 +36,7 @@ class Place:
     anchor: object | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Related:
     """Another place that a reader needs to see to understand the diagnostic."""
 
@@ -44,7 +44,7 @@ class Related:
     message: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Change:
     """One edit of a fix: the text at `place` becomes `text`."""
 
@@ -52,7 +52,7 @@ class Change:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Fix:
     """A change that mends a diagnostic.
 
@@ -66,7 +66,7 @@ class Fix:
     safe: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Diagnostic:
     """A finding of one rule."""
 
@@ -77,11 +77,11 @@ class Diagnostic:
     notes: tuple[str, ...] = ()
     fixes: tuple[Fix, ...] = ()
     tags: tuple[Tag, ...] = ()
-    severity: Severity = field(default=None)  # type: ignore[assignment]  # filled from the rule's table below
+    severity: Severity | None = None  # None: the rule's own
 
-    def __post_init__(self) -> None:
-        if self.severity is None:
-            object.__setattr__(self, "severity", RULES[self.rule].severity)
+    @property
+    def effective_severity(self) -> Severity:
+        return self.severity or RULES[self.rule].severity
 
 
 def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix:

@@ -5,8 +5,8 @@ The table knows names, severities and one line each; detection lives in the lexe
 
 from __future__ import annotations
 
+import os.path
 from enum import Enum
-from pathlib import Path
 from typing import NamedTuple
 
 
@@ -33,7 +33,8 @@ def page(rule: str) -> str:
     Raises:
         KeyError: there is no such rule.
     """
-    return Path(__file__).with_name(f"{RULES[rule].name}.md").read_text(encoding="utf-8")
+    with open(f"{os.path.dirname(__file__)}/{RULES[rule].name}.md", encoding="utf-8") as file:
+        return file.read()
 
 
 _E, _W, _H = Severity.ERROR, Severity.WARNING, Severity.HINT

@@ -1,0 +1,63 @@
+import pickle
+
+import pytest
+
+from btq_lang.record import record, replace
+
+
+@record
+class Point:
+    x: int
+    y: int = 0
+
+    @property
+    def sum(self) -> int:
+        return self.x + self.y
+
+
+@record
+class Only:
+    value: object
+
+
+@record
+class Nothing:
+    pass
+
+
+def test_fields_defaults_and_methods() -> None:
+    assert (Point(1).x, Point(1).y, Point(1, y=4).sum) == (1, 0, 5)
+    with pytest.raises(TypeError):
+        Point()  # type: ignore[call-arg]
+
+
+def test_equality_is_by_type_and_fields() -> None:
+    assert Point(1, 2) == Point(1, 2) != Point(2, 1)
+    assert Only((1,)) != Point(1)
+    assert {Point(1), Point(1, 0), Only(None)} == {Only(None), Point(1)}
+    assert Nothing() == Nothing() != Only(())
+
+
+def test_frozen() -> None:
+    with pytest.raises(AttributeError, match="Point is frozen: cannot change 'x'"):
+        Point(1).x = 2  # type: ignore[misc]
+    with pytest.raises(AttributeError):
+        Point(1).z = 2  # type: ignore[attr-defined]
+
+
+def test_replace_repr_match_pickle() -> None:
+    assert replace(Point(1, 2), y=3) == Point(1, 3)
+    assert repr(Point(1, 2)) == "Point(x=1, y=2)"
+    assert pickle.loads(pickle.dumps(Point(1, 2))) == Point(1, 2)
+    match Point(1, 2):
+        case Point(x, 2):
+            assert x == 1
+
+
+def test_a_default_before_a_field_without_is_refused() -> None:
+    with pytest.raises(TypeError, match="without a default follows"):
+
+        @record
+        class Wrong:
+            a: int = 1
+            b: int  # type: ignore[misc]
