@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from btq_lang.record import record
+from btq_lang.record import record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import Span
 
@@ -87,3 +87,24 @@ class Diagnostic:
 def replace_fix(title: str, span: Span, text: str, *, safe: bool = False) -> Fix:
     """The commonest fix: one replacement beside the diagnostic."""
     return Fix(title, (Change(Place(span), text),), safe)
+
+
+def shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
+    """The diagnostic counted from another start: its span, and every place that counts as it does."""
+    if by == 0:
+        return diagnostic
+
+    def move(place: Place) -> Place:
+        if place.path is not None or place.anchor is not None:
+            return place
+        return Place(place.span.shifted(by))
+
+    return replace(
+        diagnostic,
+        span=diagnostic.span.shifted(by),
+        related=tuple(Related(move(related.place), related.message) for related in diagnostic.related),
+        fixes=tuple(
+            Fix(fix.title, tuple(Change(move(change.place), change.text) for change in fix.changes), fix.safe)
+            for fix in diagnostic.fixes
+        ),
+    )

@@ -75,11 +75,10 @@ def _few(self: Any, fields: tuple[str, ...]) -> tuple[object, ...]:
     return tuple(getattr(self, name) for name in fields)
 
 
-def _equal(self: Any, other: Any) -> bool:
+def _equal(self: Any, other: Any) -> Any:
     if type(other) is not type(self):
         return NotImplemented
-    equal: bool = self._values == other._values
-    return equal
+    return self._values == other._values
 
 
 def _hash(self: Any) -> int:

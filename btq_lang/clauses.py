@@ -1,0 +1,588 @@
+"""The part of the parser that reads requirements, their clauses and conditions, and the lists that hold them.
+
+Each function is a production of language.md §3 and named as it; its docstring shows the production.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.cursor import Cursor
+from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.lexer import unit_at
+from btq_lang.syntax import (
+    Amount,
+    Argument,
+    Because,
+    Between,
+    Binary,
+    Bound,
+    Bounded,
+    Call,
+    Case,
+    Claim,
+    Clause,
+    Comparison,
+    Condition,
+    Confidence,
+    Event,
+    Every,
+    Goal,
+    How,
+    Mission,
+    Negative,
+    NodeRuns,
+    Not,
+    Odds,
+    OnViolation,
+    Operand,
+    Parameter,
+    Path,
+    QualityPath,
+    ReqRef,
+    Requirement,
+    Scope,
+    Subject,
+    Sum,
+    Table,
+    Window,
+    Word,
+)
+from btq_lang.text import Span
+from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.units import nearest_units
+
+VERBS: Final = frozenset(
+    ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
+)
+SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
+HEADS: Final = SUBJECT_HEADS | {
+    "while",
+    "when",
+    "in",
+    "with",
+    "confidence",
+    "over",
+    "on",
+    "goal",
+    "because",
+    "verified",
+}
+HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
+EXPERIMENTS: Final = frozenset(("activations", "runs"))
+ACTIONS: Final = ("fail", "halt", "warn", "log")
+METHODS: Final = ("monitor", "analysis", "test", "review")
+FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
+COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
+UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
+
+MAX_NESTING: Final = 100  # of brackets, `not` and signs in one condition
+
+
+class ClauseParser(Cursor):
+    """A cursor that can read requirements."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._nesting = 0
+
+    # ---- requirements ----
+
+    def requirement(self) -> Requirement:
+        """Requirement = ReqHead { Clause };  the word QualityReq is at hand"""
+        start = self.start()
+        self.advance()
+        if self.at_word("ID") and self.is_operator(self.index + 1, "="):
+            return self.classic_requirement(start)
+        name = self.name("the requirement's ID")
+        parameters = self.params() if self.kind == OPEN and name is not None else ()
+        quality = self.quality_path() if self.accept(":") else None
+        title = self.take() if self.kind == STRING else None
+        clauses = self.clauses()
+        return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
+
+    def classic_requirement(self, start: int) -> Requirement:
+        """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
+        self.advance()
+        self.advance()
+        name = self.name("the requirement's ID")
+        comma = 1 if self.at(",") else 0
+        text = None
+        if self.is_word(self.index + comma, "description") and self.is_operator(self.index + comma + 1, "="):
+            self.go_to(self.index + comma + 2)
+            text = self.name("the description")
+        clauses = self.clauses()
+        return Requirement(start, self.last_end(), name, True, (), None, text, clauses)
+
+    def params(self) -> tuple[Parameter, ...]:
+        """Params = "(" NAME ":" UNIT [ "=" Bounded ] { "," NAME ":" UNIT [ "=" Bounded ] } ")\""""
+        self.advance()
+        self.group += 1
+        found: list[Parameter] = []
+        while name := self.plain_name("a parameter's name"):
+            unit = self.unit() if self.expect(":") else None
+            default = self.bounded() if self.accept("=") else None
+            found.append(Parameter(name, unit, default))
+            if not self.accept(","):
+                break
+        self.close_group("`,` or `)`")
+        return tuple(found)
+
+    def req_ref(self, name: Word) -> ReqRef:
+        """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ];  the name is taken"""
+        if self.kind != OPEN:
+            return ReqRef(name)
+        self.advance()
+        self.group += 1
+        found: list[Argument] = []
+        while key := self.plain_name("a parameter's name"):
+            value = self.bounded() if self.expect("=") else None
+            found.append(Argument(key, value))
+            if not self.accept(","):
+                break
+        self.close_group("`,` or `)`")
+        return ReqRef(name, tuple(found))
+
+    def close_group(self, what: str) -> None:
+        """The `)` of a group, whatever stands before it."""
+        while self.kind != CLOSE and self.kind != NEWLINE:
+            self.expected(what)
+            if self.kind != CLOSE:
+                self.advance()
+        self.group -= 1
+        self.advance()
+
+    def quality_path(self) -> QualityPath | None:
+        """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
+        first = self.name("a quality")
+        if first is None:
+            return None
+        names = [first]
+        if self.at("<"):
+            self.advance()
+            if name := self.name("a sub-characteristic"):
+                names.append(name)
+                self.expect(">")
+        while self.at("."):
+            self.advance()
+            name = self.name("a sub-characteristic")
+            if name is None:
+                break
+            names.append(name)
+        return QualityPath(tuple(names))
+
+    # ---- clauses ----
+
+    def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
+        """{ Clause }, to the end of the line or of what holds them"""
+        found: list[Clause] = []
+        while self.kind == NAME or self.kind == STRING:
+            following = self.index + 1
+            if self.kind == NAME and self.raw in _ENDS_CLAUSES and self.raw not in HEADS:
+                break
+            if self.group and self.is_operator(following, "="):
+                break
+            clause = self.clause()
+            if clause is None:
+                return tuple(found)
+            found.append(clause)
+        if at_least_one and not found:
+            self.expected("a clause: takes, keeps, in at least, on violation, …")
+        return tuple(found)
+
+    def clause(self) -> Clause | None:
+        """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+        start = self.start()
+        word = self.raw if self.kind == NAME else ""
+        if word in VERBS or word in SUBJECT_HEADS:
+            return self.claim()
+        if word == "while" or word == "when":
+            scope = self.take()
+            condition = self.cond()
+            return Scope(start, self.last_end(), scope, condition)
+        if word == "in" or word == "with":
+            return self.odds()
+        if word == "confidence":
+            self.advance()
+            value = self.quantity("a percentage: 95 %")
+            return Confidence(start, self.last_end(), value)
+        if word == "over":
+            return self.window()
+        if word == "on":
+            self.advance()
+            self.expect_word("violation")
+            action = self.one_of(ACTIONS)
+            return OnViolation(start, self.last_end(), action)
+        if word == "goal":
+            self.advance()
+            bounded = self.bounded()
+            return Goal(start, self.last_end(), bounded)
+        if word == "because":
+            self.advance()
+            text = self.take() if self.kind == STRING else self.missing_word("the reason in quotes")
+            return Because(start, self.last_end(), text)
+        if word == "verified":
+            self.advance()
+            self.expect_word("by")
+            method = self.one_of(METHODS)
+            return How(start, self.last_end(), method)
+        return self.claim()
+
+    def odds(self) -> Odds:
+        """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
+        start = self.start()
+        relation = ">="
+        experiments = None
+        if self.accept_word("in"):
+            ok = self.expect_word("at") and self.expect_word("least")
+            value = self.quantity("a percentage: 98 %") if ok else None
+            if value is not None and self.expect_word("of"):
+                experiments = self.one_of(("activations", "runs"))
+            return Odds(start, self.last_end(), relation, value, experiments)
+        self.advance()
+        value = None
+        if self.expect_word("probability"):
+            if self.at(">=") or self.at(">"):
+                relation = self.raw
+                self.advance()
+                value = self.quantity("a percentage: 98 %")
+            else:
+                self.expected("`>=` or `>` and a percentage")
+            if self.accept_word("of"):
+                experiments = self.one_of(("activations", "runs"))
+        return Odds(start, self.last_end(), relation, value, experiments)
+
+    def window(self) -> Window:
+        """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
+        start = self.start()
+        self.advance()
+        self.expect_word("last")
+        size = experiments = None
+        if self.kind == QUANTITY:
+            size = self.take()
+        elif self.kind == NUMBER:
+            size = self.take()
+            experiments = self.one_of(("activations", "runs"))
+        else:
+            self.expected("a number of runs or activations, or a duration")
+        return Window(start, self.last_end(), size, experiments)
+
+    def one_of(self, words: tuple[str, ...]) -> Word | None:
+        if self.kind == NAME and self.raw in words:
+            return self.take()
+        self.expected(f"{', '.join(words[:-1])} or {words[-1]}")
+        return None
+
+    # ---- claims ----
+
+    def claim(self) -> Claim | None:
+        """Claim = [ Subject ] Verb"""
+        start = self.start()
+        subject: Subject | None = None
+        if not (self.kind == NAME and self.raw in VERBS):
+            subject = self.subject()
+        if not (self.kind == NAME and self.raw in VERBS):
+            if subject is None or isinstance(subject, Path):
+                self.expected("a clause (takes, keeps, in at least, on violation, …), or a node and a verb")
+            else:
+                self.expected("a verb: takes, succeeds, needs, keeps, …")
+            return None
+        verb = self.take()
+        bound: Bound | None = None
+        condition: Condition | None = None
+        resource: Word | None = None
+        per: Path | Word | None = None
+        event: Event | None = None
+        every = False
+        word = verb.raw
+        if word == "takes":
+            bound = self.bound()
+        elif word == "succeeds":
+            bound = self.within() if self.accept_word("within") else None
+        elif word in _OF_CONDITIONS:
+            condition = self.cond()
+        elif word == "uses":
+            bound = self.bound()
+            resource = self.plain_name("a signal") if self.expect_word("of") else None
+        elif word == "tries":
+            bound = self.bound()
+            per = self.path("a node") if self.accept_word("per") else None
+        elif word == "runs":
+            if self.accept_word("every"):
+                every = True
+                bound = self.within()
+            else:
+                bound = self.bound()
+                per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
+        elif word == "follows":
+            event = self.event()
+        else:
+            bound = self.within() if self.expect_word("within") else None
+            event = self.event() if self.expect_word("after") else None
+        return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
+
+    def subject(self) -> Subject | None:
+        """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
+        start = self.start()
+        if self.accept_word("mission"):
+            return Mission(start, self.last_end())
+        if self.accept_word("every"):
+            name = self.name("a node's ID or kind")
+            return Every(start, self.last_end(), name) if name else None
+        if self.accept_word("from"):
+            first = self.event()
+            last = self.event() if self.expect_word("to") else None
+            return Between(start, self.last_end(), first, last)
+        if self.at_word("sum") and self.is_word(self.index + 1, "of"):
+            self.advance()
+            self.advance()
+            paths: list[Path] = []
+            while path := self.path("a node"):
+                paths.append(path)
+                if not self.accept(","):
+                    break
+            return Sum(start, self.last_end(), tuple(paths))
+        return self.path("a node")
+
+    def path(self, what: str) -> Path | None:
+        """Path = Name { "/" Name }"""
+        first = self.name(what)
+        if first is None:
+            return None
+        names = [first]
+        while self.accept("/"):
+            name = self.name(what)
+            if name is None:
+                break
+            names.append(name)
+        return Path(tuple(names))
+
+    def event(self) -> Event | None:
+        """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
+        start = self.start()
+        if self.accept_word("when"):
+            condition = self.cond()
+            return Event(start, self.last_end(), None, "when", condition)
+        path = None if self.accept_word("mission") else self.path("an event: a node and what happens to it")
+        if not (self.kind == NAME and self.raw in HAPPENINGS):
+            self.expected("starts, succeeds, fails, finishes or halts")
+            return None
+        happening = self.take().raw
+        return Event(start, self.last_end(), path, happening)
+
+    # ---- bounds ----
+
+    def bound(self) -> Bound | None:
+        """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
+        start = self.start()
+        if self.accept_word("between"):
+            lower = self.amount()
+            upper = self.amount() if self.expect_word("and") else None
+            return Bound(start, self.last_end(), "between", lower, upper)
+        first = self.raw if self.kind == NAME else ""
+        second = self.raws[self.index + 1] if self.kinds[self.index + 1] == NAME else ""
+        relation = _RELATIONS.get((first, second))
+        if relation is None:
+            self.expected("a bound: at most, at least, less than, more than or between")
+            return None
+        self.advance()
+        self.advance()
+        value = self.bounded()
+        return Bound(start, self.last_end(), relation, value)
+
+    def within(self) -> Bound:
+        """Bounded, as the upper bound that `within` and `every` mean"""
+        start = self.start()
+        value = self.bounded()
+        return Bound(start, self.last_end(), "<=", value)
+
+    def bounded(self) -> Bounded | None:
+        """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
+        value = self.amount()
+        if value is None or not self.at_word("if"):
+            return value
+        cases: list[Case] = []
+        while self.accept_word("if"):
+            cases.append(Case(value, self.cond()))
+            if not self.accept(","):
+                break
+            value = self.amount()
+            if value is None:
+                return Table(tuple(cases))
+            if not self.at_word("if"):
+                self.expected("`if` and a condition, or `else` instead of the comma")
+                return Table(tuple(cases))
+        if self.expect_word("else") and (value := self.amount()) is not None:
+            cases.append(Case(value, None))
+        return Table(tuple(cases))
+
+    def amount(self, strings: bool = False) -> Amount | None:
+        """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
+        negative = self.accept("-")
+        if self.kind == QUANTITY or self.kind == NUMBER:
+            return Amount(self.take(), negative)
+        if not negative and (self.kind == NAME or (strings and self.kind == STRING)):
+            return Amount(self.take())
+        self.expected("a value with its unit: 30 s")
+        return None
+
+    def unit(self) -> Word | None:
+        """UNIT, behind the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
+        first = self.starts[self.index]
+        start = self.start()
+        if self.kind == NEWLINE or self.kind == CLOSE:
+            self.expected("a unit: s, m/s, %, 1, bool or text")
+            return None
+        end = unit_at(self.text, first)
+        if end == first:
+            word = self.raw
+            end = first + len(word)
+            if word not in UNITLESS:
+                fixes = tuple(
+                    replace_fix(f"Replace it by `{near}`", Span(first, end), near) for near in nearest_units(word)
+                )
+                self.problems.append(Diagnostic("unknown-unit", Span(first, end), f"`{word}` is no unit", fixes=fixes))
+        while self.starts[self.index] < end and self.kind != NEWLINE:
+            self.advance()
+        return Word(NAME, start, self.text[first:end])
+
+    # ---- conditions ----
+
+    def cond(self) -> Condition | None:
+        """Cond = Conj { "or" Conj }"""
+        if self._nesting >= MAX_NESTING:
+            at = self.starts[self.index]
+            self.complain(
+                "nested-too-deep", Span(at, at + len(self.raw)), f"more than {MAX_NESTING} brackets in brackets"
+            )
+            self.recover()
+            return None
+        self._nesting += 1
+        left = self.conj()
+        while left is not None and self.accept_word("or"):
+            right = self.conj()
+            if right is None:
+                break
+            left = Binary(left.start, right.end, "or", left, right)
+        self._nesting -= 1
+        return left
+
+    def conj(self) -> Condition | None:
+        """Conj = Neg { "and" Neg }"""
+        left = self.neg()
+        while left is not None and self.accept_word("and"):
+            right = self.neg()
+            if right is None:
+                break
+            left = Binary(left.start, right.end, "and", left, right)
+        return left
+
+    def neg(self) -> Condition | None:
+        """Neg = [ "not" ] Atom"""
+        if self.at_word("not"):
+            start = self.start()
+            self.advance()
+            operand = self.atom()
+            return Not(start, operand.end, operand) if operand else None
+        return self.atom()
+
+    def atom(self) -> Condition | None:
+        """Atom = Expr [ Cmp Expr [ Cmp Expr ] ] | "node" Path | "(" Cond ")\""""
+        following = self.kinds[self.index + 1]
+        if self.at_word("node") and (following == STRING or (following == NAME and not self.ends_condition())):
+            start = self.start()
+            self.advance()
+            path = self.path("a node")
+            return NodeRuns(start, self.last_end(), path) if path else None
+        first = self.expr()
+        if first is None:
+            return None
+        operators: list[str] = []
+        operands = [first]
+        while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
+            if self.raw == "=":
+                if self.group:
+                    break
+                at = self.starts[self.index]
+                fix = replace_fix("Write `==`", Span(at, at + 1), "==", safe=True)
+                self.complain("syntax-error", Span(at, at + 1), "values are compared with `==`", (), (fix,))
+            if len(operators) == 2:
+                self.expected("at most two comparisons in a row")
+                break
+            operators.append("==" if self.raw == "=" else self.raw)
+            self.advance()
+            operand = self.expr()
+            if operand is None:
+                return first
+            operands.append(operand)
+        if not operators:
+            return first
+        return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
+
+    def ends_condition(self) -> bool:
+        """Whether the next word ends the operand at hand, so that a lone `node` is a name like any other."""
+        return self.raws[self.index + 1] in HEADS or self.raws[self.index + 1] in ("and", "or")
+
+    def expr(self) -> Condition | None:
+        """Expr = Term { ( "+" | "-" ) Term }"""
+        left = self.term()
+        while left is not None and (self.at("+") or self.at("-")):
+            operator = self.raw
+            self.advance()
+            right = self.term()
+            if right is None:
+                break
+            left = Binary(left.start, right.end, operator, left, right)
+        return left
+
+    def term(self) -> Condition | None:
+        """Term = Factor { ( "*" | "/" ) Factor }"""
+        left = self.factor()
+        while left is not None and (self.at("*") or self.at("/")):
+            operator = self.raw
+            self.advance()
+            right = self.factor()
+            if right is None:
+                break
+            left = Binary(left.start, right.end, operator, left, right)
+        return left
+
+    def factor(self) -> Condition | None:
+        """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
+        start = self.start()
+        if self.at("-"):
+            self.advance()
+            if self.kind == QUANTITY or self.kind == NUMBER:
+                word = self.take()
+                return Negative(start, word.end, Operand(word))
+            self.expected("a number or a quantity behind `-`")
+            return None
+        if self.kind == QUANTITY or self.kind == NUMBER or self.kind == STRING:
+            return Operand(self.take())
+        if self.kind == NAME:
+            if self.raw in FUNCTIONS and self.kinds[self.index + 1] == OPEN:
+                function = self.take()
+                self.advance()
+                self.group += 1
+                signal = self.plain_name("a signal")
+                self.close_group("`)`")
+                return Call(start, self.last_end(), function, signal)
+            if self.raw not in HEADS:
+                return Operand(self.take())
+        if self.kind == OPEN:
+            self.advance()
+            self.group += 1
+            inner = self.cond()
+            self.close_group("`)`")
+            return inner
+        self.expected("a condition: a signal, a context, a value, …", _instead(self.raw))
+        return None
+
+
+def _instead(raw: str) -> tuple[str, ...]:
+    return ("write `or`",) if raw == "||" else ()
+
+
+_OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
+_ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
+_RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}

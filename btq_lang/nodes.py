@@ -1,0 +1,385 @@
+"""The part of the parser that reads the block of a tree: nodes, their attributes, and the qualities attached to them.
+
+Nodes nest by indentation, so their blocks are a stack of open nodes and no recursion.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.clauses import ClauseParser
+from btq_lang.cursor import VALUES
+from btq_lang.diagnostics import replace_fix
+from btq_lang.syntax import (
+    Node,
+    NodeClause,
+    Pair,
+    Port,
+    Quality,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Verbatim,
+    Word,
+)
+from btq_lang.text import Span
+from btq_lang.tokens import CLOSE, NAME, NEWLINE, OPEN, OPERATOR, STRING, SYMBOL
+
+MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
+
+CATEGORIES: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
+NODE_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags"))
+_ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
+DIRECTIONS: Final = frozenset(("input", "output", "inout"))
+
+
+class NodeParser(ClauseParser):
+    """A cursor that can read the block of a tree."""
+
+    def tree_block(self, level: int) -> tuple[tuple[Port, ...], tuple[NodeClause, ...], tuple[Node | Verbatim, ...]]:
+        """INDENT { Port } { ClauseLine } { Node } DEDENT"""
+        ports: list[Port] = []
+        clauses: list[NodeClause] = []
+        top: list[Node | Verbatim] = []
+        open_nodes: list[_Open] = []
+        told_too_deep = False
+        while self.deeper(level):
+            inner = self.lexer.level
+            while open_nodes and open_nodes[-1].level >= inner:
+                node = open_nodes.pop().close()
+                siblings = open_nodes[-1].children if open_nodes else top
+                siblings.append(node)
+            self.scan()
+            parent = open_nodes[-1] if open_nodes else None
+            children = parent.children if parent is not None else top
+            word = self.raw if self.kind == NAME else ""
+            if word in NODE_CLAUSES:
+                if children:
+                    self.complain(
+                        "clause-after-children",
+                        self.here(),
+                        "clauses stand before children",
+                        (f'a node of this name is written in quotes: "{word}"',),
+                    )
+                (parent.clauses if parent is not None else clauses).extend(self.clause_line(inner))
+            elif word == "xml" and self.kinds[1] == STRING:
+                children.append(self.verbatim())
+                self.no_block(inner)
+            elif word in DIRECTIONS and parent is None and not top:
+                ports.append(self.port())
+                self.no_block(inner)
+            else:
+                if len(open_nodes) >= MAX_DEPTH:
+                    if not told_too_deep:
+                        told_too_deep = True
+                        self.complain("nested-too-deep", self.here(), f"more than {MAX_DEPTH} levels of nodes")
+                    children = open_nodes[-2].children
+                    children.append(open_nodes.pop().close())
+                node_open = self.node(inner)
+                if node_open is not None:
+                    open_nodes.append(node_open)
+        while open_nodes:
+            node = open_nodes.pop().close()
+            siblings = open_nodes[-1].children if open_nodes else top
+            siblings.append(node)
+        return tuple(ports), tuple(clauses), tuple(top)
+
+    def node(self, level: int) -> _Open | None:
+        """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
+        start = self.start()
+        category: Word | None = None
+        kind: Word | None = None
+        if self.kind == NAME and self.raw in CATEGORIES:
+            category = self.take()
+            if self.at_label():
+                kind = self.take()
+        elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
+            kind = self.take()
+        else:
+            self.expected("a node")
+            self.end_line()
+            self.skip_block(level)
+            return None
+        label = self.take() if self.at_label() else None
+        attributes: tuple[Pair, ...] = ()
+        clauses: list[NodeClause] = []
+        if self.kind == OPEN:
+            attributes = self.attributes(clauses)
+        while self.kind == NAME and self.raw in NODE_CLAUSES:
+            clauses.append(self.node_clause())
+        end = self.end_line()
+        return _Open(level, start, end, category, kind, label, attributes, clauses)
+
+    def at_label(self) -> bool:
+        return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
+
+    def clause_line(self, level: int) -> list[NodeClause]:
+        """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem"""
+        found: list[NodeClause] = []
+        while self.kind == NAME and self.raw in NODE_CLAUSES:
+            found.append(self.node_clause())
+        self.end_line()
+        last = found[-1]
+        if isinstance(last, Satisfies) and last.uses and isinstance(use := last.uses[-1], Requirement):
+            requirement = self.clause_block(use, level)
+            found[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
+        self.no_block(level)
+        return found
+
+    def clause_block(self, requirement: Requirement, level: int) -> Requirement:
+        """[ INDENT { Clause { Clause } NL } DEDENT ]"""
+        clauses = list(requirement.clauses)
+        end = requirement.end
+        while self.deeper(level):
+            inner = self.lexer.level
+            self.scan()
+            clauses += self.clauses(at_least_one=True)
+            end = self.end_line()
+            self.no_block(inner)
+        if end == requirement.end:
+            return requirement
+        return Requirement(
+            requirement.start,
+            end,
+            requirement.name,
+            requirement.classic,
+            requirement.parameters,
+            requirement.quality,
+            requirement.text,
+            tuple(clauses),
+        )
+
+    def verbatim(self) -> Verbatim:
+        """ "xml" STRING NL"""
+        start = self.take().start
+        text = self.take() if self.kind == STRING else self.missing_word("one XML element in quotes")
+        return Verbatim(start, self.end_line(), text)
+
+    def port(self) -> Port:
+        """( "input" | … ) [ NAME ] [ ":" Name { "::" Name } ] [ "=" Value ] [ Attributes ] [ STRING ] NL"""
+        direction = self.take()
+        name = self.take() if self.kind == NAME else None
+        type_ = None
+        if self.accept(":"):
+            type_ = self.name("the port's type")
+            while type_ is not None and self.at("::"):
+                self.advance()
+                last = self.name("the rest of the type")
+                if last is not None:
+                    type_ = Word(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
+        default = self.value() if self.accept("=") else None
+        attributes = self.pairs_only()
+        text = self.take() if self.kind == STRING else None
+        return Port(direction.start, self.end_line(), direction, name, type_, default, attributes, text)
+
+    # ---- attributes ----
+
+    def pairs_only(self) -> tuple[Pair, ...]:
+        """Attributes of something that takes no qualities."""
+        if self.kind != OPEN:
+            return ()
+        clauses: list[NodeClause] = []
+        pairs = self.attributes(clauses)
+        if clauses:
+            span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
+            note = "qualities and requirements stand at a node, or on a line of their own in the block of a tree"
+            self.complain("syntax-error", span, "only `key = value` pairs stand in these brackets", (note,))
+        return pairs
+
+    def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
+        """Attributes = "(" { Attribute [ "," ] } ")";  Attribute = "parameters" Pair … | NodeClause | Pair"""
+        pairs: list[Pair] = []
+        self.advance()
+        self.group += 1
+        while self.kind != CLOSE and self.kind != NEWLINE:
+            if self.kind == NAME or self.kind == STRING:
+                following = self.index + 1
+                if self.kinds[following] == OPERATOR and self.raws[following] == "=":
+                    pairs.append(self.pair())
+                elif self.kind == NAME and self.raw in NODE_CLAUSES:
+                    clauses.append(self.node_clause())
+                elif self.kind == NAME and self.raw == "parameters":
+                    self.advance()
+                    continue
+                else:
+                    self.not_an_attribute()
+            else:
+                self.not_an_attribute()
+            if self.kind == OPERATOR and self.raw == ",":
+                self.advance()
+        self.group -= 1
+        self.advance()
+        return tuple(pairs)
+
+    def not_an_attribute(self) -> None:
+        at = self.index
+        self.expected("an attribute: key = value")
+        if self.index == at:
+            self.advance()
+
+    def pair(self) -> Pair:
+        """Pair = Name "=" Value"""
+        key = self.take()
+        self.advance()
+        return Pair(key, self.value())
+
+    def value(self) -> Word | None:
+        """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
+        if self.kind not in VALUES:
+            self.expected("a value: a string, a name, a number, a quantity or {key}")
+            return None
+        word = self.take()
+        if self.kind != NEWLINE and self.kind != CLOSE and self.raw != "," and self.adjacent(self.index):
+            return self.needs_quotes(word)
+        return word
+
+    def needs_quotes(self, word: Word) -> Word:
+        """`map/frame`, `1;2`: take what is written without a blank as one value, and say that it needs quotes."""
+        if self.kind == OPEN or self.raw == "=":
+            return word
+        while self.kind not in (NEWLINE, CLOSE, OPEN) and self.raw != "," and self.adjacent(self.index):
+            self.advance()
+        start = word.start + self.base
+        end = self.last_end() + self.base
+        raw = self.text[start:end]
+        fix = replace_fix("Put quotes around it", Span(start, end), f'"{raw}"', safe='"' not in raw)
+        self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
+        return Word(NAME, word.start, raw)
+
+    # ---- qualities and requirements on nodes ----
+
+    def node_clause(self) -> NodeClause:
+        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
+        start = self.start()
+        word = self.take().raw
+        if word == "satisfices":
+            qualities = self.satisfices()
+            return Satisfices(start, self.last_end(), qualities)
+        if word == "satisfies":
+            uses = self.satisfies()
+            return Satisfies(start, self.last_end(), uses)
+        names: list[Word] = []
+        while name := self.name("a tag"):
+            names.append(name)
+            if not self.list_goes_on():
+                break
+        return Tags(start, self.last_end(), tuple(names))
+
+    def satisfices(self) -> tuple[Quality, ...]:
+        """Quality { "," Quality };  classic files leave the commas out"""
+        found: list[Quality] = []
+        while True:
+            quality = self.quality()
+            if quality is None:
+                break
+            found.append(quality)
+            if not (self.at_quality() or self.list_goes_on(qualities=True)):
+                break
+        return tuple(found)
+
+    def at_quality(self) -> bool:
+        return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
+
+    def quality(self) -> Quality | None:
+        """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
+        classic = self.at_quality()
+        if classic:
+            self.advance()
+            self.advance()
+        path = self.quality_path()
+        if path is None:
+            return None
+        if not classic or self.kind != OPEN:
+            return Quality(path)
+        self.advance()
+        self.group += 1
+        requirements: list[Requirement] = []
+        while self.at_word("QualityReq"):
+            requirements.append(self.requirement())
+            self.accept(",")
+        self.close_group("QualityReq or `)`")
+        return Quality(path, tuple(requirements))
+
+    def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
+        """ReqUse { "," ReqUse };  classic files leave the commas out"""
+        found: list[Requirement | ReqRef] = []
+        while True:
+            if self.at_word("QualityReq"):
+                found.append(self.requirement())
+            else:
+                name = self.name("a requirement: its ID, or QualityReq and a definition")
+                if name is None:
+                    break
+                found.append(self.req_ref(name))
+            if not (self.at_word("QualityReq") or self.list_goes_on()):
+                break
+        return tuple(found)
+
+    def list_goes_on(self, qualities: bool = False) -> bool:
+        """Pass a comma if another element follows it; in brackets an attribute may follow it instead."""
+        if not self.at(","):
+            return False
+        following = self.index + 1
+        if self.group:
+            if self.kinds[following] == CLOSE:
+                return False
+            if self.is_operator(following + 1, "=") and not (qualities and self.is_word(following, "Quality")):
+                return False
+            if self.kinds[following] == NAME and (
+                self.raws[following] in NODE_CLAUSES or self.raws[following] == "parameters"
+            ):
+                return False
+        self.advance()
+        return True
+
+    # ---- blocks ----
+
+    def no_block(self, level: int) -> None:
+        """Complain of lines deeper than the line just read, which takes no block, and pass over them."""
+        if not self.deeper(level):
+            return
+        at = self.lexer.position
+        message = "this line is indented, but the line above it opens no block"
+        self.complain("syntax-error", Span(at, self.lexer.line_end()), message)
+        self.skip_block(level)
+
+
+class _Open:
+    """A node whose block may still go on."""
+
+    __slots__ = ("attributes", "category", "children", "clauses", "end", "kind", "label", "level", "start")
+
+    def __init__(
+        self,
+        level: int,
+        start: int,
+        end: int,
+        category: Word | None,
+        kind: Word | None,
+        label: Word | None,
+        attributes: tuple[Pair, ...],
+        clauses: list[NodeClause],
+    ) -> None:
+        self.level: Final = level
+        self.start: Final = start
+        self.end: Final = end
+        self.category: Final = category
+        self.kind: Final = kind
+        self.label: Final = label
+        self.attributes: Final = attributes
+        self.clauses: Final = clauses
+        self.children: Final[list[Node | Verbatim]] = []
+
+    def close(self) -> Node:
+        return Node(
+            self.start,
+            self.end,
+            self.category,
+            self.kind,
+            self.label,
+            self.attributes,
+            tuple(self.clauses),
+            tuple(self.children),
+        )

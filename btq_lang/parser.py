@@ -1,0 +1,384 @@
+"""The parser: text to tree, one function a production of the grammar (language.md §3), named as it.
+
+One invariant: it takes every string and never raises; what it cannot understand is one diagnostic, and the next
+attribute, line or item is read as if nothing had happened.  It knows the shape of things, not their meaning: `Retry`
+and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`, the cursor both use in `cursor`.
+"""
+
+from __future__ import annotations
+
+import gc
+from typing import Final
+
+from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
+from btq_lang.lexer import name_end, tokens
+from btq_lang.near import near
+from btq_lang.nodes import CATEGORIES, DIRECTIONS, NodeParser
+from btq_lang.syntax import (
+    Apply,
+    Context,
+    Entry,
+    Include,
+    Item,
+    Meta,
+    Model,
+    Models,
+    Port,
+    Qualities,
+    QualityDecl,
+    ReqRef,
+    Requirement,
+    Root,
+    Selector,
+    Signal,
+    Skipped,
+    Tree,
+    Verbatim,
+)
+from btq_lang.tokens import BRACED, NAME, NEWLINE, OPEN, STRING, SYMBOL, Token
+
+_BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
+
+
+class Parsed:
+    """One file, parsed.
+
+    Attributes:
+        text: the file.
+        entries: its items in order; those in the block of a `Root` follow their Root.
+    """
+
+    __slots__ = ("_diagnostics", "_tokens", "entries", "text")
+
+    def __init__(self, text: str, entries: tuple[Entry, ...]) -> None:
+        self.text: Final = text
+        self.entries: Final = entries
+        self._tokens: tuple[Token, ...] | None = None
+        self._diagnostics: tuple[Diagnostic, ...] | None = None
+
+    @property
+    def tokens(self) -> tuple[Token, ...]:
+        """All tokens, blanks and comments included: joined, their texts are the file.  Made when first asked for."""
+        if self._tokens is None:
+            self._tokens = tokens(self.text)
+        return self._tokens
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with the syntax; spans count from the start of the file."""
+        if self._diagnostics is None:
+            self._diagnostics = tuple(
+                shifted(problem, entry.start) for entry in self.entries for problem in entry.diagnostics
+            )
+        return self._diagnostics
+
+    @property
+    def trees(self) -> tuple[Tree, ...]:
+        """The behavior trees, in order."""
+        return tuple(entry.item for entry in self.entries if isinstance(entry.item, Tree))
+
+
+def parse(text: str) -> Parsed:
+    """Parse a file.
+
+    Args:
+        text: any string at all.
+
+    Returns:
+        The tree of what could be understood, with a diagnostic for every mistake.
+    """
+    collecting = gc.isenabled()
+    gc.disable()  # nothing made here is garbage, and collecting it is a fifth of the time
+    try:
+        return Parsed(text, Parser(text).file())
+    finally:
+        if collecting:
+            gc.enable()
+
+
+class Parser(NodeParser):
+    """The state of one parse: the cursor, the open item, and what was found so far."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.entries: list[Entry] = []
+        self.has_root = False
+        self.stray_level = -1  # the level of lines indented for no reason, reported once
+
+    # ---- file and items ----
+
+    def file(self) -> tuple[Entry, ...]:
+        """File = { Item }"""
+        self.more = self.lexer.open_line()
+        while self.more:
+            self.item(0, False)
+        if self.problems or self.lexer.problems:  # behind the last item, or in a file without any
+            self.base = 0
+            self.entry(Skipped(len(self.text), len(self.text)), False)
+        return tuple(self.entries)
+
+    def item(self, level: int, in_root: bool) -> None:
+        """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""
+        self.base = self.lexer.line_start
+        found_at = self.lexer.level
+        self.scan()
+        if found_at > level and found_at != self.stray_level:
+            self.complain("syntax-error", self.here(), "this line is indented, but no block is open above it")
+        self.stray_level = found_at if found_at > level else -1
+        word = self.item_word()
+        item: Item
+        if word == "BehaviorTree":
+            item = self.tree(found_at)
+        elif word == "Root":
+            self.root(found_at, in_root)
+            return
+        elif word in CATEGORIES:
+            item = self.model(found_at)
+        elif word == "QualityReq":
+            item = self.req_item(found_at)
+        elif word == "TreeNodesModel":
+            item = self.models(found_at)
+        elif word == "include":
+            item = self.include()
+        elif word == "signal":
+            item = self.signal()
+        elif word == "context":
+            item = self.context()
+        elif word == "apply":
+            item = self.apply()
+        elif word == "quality":
+            item = self.quality_decl()
+        elif word == "qualities":
+            item = self.qualities()
+        elif word == "xml":
+            item = self.verbatim()
+        else:
+            item = self.skipped(found_at)
+        self.no_block(found_at)
+        self.entry(item, in_root)
+
+    def item_word(self) -> str:
+        """The word that begins the item; a misspelt one is reported and read as the word that was meant."""
+        if self.kind != NAME:
+            return ""
+        if self.raw in ITEM_WORDS:
+            return self.raw
+        likely = near(self.raw, ITEM_WORDS, limit=1)
+        if not likely or self.kinds[self.index + 1] not in (NAME, STRING):
+            return ""
+        fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
+        self.complain("syntax-error", self.here(), f"`{self.raw}` begins no item: `{likely[0]}`?", (), (fix,))
+        return likely[0]
+
+    def no_block(self, level: int) -> None:
+        """As below a node, but a line that begins an item is read as one."""
+        if not (self.deeper(level) and self.begins_item()):
+            super().no_block(level)
+
+    def begins_item(self) -> bool:
+        end = name_end(self.text, self.lexer.position, len(self.text))
+        return self.text[self.lexer.position : end] in ITEM_WORDS
+
+    def entry(self, item: Item, in_root: bool) -> None:
+        """File the item with the problems found before the line now open; they count from the item's start."""
+        found = self.problems + self.lexer.problems
+        self.problems = []
+        self.lexer.problems = []
+        if found:
+            end = self.lexer.line_start if self.more else len(self.text) + 1
+            self.lexer.problems = [problem for problem in found if problem.span.start >= end]
+            found = sorted(
+                (shifted(problem, -self.base) for problem in found if problem.span.start < end),
+                key=lambda problem: problem.span,
+            )
+        self.entries.append(Entry(self.base, item, in_root, tuple(found)))
+
+    def include(self) -> Include:
+        """ "include" STRING [ Attributes ] NL"""
+        start = self.take().start
+        path = self.take() if self.kind == STRING else self.missing_word("a file in quotes")
+        attributes = self.pairs_only()
+        return Include(start, self.end_line(), path, attributes)
+
+    def qualities(self) -> Qualities:
+        """ "qualities" NAME NL"""
+        start = self.take().start
+        edition = self.name("iso25010-2023 or iso25010-2011")
+        return Qualities(start, self.end_line(), edition)
+
+    def quality_decl(self) -> QualityDecl:
+        """ "quality" Name [ ":" QualityPath ] [ STRING ] NL"""
+        start = self.take().start
+        name = self.name("the name of the quality")
+        parent = self.quality_path() if self.accept(":") else None
+        text = self.take() if self.kind == STRING else None
+        return QualityDecl(start, self.end_line(), name, parent, text)
+
+    def models(self, level: int) -> Models:
+        """ "TreeNodesModel" NL [ INDENT { Model | Verbatim } DEDENT ]"""
+        start = self.take().start
+        end = self.end_line()
+        models: list[Model | Verbatim] = []
+        while self.deeper(level):
+            self.scan()
+            inner = self.lexer.level
+            if self.kind == NAME and self.raw in CATEGORIES:
+                models.append(self.model(inner))
+            elif self.kind == NAME and self.raw == "xml":
+                models.append(self.verbatim())
+            else:
+                self.expected("a node model: Action, Condition, Control, Decorator or SubTree and its ID")
+                self.end_line()
+            self.no_block(inner)
+        return Models(start, end, tuple(models))
+
+    def model(self, level: int) -> Model:
+        """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ] NL [ INDENT { Port | … } DEDENT ]"""
+        category = self.take()
+        name = self.name("the node's ID")
+        attributes = self.pairs_only()
+        text = self.take() if self.kind == STRING else None
+        end = self.end_line()
+        body: list[Port | Meta | Verbatim] = []
+        while self.deeper(level):
+            self.scan()
+            inner = self.lexer.level
+            if self.kind == NAME and self.raw in DIRECTIONS:
+                body.append(self.port())
+            elif self.kind == NAME and self.raw == "metadata":
+                body.append(self.meta())
+            elif self.kind == NAME and self.raw == "xml":
+                body.append(self.verbatim())
+            else:
+                self.expected("a port (input, output or inout), metadata or xml")
+                self.end_line()
+            self.no_block(inner)
+        return Model(category.start, end, category, name, attributes, text, tuple(body))
+
+    def meta(self) -> Meta:
+        """ "metadata" Attributes NL"""
+        start = self.take().start
+        if self.kind != OPEN:
+            self.expected('attributes in brackets: metadata (key = "value")')
+        attributes = self.pairs_only()
+        return Meta(start, self.end_line(), attributes)
+
+    def signal(self) -> Signal:
+        """ "signal" NAME ":" UNIT [ "from" BRACED ] [ "level" | … ] [ "fresh" … ] [ "initially" … ] NL"""
+        start = self.take().start
+        name = self.plain_name("the signal's name")
+        unit = self.unit() if self.expect(":") else None
+        source = behaviour = fresh = initially = None
+        if self.accept_word("from"):
+            source = self.take() if self.kind == BRACED else self.missing_word("a blackboard entry: {key}")
+        if self.kind == NAME and self.raw in _BEHAVIOURS:
+            behaviour = self.take()
+        if self.accept_word("fresh"):
+            self.expect_word("within")
+            fresh = self.quantity("a duration: 5 s")
+        if self.accept_word("initially"):
+            initially = self.amount(strings=True)
+        return Signal(start, self.end_line(), name, unit, source, behaviour, fresh, initially)
+
+    def context(self) -> Context:
+        """ "context" NAME ":" Cond NL"""
+        start = self.take().start
+        name = self.plain_name("the context's name")
+        condition = self.cond() if self.expect(":") else None
+        return Context(start, self.end_line(), name, condition)
+
+    def req_item(self, level: int) -> Requirement:
+        """ReqHead { Clause } NL [ INDENT { Clause { Clause } NL } DEDENT ]"""
+        requirement = self.requirement()
+        self.end_line()
+        return self.clause_block(requirement, level)
+
+    def apply(self) -> Apply:
+        """ "apply" ReqRef { "," ReqRef } "to" Selector { "," Selector } [ "except" Selector { "," Selector } ] NL"""
+        start = self.take().start
+        uses: list[ReqRef] = []
+        while name := self.name("a requirement"):
+            uses.append(self.req_ref(name))
+            if not self.accept(","):
+                break
+        targets = self.selectors() if self.expect_word("to") else ()
+        exceptions = self.selectors() if self.accept_word("except") else ()
+        return Apply(start, self.end_line(), tuple(uses), targets, exceptions)
+
+    def selectors(self) -> tuple[Selector, ...]:
+        """Selector { "," Selector }"""
+        found: list[Selector] = []
+        while selector := self.selector():
+            found.append(selector)
+            if not self.accept(","):
+                break
+        return tuple(found)
+
+    def selector(self) -> Selector | None:
+        """ "every" Name [ "under" Path ] | "every" "node" "tagged" NAME | Path"""
+        if not self.at_word("every"):
+            path = self.path("a node, or `every` and a node")
+            return Selector(path.span.start, path.span.end, path=path) if path else None
+        start = self.take().start
+        if self.at_word("node") and self.is_word(self.index + 1, "tagged"):
+            self.advance()
+            self.advance()
+            tag = self.name("a tag")
+            return Selector(start, self.last_end(), tag=tag)
+        every = self.name("a node's ID or kind")
+        under = self.path("a tree or node") if self.accept_word("under") else None
+        return Selector(start, self.last_end(), every=every, path=under)
+
+    def root(self, level: int, in_root: bool) -> None:
+        """ "Root" [ Name ] [ Attributes ] NL [ INDENT { Item } DEDENT ]: at most one, none inside a Root"""
+        word = self.take()
+        name = self.take() if self.kind == NAME or self.kind == STRING else None
+        bracketed = self.kind == OPEN
+        attributes = self.pairs_only()
+        if self.has_root:
+            where = "inside a Root" if in_root else "in this file"
+            self.complain("second-root", word.span.shifted(self.base), f"a second Root {where}: there is one")
+        self.has_root = True
+        self.lexer.enter_root()
+        end = self.end_line()
+        item = Root(word.start, end, name, attributes, bracketed)
+        self.entry(item, in_root)
+        while self.deeper(level):
+            self.item(level + 1, True)
+
+    def tree(self, level: int) -> Tree:
+        """ "BehaviorTree" [ [ "ID" "=" ] Name ] [ Attributes ] NL [ INDENT { Port } { ClauseLine } { Node } DEDENT ]"""
+        start = self.take().start
+        if self.at_word("ID") and self.is_operator(self.index + 1, "="):
+            self.advance()
+            self.advance()
+            name = self.name("the tree's ID")
+        else:
+            name = self.take() if self.kind == NAME or self.kind == STRING else None
+        attributes = self.pairs_only()
+        end = self.end_line()
+        ports, clauses, children = self.tree_block(level)
+        return Tree(start, end, name, attributes, ports, clauses, children)
+
+    def skipped(self, level: int) -> Skipped:
+        """A line that begins no item: it and its block are passed over."""
+        start = self.start()
+        notes: tuple[str, ...] = ()
+        if self.kinds[self.index + 1] in (NEWLINE, OPEN) or self.kind == SYMBOL:
+            notes = ("a node stands in the block of a BehaviorTree, indented",)
+        self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
+        end = self.end_line()
+        while self.deeper(level) and not self.begins_item():
+            known = len(self.lexer.problems)
+            self.scan()
+            del self.lexer.problems[known:]
+            self.go_to(len(self.kinds) - 1)
+            end = self.end_line()
+        return Skipped(start, end)
+
+
+ITEM_WORDS: Final = (
+    *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),
+    *("quality", "qualities", "xml"),
+    *sorted(CATEGORIES),
+)

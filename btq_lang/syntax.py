@@ -1,0 +1,821 @@
+"""The tree of one file: frozen classes named after the productions of the grammar.
+
+One invariant: an offset counts from the start of the item it stands in (`Entry.start` says where that is), so that an
+item that did not change is the same object wherever edits elsewhere have moved it.  The tree knows words, not
+meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be missing, in broken code too".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final, TypeAlias
+
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.record import record
+from btq_lang.text import Span
+from btq_lang.tokens import STRING
+
+_ESCAPE = re.compile(r"\\([\"'\\nt])")
+_ESCAPED = {"n": "\n", "t": "\t"}
+_LINE_END = re.compile(r"\r\n?")
+
+
+class Word:
+    """A word of the source: a name, a string, a symbol or a value.
+
+    Attributes:
+        kind: its token kind: NAME, STRING, NUMBER, QUANTITY, BRACED or SYMBOL.
+        start: where it begins.
+        raw: as it stands in the source, quotes included.
+    """
+
+    __slots__ = ("kind", "raw", "start")
+
+    def __init__(self, kind: int, start: int, raw: str) -> None:
+        self.kind: Final = kind
+        self.start: Final = start
+        self.raw: Final = raw
+
+    @property
+    def end(self) -> int:
+        return self.start + len(self.raw)
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.start + len(self.raw))
+
+    @property
+    def quoted(self) -> bool:
+        return self.kind == STRING
+
+    @property
+    def text(self) -> str:
+        """What it says: a string without its quotes and escapes, anything else as it stands."""
+        return self.raw if self.kind != STRING else unquote(self.raw)
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Word) and self.raw == other.raw and self.start == other.start and self.kind == other.kind
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.raw, self.start))
+
+    def __repr__(self) -> str:
+        return f"{self.raw}@{self.start}"
+
+
+class Pair:
+    """`key = value`: a port, a subtree argument, or `_skipIf`, `_while`, …; no value: it is missing."""
+
+    __slots__ = ("key", "value")
+
+    def __init__(self, key: Word, value: Word | None) -> None:
+        self.key: Final = key
+        self.value: Final = value
+
+    @property
+    def span(self) -> Span:
+        return Span(self.key.start, (self.value or self.key).end)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pair) and self.key == other.key and self.value == other.value
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __repr__(self) -> str:
+        return f"{self.key!r} = {self.value!r}"
+
+
+class Node:
+    """A node of a tree.
+
+    Attributes:
+        start, end: its own line (or lines, when brackets run over several), without children.
+        category: `Action`, `Condition`, `Control`, `Decorator`, `SubTree` where written in front of the kind.
+        kind: a symbol or the node's ID; None in `SubTree (ID = PickPlace)`, where the ID is an attribute.
+        label: the instance name where written behind the kind; `name` says it wherever it stands.
+        attributes: the pairs in brackets, in order.
+        clauses: satisfices, satisfies and tags, in brackets, on the line and in the block, in order.
+        children: nodes and verbatim XML, in order.
+    """
+
+    __slots__ = ("attributes", "category", "children", "clauses", "end", "kind", "label", "start")
+
+    def __init__(
+        self,
+        start: int,
+        end: int,
+        category: Word | None,
+        kind: Word | None,
+        label: Word | None,
+        attributes: tuple[Pair, ...],
+        clauses: tuple[NodeClause, ...],
+        children: tuple[Node | Verbatim, ...],
+    ) -> None:
+        self.start: Final = start
+        self.end: Final = end
+        self.category: Final = category
+        self.kind: Final = kind
+        self.label: Final = label
+        self.attributes: Final = attributes
+        self.clauses: Final = clauses
+        self.children: Final = children
+
+    @property
+    def span(self) -> Span:
+        """The node's own line, without children."""
+        return Span(self.start, self.end)
+
+    @property
+    def block_end(self) -> int:
+        """Where the last line of its block ends."""
+        last = self
+        while last.children and isinstance(child := last.children[-1], Node):
+            last = child
+        ends = [last.end, *(clause.end for clause in last.clauses), *(child.end for child in last.children)]
+        return max(ends)
+
+    @property
+    def nodes(self) -> tuple[Node, ...]:
+        """The children that are nodes."""
+        return tuple(child for child in self.children if isinstance(child, Node))
+
+    @property
+    def head(self) -> Word:
+        """The word to point at: the kind, the ID in brackets, or else the category."""
+        head = self.id or self.category
+        assert head is not None, "a node has a kind or a category"
+        return head
+
+    @property
+    def id(self) -> Word | None:
+        """The kind, or the attribute `ID` of an explicit form."""
+        if self.kind is None and self.category is not None:
+            return self.attribute("ID")
+        return self.kind
+
+    @property
+    def name(self) -> Word | None:
+        """The instance name: the label, or the attribute `name`."""
+        return self.label or self.attribute("name")
+
+    def attribute(self, key: str) -> Word | None:
+        """The value of the first attribute with this key."""
+        for pair in self.attributes:
+            if pair.key.text == key:
+                return pair.value
+        return None
+
+    def walk(self) -> Iterator[Node]:
+        """This node and all below it, depth first, in document order."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            stack += [child for child in reversed(node.children) if isinstance(child, Node)]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Node) and all(getattr(self, slot) == getattr(other, slot) for slot in Node.__slots__)
+
+    def __hash__(self) -> int:
+        return hash((self.start, self.end))
+
+    def __repr__(self) -> str:
+        return f"Node({self.head!r}, {len(self.children)} children)"
+
+
+# ---- Qualities and requirements on nodes ----------------------------------------------------------------------------
+
+
+@record
+class QualityPath:
+    """`performance-efficiency.time-behaviour`, or as the paper prints it: `performance <time-behavior>`."""
+
+    names: tuple[Word, ...]
+
+    @property
+    def span(self) -> Span:
+        return Span(self.names[0].start, self.names[-1].end)
+
+
+@record
+class Quality:
+    """A quality in a satisfices list, with the requirements it encloses in the classic form."""
+
+    path: QualityPath
+    requirements: tuple[Requirement, ...] = ()
+
+
+@record
+class Satisfices:
+    """`satisfices Quality, …`: a concern, not yet measured."""
+
+    start: int
+    end: int
+    qualities: tuple[Quality, ...]
+
+
+@record
+class Argument:
+    """`limit = 0.1 m/s` behind a parameterised requirement."""
+
+    name: Word
+    value: Bounded | None
+
+
+@record
+class ReqRef:
+    """A requirement named, not defined: `rq1`, `slow(limit = 0.1 m/s)`."""
+
+    name: Word
+    arguments: tuple[Argument, ...] = ()
+
+
+@record
+class Satisfies:
+    """`satisfies rq1, QualityReq rq2 …`: requirements attached to the node."""
+
+    start: int
+    end: int
+    uses: tuple[Requirement | ReqRef, ...]
+
+
+@record
+class Tags:
+    """`tags heavy, indoor`."""
+
+    start: int
+    end: int
+    names: tuple[Word, ...]
+
+
+NodeClause: TypeAlias = Satisfices | Satisfies | Tags
+
+
+@record
+class Parameter:
+    """`limit : m/s = 0.25 m/s` of a parameterised requirement."""
+
+    name: Word
+    unit: Word | None
+    default: Bounded | None = None
+
+
+@record
+class Requirement:
+    """A requirement, defined in place, or at file level, where it is an item.
+
+    Attributes:
+        name: its ID; None where it is missing.
+        classic: written `QualityReq ID = … description = …`.
+        text: its title, or the classic description.
+    """
+
+    start: int
+    end: int
+    name: Word | None
+    classic: bool
+    parameters: tuple[Parameter, ...]
+    quality: QualityPath | None
+    text: Word | None
+    clauses: tuple[Clause, ...]
+
+    @property
+    def is_reference(self) -> bool:
+        """`QualityReq ID = "rq3"` alone names a requirement that is defined elsewhere."""
+        return self.text is None and self.quality is None and not self.clauses and not self.parameters
+
+
+# ---- Clauses of a requirement ---------------------------------------------------------------------------------------
+
+
+@record
+class Path:
+    """`BatteryCheck/MoveBase`: matched from the right over the names of trees, nodes and labels."""
+
+    names: tuple[Word, ...]
+
+    @property
+    def span(self) -> Span:
+        return Span(self.names[0].start, self.names[-1].end)
+
+
+@record
+class Amount:
+    """A value of a bound: a quantity, a number, a parameter or a signal; `negative` where a sign stands apart."""
+
+    word: Word
+    negative: bool = False
+
+
+@record
+class Case:
+    """`20 s if not humans_near` of a value table; no condition: the `else`."""
+
+    value: Amount
+    condition: Condition | None
+
+
+@record
+class Table:
+    """A value for each context."""
+
+    cases: tuple[Case, ...]
+
+
+Bounded: TypeAlias = Amount | Table
+
+
+@record
+class Bound:
+    """`at most 30 s`.  relation: `<=`, `>=`, `<`, `>`, or `between` with both values."""
+
+    start: int
+    end: int
+    relation: str
+    value: Bounded | None
+    upper: Amount | None = None
+
+
+@record
+class Event:
+    """`Pick starts`, `mission finishes` or `when battery < 3 %`; no path: the mission, or a condition."""
+
+    start: int
+    end: int
+    path: Path | None
+    happening: str
+    condition: Condition | None = None
+
+
+@record
+class Mission:
+    """The subject `mission`: the whole run."""
+
+    start: int
+    end: int
+
+
+@record
+class Every:
+    """The subject `every MoveBase`: each source node of that ID or kind."""
+
+    start: int
+    end: int
+    name: Word
+
+
+@record
+class Between:
+    """The subject `from Pick starts to Place succeeds`."""
+
+    start: int
+    end: int
+    first: Event | None
+    last: Event | None
+
+
+@record
+class Sum:
+    """The subject `sum of X, Y`."""
+
+    start: int
+    end: int
+    paths: tuple[Path, ...]
+
+
+Subject: TypeAlias = Path | Mission | Every | Between | Sum
+
+
+@record
+class Claim:
+    """What a requirement demands: a subject (None: the node it is attached to), a verb and what belongs to the verb.
+
+    Attributes:
+        verb: takes, succeeds, needs, keeps, never, leaves, uses, tries, runs, starts, ends or follows.
+        bound: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
+        condition: of needs, keeps, never, leaves.
+        resource: of uses: the signal.
+        per: of tries: the path; of runs: the quantity.
+        event: of starts, ends, follows.
+        every: `runs every d`.
+    """
+
+    start: int
+    end: int
+    subject: Subject | None
+    verb: Word
+    bound: Bound | None = None
+    condition: Condition | None = None
+    resource: Word | None = None
+    per: Path | Word | None = None
+    event: Event | None = None
+    every: bool = False
+
+
+@record
+class Scope:
+    """`while φ` or `when φ`."""
+
+    start: int
+    end: int
+    word: Word
+    condition: Condition | None
+
+
+@record
+class Odds:
+    """`in at least 98 % of runs`, `with probability >= 98 %`.  experiments: None where not said."""
+
+    start: int
+    end: int
+    relation: str
+    value: Word | None
+    experiments: Word | None
+
+
+@record
+class Confidence:
+    """`confidence 95 %`."""
+
+    start: int
+    end: int
+    value: Word | None
+
+
+@record
+class Window:
+    """`over last 200 activations`, `over last 7 d`."""
+
+    start: int
+    end: int
+    size: Word | None
+    experiments: Word | None
+
+
+@record
+class OnViolation:
+    """`on violation fail`.  action: fail, halt, warn or log."""
+
+    start: int
+    end: int
+    action: Word | None
+
+
+@record
+class Goal:
+    """`goal 15 Wh`: what would be better than the bound."""
+
+    start: int
+    end: int
+    value: Bounded | None
+
+
+@record
+class Because:
+    """`because "movement next to people"`."""
+
+    start: int
+    end: int
+    text: Word | None
+
+
+@record
+class How:
+    """`verified by review`.  method: monitor, analysis, test or review."""
+
+    start: int
+    end: int
+    method: Word | None
+
+
+Clause: TypeAlias = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How
+
+
+# ---- Conditions -----------------------------------------------------------------------------------------------------
+
+
+@record
+class Operand:
+    """A quantity, number, name or string in an expression."""
+
+    word: Word
+
+    @property
+    def start(self) -> int:
+        return self.word.start
+
+    @property
+    def end(self) -> int:
+        return self.word.end
+
+
+@record
+class Call:
+    """`max(speed)`: an aggregate of a signal."""
+
+    start: int
+    end: int
+    function: Word
+    signal: Word | None
+
+
+@record
+class NodeRuns:
+    """`node BatteryCheck/MoveBase`: true while that node runs."""
+
+    start: int
+    end: int
+    path: Path
+
+
+@record
+class Negative:
+    """`-x`."""
+
+    start: int
+    end: int
+    operand: Condition
+
+
+@record
+class Not:
+    """`not φ`."""
+
+    start: int
+    end: int
+    operand: Condition
+
+
+@record
+class Binary:
+    """`a + b`, `φ and ψ`.  operator: + - * / and or."""
+
+    start: int
+    end: int
+    operator: str
+    left: Condition
+    right: Condition
+
+
+@record
+class Comparison:
+    """`a < b`, `a < b < c`: one more operand than operators."""
+
+    start: int
+    end: int
+    operators: tuple[str, ...]
+    operands: tuple[Condition, ...]
+
+
+Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Comparison
+
+
+# ---- Items ----------------------------------------------------------------------------------------------------------
+
+
+@record
+class Verbatim:
+    """`xml "<element/>"`: one XML element as it is."""
+
+    start: int
+    end: int
+    text: Word | None
+
+
+@record
+class Include:
+    """`include "stations.btq"`."""
+
+    start: int
+    end: int
+    path: Word | None
+    attributes: tuple[Pair, ...] = ()
+
+
+@record
+class Qualities:
+    """`qualities iso25010-2023`: the edition that names are looked up in."""
+
+    start: int
+    end: int
+    edition: Word | None
+
+
+@record
+class QualityDecl:
+    """`quality gentleness : safety "…"`: a quality of one's own."""
+
+    start: int
+    end: int
+    name: Word | None
+    parent: QualityPath | None
+    text: Word | None
+
+
+@record
+class Port:
+    """`input station : string = "charger" "where to go"`; type: its words as one."""
+
+    start: int
+    end: int
+    direction: Word
+    name: Word | None
+    type: Word | None
+    default: Word | None
+    attributes: tuple[Pair, ...]
+    text: Word | None
+
+
+@record
+class Meta:
+    """`metadata (color = "red")` of a model."""
+
+    start: int
+    end: int
+    attributes: tuple[Pair, ...]
+
+
+@record
+class Model:
+    """`Action MoveBase "…"` at file level: a node's interface."""
+
+    start: int
+    end: int
+    category: Word
+    name: Word | None
+    attributes: tuple[Pair, ...]
+    text: Word | None
+    body: tuple[Port | Meta | Verbatim, ...]
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return tuple(part for part in self.body if isinstance(part, Port))
+
+
+@record
+class Models:
+    """`TreeNodesModel`: models in the place where the XML element stands."""
+
+    start: int
+    end: int
+    models: tuple[Model | Verbatim, ...]
+
+
+@record
+class Signal:
+    """`signal battery : % from {battery_level} level fresh within 5 s initially 100 %`."""
+
+    start: int
+    end: int
+    name: Word | None
+    unit: Word | None
+    source: Word | None = None
+    behaviour: Word | None = None
+    fresh: Word | None = None
+    initially: Amount | None = None
+
+
+@record
+class Context:
+    """`context humans_near : humans > 0`."""
+
+    start: int
+    end: int
+    name: Word | None
+    condition: Condition | None
+
+
+@record
+class Selector:
+    """`every MoveBase under PickPlace`, `every node tagged heavy`, or a path.
+
+    Attributes:
+        every: the ID or kind after `every`; None where a path or a tag says it.
+    """
+
+    start: int
+    end: int
+    every: Word | None = None
+    tag: Word | None = None
+    path: Path | None = None
+
+
+@record
+class Apply:
+    """`apply slow(limit = 0.1 m/s) to every MoveBase except BatteryCheck/MoveBase`."""
+
+    start: int
+    end: int
+    uses: tuple[ReqRef, ...]
+    targets: tuple[Selector, ...]
+    exceptions: tuple[Selector, ...] = ()
+
+
+@record
+class Root:
+    """`Root mainTree`: the main tree's name; `bracketed`: its attributes are written exactly as given, even none."""
+
+    start: int
+    end: int
+    name: Word | None
+    attributes: tuple[Pair, ...]
+    bracketed: bool
+
+
+@record
+class Tree:
+    """`BehaviorTree PickPlace`: body as a node's; more or fewer than one node is a diagnostic."""
+
+    start: int
+    end: int
+    name: Word | None
+    attributes: tuple[Pair, ...]
+    ports: tuple[Port, ...]
+    clauses: tuple[NodeClause, ...]
+    children: tuple[Node | Verbatim, ...]
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.end)
+
+    def walk(self) -> Iterator[Node]:
+        """All its nodes, depth first, in document order."""
+        for child in self.children:
+            if isinstance(child, Node):
+                yield from child.walk()
+
+
+@record
+class Skipped:
+    """Lines that are no item; a diagnostic says what is wrong with them."""
+
+    start: int
+    end: int
+
+
+Item: TypeAlias = (
+    Include
+    | Qualities
+    | QualityDecl
+    | Models
+    | Model
+    | Signal
+    | Context
+    | Requirement
+    | Apply
+    | Root
+    | Tree
+    | Verbatim
+    | Skipped
+)
+
+
+@record
+class Entry:
+    """An item and where it stands.
+
+    Attributes:
+        start: the offset in the file that the item's offsets count from: the start of its first line.
+        in_root: it stands in the block of a `Root`.
+        diagnostics: what is wrong with its syntax; spans count from `start`.
+    """
+
+    start: int
+    item: Item
+    in_root: bool
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def unquote(raw: str) -> str:
+    """What a STRING says (language.md §2): quotes off, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
+    text = raw[1:-1] if len(raw) > 1 and raw[-1] == raw[0] and _closes(raw) else raw[1:]
+    if "\r" in text:
+        text = _LINE_END.sub("\n", text)
+    if "\\" in text:
+        text = _ESCAPE.sub(lambda match: _ESCAPED.get(match[1], match[1]), text)
+    return text
+
+
+def quote(text: str) -> str:
+    """A STRING that says `text`."""
+    for character, escape in (("\\", "\\\\"), ('"', '\\"'), ("\t", "\\t")):
+        text = text.replace(character, escape)
+    return f'"{text}"'
+
+
+def is_name(text: str) -> bool:
+    """Whether a text can be written as a NAME, without quotes."""
+    return _NAME.fullmatch(text) is not None and text not in ("R?", "A?")
+
+
+_NAME = re.compile(r"[^\W\d](?:\w|-(?=\w))*[?!]?")
+
+
+def _closes(raw: str) -> bool:
+    """Whether the last character of a string is its closing quote, not an escaped one."""
+    backslashes = len(raw) - 1 - len(raw[:-1].rstrip("\\"))
+    return backslashes % 2 == 0

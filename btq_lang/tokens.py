@@ -1,0 +1,52 @@
+"""The kinds of tokens: plain integers, so that comparing them costs nothing.
+
+`Token` is what tools see; the parser works on the lexer's flat lists and makes none.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.record import record
+
+# Words and values.
+NAME: Final = 0  # MoveBase, satisfies, BatteryLow?
+STRING: Final = 1  # "…" or '…', also over several lines
+NUMBER: Final = 2  # 6, -1, 0.25, 1e3
+QUANTITY: Final = 3  # 30 s: a number and its unit
+BRACED: Final = 4  # {goal}
+SYMBOL: Final = 5  # ->, ?, ||, R->, …: the control nodes
+# Punctuation: the raw text says which.
+OPERATOR: Final = 6  # = : :: . / * + - < > <= >= == != % ^ ,
+OPEN: Final = 7  # (
+CLOSE: Final = 8  # )
+NEWLINE: Final = 9  # the end of a logical line
+ERROR: Final = 10  # a character that begins nothing
+# Only in the full list of tokens, never in front of the parser.
+BLANK: Final = 11  # blanks, and line ends that mean nothing
+COMMENT: Final = 12
+INDENT: Final = 13  # zero characters long
+DEDENT: Final = 14  # zero characters long
+
+NAMES: Final = (
+    *("NAME", "STRING", "NUMBER", "QUANTITY", "BRACED", "SYMBOL", "OPERATOR", "OPEN", "CLOSE", "NEWLINE", "ERROR"),
+    *("BLANK", "COMMENT", "INDENT", "DEDENT"),
+)
+
+SYMBOLS: Final = ("->", "?", "||", "All||", "R->", "R?", "M->", "A->", "A?", "→", "⇉", "R→", "M→", "A→", "All⇉")
+
+
+@record
+class Token:
+    """A piece of the text; the texts of all tokens of a file, joined, are the file."""
+
+    kind: int
+    start: int
+    text: str
+
+    @property
+    def end(self) -> int:
+        return self.start + len(self.text)
+
+    def __str__(self) -> str:
+        return f"{NAMES[self.kind]} {self.text!r}"
