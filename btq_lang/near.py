@@ -1,0 +1,55 @@
+"""Near names: what somebody probably meant who wrote a word that is in no table.
+
+One invariant: the answer depends on the word and on the set of candidates, never on their order.  It does not know
+what the candidates are; a caller that wants only names of one kind passes only those.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:
+    """The candidates nearest to `word`, best first: at most `limit`, none that only a wild guess would offer.
+
+    One edit is allowed for every three letters of the word.  A candidate that differs in case alone leaves no room
+    for any other; the word itself is never an answer.
+    """
+    folded = word.casefold()
+    cutoff = len(folded) // 3
+    same_letters: list[tuple[int, str]] = []
+    found: list[tuple[int, int, str]] = []
+    for candidate in set(candidates):
+        other = candidate.casefold()
+        if candidate == word:
+            continue
+        if other == folded:
+            same_letters.append((distance(word, candidate), candidate))
+        elif abs(len(other) - len(folded)) <= cutoff and (edits := distance(folded, other, cutoff)) <= cutoff:
+            found.append((edits, distance(word, candidate), candidate))
+    best = [name for *_, name in sorted(same_letters)] or [name for *_, name in sorted(found)]
+    return tuple(best[:limit])
+
+
+def distance(a: str, b: str, enough: int | None = None) -> int:
+    """How many letters must be put in, left out, replaced or swapped with their neighbour to turn `a` into `b`.
+
+    This is the optimal string alignment form of the Damerau-Levenshtein distance: no piece is edited twice.
+
+    Args:
+        enough: stop counting when the distance is surely larger; the answer is then some number above it.
+    """
+    before: list[int] = []
+    last = list(range(len(b) + 1))
+    for i, left in enumerate(a, 1):
+        row = [i]
+        for j, right in enumerate(b, 1):
+            edits = min(last[j] + 1, row[j - 1] + 1, last[j - 1] + (left != right))
+            if i > 1 and j > 1 and left == b[j - 2] and a[i - 2] == right:
+                edits = min(edits, before[j - 2] + 1)
+            row.append(edits)
+        # A swap reaches back two rows, so only two rows in a row that are too far away decide.
+        if enough is not None and min(row) > enough and min(last) > enough:
+            return enough + 1
+        before, last = last, row
+    return last[-1]
