@@ -48,17 +48,20 @@ PINT_BASES = {
     "temperature": "[temperature]",
 }
 # The words of the grammar that may stand behind a number: a unit so called would swallow them.
-KEYWORDS = """include qualities quality iso25010 TreeNodesModel Action Condition Control Decorator SubTree input output inout
-    metadata Root BehaviorTree ID xml parameters satisfices satisfies tags Quality QualityReq description signal from
-    level counter gauge fresh within initially context apply to except every under node tagged mission sum of takes
-    succeeds needs keeps never leaves uses tries per runs starts ends after follows at most least less than more
-    between and if else fails finishes halts when while in with probability activations confidence over last on
-    violation fail halt warn log goal because verified by monitor analysis test review or not max mean p95 stddev
-    change count true false bool text name satisfies ros_pkg"""
+KEYWORDS = """
+    include qualities quality iso25010 TreeNodesModel Action Condition Control Decorator SubTree input output inout
+    metadata Root BehaviorTree ID xml parameters satisfices satisfies tags Quality QualityReq description signal
+    from level counter gauge fresh within initially context apply to except every under node tagged mission sum
+    of takes succeeds needs keeps never leaves uses tries per runs starts ends after follows at most least less
+    than more between and if else fails finishes halts when while in with probability activations confidence
+    over last on violation fail halt warn log goal because verified by monitor analysis test review or not max
+    mean p95 stddev change count true false bool text name satisfies ros_pkg"""
 # What a roboticist writes without looking it up.
-EXPECTED = """s ms us ns sec secs second seconds msec usec mins min minutes h hours d days m mm cm km meter metres kilometers
-    g kg t N kN Nm Pa hPa bar J Wh kWh mWh W kW MW milliwatt V mV A mA Ah mAh ohm Ω K degC % percent Hz kHz deg degrees rad
-    rpm rev bit byte B kB MB GiB Mbit Mbps person people items frames fps px l liters ml inch ft mph kmh µs μm"""
+EXPECTED = """
+    s ms us ns sec secs second seconds msec usec mins min minutes h hours d days m mm cm km meter metres kilometers
+    g kg t N kN Nm Pa hPa bar J Wh kWh mWh W kW MW milliwatt V mV A mA Ah mAh ohm Ω K degC % percent Hz kHz deg
+    degrees rad rpm rev bit byte B kB MB GiB Mbit Mbps person people items frames fps px l liters ml inch ft mph
+    kmh µs μm"""
 
 
 @pytest.fixture(scope="module")
