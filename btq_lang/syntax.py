@@ -819,3 +819,15 @@ def _closes(raw: str) -> bool:
     """Whether the last character of a string is its closing quote, not an escaped one."""
     backslashes = len(raw) - 1 - len(raw[:-1].rstrip("\\"))
     return backslashes % 2 == 0
+
+
+def shape(part: object) -> object:
+    """A part of the tree without its offsets: two parts with one shape say the same."""
+    if isinstance(part, Word):
+        return part.kind == STRING, part.text
+    if isinstance(part, tuple):
+        return tuple(shape(element) for element in part)
+    if isinstance(part, str | int | None):
+        return part
+    fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every class of this module has them
+    return type(part).__name__, *(shape(getattr(part, field)) for field in fields if field not in ("start", "end"))

@@ -1,0 +1,96 @@
+"""The checks: what is wrong with a file beyond its syntax.
+
+One invariant: a check is a function of the view of a file and one of its entries, and yields diagnostics whose spans
+count from that entry; it never raises, whatever the file.  A module holds the rules of one subject.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TypeAlias
+
+from btq_lang.checks import trees
+from btq_lang.checks.suppressions import suppressed_lines
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
+from btq_lang.record import replace
+from btq_lang.syntax import Entry
+from btq_lang.text import Span
+from btq_lang.workspace import File, Workspace
+
+Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
+
+CHECKS: tuple[Check, ...] = (
+    trees.unknown_tree,
+    trees.duplicate_tree,
+    trees.recursive_tree,
+    trees.unused_tree,
+    trees.unknown_main_tree,
+    trees.tree_root_count,
+    trees.tree_named_like_node,
+)
+
+# A file that cannot be read as it stands is never reported as clean.
+ALWAYS = frozenset(("syntax-error",))
+
+
+def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
+    """All that is wrong with a file, in the order of its text.
+
+    Args:
+        path: one of the workspace's files.
+
+    Returns:
+        Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
+        start of the file, and so do all their places.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    view = View(workspace, path)
+    found: list[Diagnostic] = []
+    for entry in view.file.parsed.entries:
+        diagnostics = [*entry.diagnostics, *(diagnostic for check in CHECKS for diagnostic in check(view, entry))]
+        found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
+    found = list(_as_configured(found, workspace))
+    if found and "btq:" in view.file.text:
+        suppressed = suppressed_lines(view.file)
+        found = [each for each in found if not suppressed(each)]
+    return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
+
+
+def _as_configured(found: list[Diagnostic], workspace: Workspace) -> Iterator[Diagnostic]:
+    project = workspace.project
+    severities = dict(project.severities)
+    for diagnostic in found:
+        rule = diagnostic.rule
+        if rule not in ALWAYS and (rule in project.ignore or (project.select and rule not in project.select)):
+            continue
+        if rule not in severities:
+            yield diagnostic
+        elif (severity := severities[rule]) is not None:
+            yield replace(diagnostic, severity=severity)
+
+
+def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:
+    """The diagnostic with every place counted from the start of its file."""
+    if not diagnostic.related and not any(change.place.anchor for fix in diagnostic.fixes for change in fix.changes):
+        return diagnostic
+
+    def resolve(place: Place) -> Place:
+        if place.anchor is None or place.path is None:
+            return place
+        return Place(_absolute(workspace.files[place.path], place), place.path)
+
+    return replace(
+        diagnostic,
+        related=tuple(Related(resolve(related.place), related.message) for related in diagnostic.related),
+        fixes=tuple(
+            Fix(fix.title, tuple(Change(resolve(change.place), change.text) for change in fix.changes), fix.safe)
+            for fix in diagnostic.fixes
+        ),
+    )
+
+
+def _absolute(file: File, place: Place) -> Span:
+    return place.span.shifted(file.start_of(place.anchor))

@@ -1,0 +1,296 @@
+"""The workspace: many files as one immutable value, and who means what across them.
+
+One invariant: a workspace is a function of its texts and its project; one reached by edits equals one built afresh,
+and shares with the one before it all files that did not change.  It knows no disk: the loader brings the texts,
+included ones too.
+
+Names are looked up in a file's scope: the file and what it includes.  The project's other files are known as well, but
+only to say where a name could have come from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+from btq_lang.parser import Parsed, parse
+from btq_lang.project import Project, include_candidates
+from btq_lang.record import record
+from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
+from btq_lang.syntax import Entry, Include, Root, Tree, Word
+from btq_lang.text import LineIndex, Span
+
+
+@record
+class Definition:
+    """A symbol and where it stands."""
+
+    path: str
+    entry: Entry
+    symbol: Symbol
+
+    @property
+    def span(self) -> Span:
+        """The name, counted from the start of the file."""
+        return self.symbol.span.shifted(self.entry.start)
+
+
+@record
+class Reference:
+    """A use and where it stands."""
+
+    path: str
+    entry: Entry
+    use: Use
+
+    @property
+    def span(self) -> Span:
+        """The name, counted from the start of the file."""
+        return self.use.span.shifted(self.entry.start)
+
+
+class File:
+    """One file: its text, and what was made of it so far.  Two files with one path and text are equal."""
+
+    def __init__(self, path: str, text: str) -> None:
+        self.path = path
+        self.text = text
+
+    @cached_property
+    def parsed(self) -> Parsed:
+        return parse(self.text)
+
+    @cached_property
+    def summaries(self) -> tuple[Summary, ...]:
+        """One for each entry."""
+        return tuple(summarize(entry.item) for entry in self.parsed.entries)
+
+    @cached_property
+    def lines(self) -> LineIndex:
+        return LineIndex(self.text)
+
+    def start_of(self, item: object) -> int:
+        """Where one of the file's items begins.
+
+        Raises:
+            KeyError: the item is none of this file's.
+        """
+        return self._starts[id(item)]
+
+    def summary_of(self, entry: Entry) -> Summary:
+        """The summary of one of the file's entries."""
+        return self._summaries[id(entry)]
+
+    @cached_property
+    def _summaries(self) -> dict[int, Summary]:
+        return {id(entry): summary for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)}
+
+    @cached_property
+    def _starts(self) -> dict[int, int]:
+        return {id(entry.item): entry.start for entry in self.parsed.entries}
+
+    @property
+    def includes(self) -> tuple[Include, ...]:
+        return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, File) and (self.path, self.text) == (other.path, other.text)
+
+    def __hash__(self) -> int:
+        return hash((self.path, self.text))
+
+    def __repr__(self) -> str:
+        return f"File({self.path!r}, {len(self.text)} characters)"
+
+
+class Scope:
+    """The names that a file can use: its own and those of the files it includes, directly or not.
+
+    Attributes:
+        paths: those files, included ones before the file that includes them.
+    """
+
+    def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
+        self.paths = paths
+        self._found: dict[tuple[Kind, str], list[Definition]] = {}
+        self._names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
+        for path in paths:
+            for definition in workspace.defined_in(path):
+                symbol = definition.symbol
+                same = self._found.setdefault((symbol.kind, symbol.name), [])
+                if not same:
+                    self._names[symbol.kind].append(symbol.name)
+                same.append(definition)
+
+    def find(self, kind: Kind, name: str) -> Definition | None:
+        """The definition that a name means: the first one."""
+        found = self._found.get((kind, name))
+        return found[0] if found else None
+
+    def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """Every definition of a name, the one that counts first."""
+        return tuple(self._found.get((kind, name), ()))
+
+    def names(self, kind: Kind) -> tuple[str, ...]:
+        """All names of a kind, in the order of their definitions."""
+        return tuple(self._names[kind])
+
+
+class Workspace:
+    """All files at one moment.
+
+    Attributes:
+        files: by path; paths are absolute or all relative to one folder, with `/`.
+        project: what holds for all of them.
+    """
+
+    def __init__(self, files: Mapping[str, File], project: Project) -> None:
+        self.files = files
+        self.project = project
+        self._scopes: dict[str, Scope] = {}
+        self._defined: dict[str, tuple[Definition, ...]] = {}
+
+    @classmethod
+    def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
+        """A workspace of these texts, by path."""
+        return cls({path: File(path, text) for path, text in texts.items()}, project or Project())
+
+    def with_file(self, path: str, text: str) -> Workspace:
+        """The workspace after an edit: `path` says `text`; every other file is shared."""
+        return Workspace({**self.files, path: File(path, text)}, self.project)
+
+    def without_file(self, path: str) -> Workspace:
+        return Workspace({other: file for other, file in self.files.items() if other != path}, self.project)
+
+    def with_project(self, project: Project) -> Workspace:
+        return Workspace(self.files, project)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Workspace) and (self.files, self.project) == (other.files, other.project)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.files))
+
+    # ---- includes and scopes ----
+
+    def included(self, path: str, include: str) -> str | None:
+        """The file that an `include` in `path` brings, if it is there."""
+        for candidate in include_candidates(self.project, path, include):
+            if candidate in self.files:
+                return candidate
+        return None
+
+    def closure(self, path: str) -> tuple[str, ...]:
+        """A file and all that it includes, included ones first; a file that includes itself is in it once."""
+        seen: set[str] = set()
+        order: list[str] = []
+        stack: list[tuple[str, Iterator[str]]] = []
+
+        def enter(file: str) -> None:
+            seen.add(file)
+            stack.append((file, self._targets(file)))
+
+        enter(path)
+        while stack:
+            file, targets = stack[-1]
+            target = next((target for target in targets if target not in seen), None)
+            if target is not None:
+                enter(target)
+            else:
+                order.append(file)
+                stack.pop()
+        return tuple(order)
+
+    def _targets(self, path: str) -> Iterator[str]:
+        for include in self.files[path].includes:
+            if include.path is not None and (target := self.included(path, include.path.text)):
+                yield target
+
+    def scope(self, path: str) -> Scope:
+        """The names that a file can use."""
+        if path not in self._scopes:
+            self._scopes[path] = Scope(self.closure(path), self)
+        return self._scopes[path]
+
+    @cached_property
+    def included_files(self) -> frozenset[str]:
+        """The files that another file includes."""
+        return frozenset(target for path in self.files for target in self._targets(path) if target != path)
+
+    # ---- definitions and references ----
+
+    def defined_in(self, path: str) -> tuple[Definition, ...]:
+        """What a file itself defines, in the order of its text."""
+        if path not in self._defined:
+            file = self.files[path]
+            self._defined[path] = tuple(
+                Definition(path, entry, symbol)
+                for entry, summary in zip(file.parsed.entries, file.summaries, strict=True)
+                for symbol in summary.symbols
+            )
+        return self._defined[path]
+
+    def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """Every definition of a name in the project, to say where it could have come from."""
+        return self._everywhere.get((kind, name), ())
+
+    @cached_property
+    def _everywhere(self) -> dict[tuple[Kind, str], tuple[Definition, ...]]:
+        found: dict[tuple[Kind, str], tuple[Definition, ...]] = {}
+        for path in self.files:
+            for definition in self.defined_in(path):
+                key = definition.symbol.kind, definition.symbol.name
+                found[key] = (*found.get(key, ()), definition)
+        return found
+
+    def uses_in(self, path: str) -> Iterator[Reference]:
+        """What a file itself refers to, in the order of its text."""
+        file = self.files[path]
+        for entry, summary in zip(file.parsed.entries, file.summaries, strict=True):
+            for use in summary.uses:
+                yield Reference(path, entry, use)
+
+    def references(self, definition: Definition) -> tuple[Reference, ...]:
+        """Every use, in every file, of the name that `definition` defines."""
+        return self._references.get((definition.path, definition.span), ())
+
+    @cached_property
+    def _references(self) -> dict[tuple[str, Span], tuple[Reference, ...]]:
+        found: dict[tuple[str, Span], list[Reference]] = {}
+        for path in self.files:
+            scope = self.scope(path)
+            for reference in self.uses_in(path):
+                definition = scope.find(reference.use.kind, reference.use.name)
+                if definition is not None:
+                    found.setdefault((definition.path, definition.span), []).append(reference)
+        return {key: tuple(references) for key, references in found.items()}
+
+    # ---- missions ----
+
+    def main_tree(self, path: str) -> Definition | None:
+        """The tree that runs when the engine loads the file: the one its `Root` names, its only tree, or the only one
+        of its trees that no other of its trees refers to."""
+        file = self.files[path]
+        for entry in file.parsed.entries:
+            if isinstance(entry.item, Root):
+                named = entry.item.name or _attribute(entry.item, "main_tree_to_execute")
+                if named is not None:
+                    return self.scope(path).find(Kind.TREE, named.text)
+        trees = [definition for definition in self.defined_in(path) if definition.symbol.kind is Kind.TREE]
+        if len(trees) > 1:
+            used = {
+                use.name
+                for entry, summary in zip(file.parsed.entries, file.summaries, strict=True)
+                for use in summary.uses
+                if use.kind is Kind.TREE and not _is_tree_called(entry, use.name)
+            }
+            trees = [tree for tree in trees if tree.symbol.name not in used]
+        return trees[0] if len(trees) == 1 else None
+
+
+def _attribute(root: Root, key: str) -> Word | None:
+    return next((pair.value for pair in root.attributes if pair.key.text == key), None)
+
+
+def _is_tree_called(entry: Entry, name: str) -> bool:
+    return isinstance(entry.item, Tree) and entry.item.name is not None and entry.item.name.text == name

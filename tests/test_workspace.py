@@ -1,0 +1,125 @@
+"""The workspace: scopes, definitions, references, main trees, and edits that share what did not change."""
+
+from __future__ import annotations
+
+import pytest
+
+from btq_lang.project import Project
+from btq_lang.symbols import Kind
+from btq_lang.workspace import Workspace
+
+FILES = {
+    "/p/requirements.btq": 'QualityReq fast : time-behaviour "In time"\n    takes at most 30 s\nsignal battery : %\n',
+    "/p/skills.btq": "Action MoveBase\n    input station : string\nquality gentleness : safety\n",
+    "/p/main.btq": (
+        'include "requirements.btq"\ninclude "lib/skills.btq"\n'
+        "BehaviorTree Main\n    ->\n        MoveBase satisfies fast\n        SubTree Pick\n"
+        "BehaviorTree Pick\n    MoveBase (station = x)\n        satisfices gentleness\n"
+    ),
+}
+
+
+def workspace(**project: object) -> Workspace:
+    files = {path.replace("/p/skills", "/p/lib/skills"): text for path, text in FILES.items()}
+    return Workspace.of(files, Project(**project))  # type: ignore[arg-type]
+
+
+def found(workspace: Workspace, path: str, kind: Kind, name: str) -> str | None:
+    definition = workspace.scope(path).find(kind, name)
+    if definition is None:
+        return None
+    text = workspace.files[definition.path].text
+    return f"{definition.path}:{text[definition.span.start : definition.span.end]}"
+
+
+def test_a_name_is_found_in_the_file_and_in_what_it_includes() -> None:
+    files = workspace()
+    assert files.scope("/p/main.btq").paths == ("/p/requirements.btq", "/p/lib/skills.btq", "/p/main.btq")
+    assert found(files, "/p/main.btq", Kind.REQUIREMENT, "fast") == "/p/requirements.btq:fast"
+    assert found(files, "/p/main.btq", Kind.MODEL, "MoveBase") == "/p/lib/skills.btq:MoveBase"
+    assert found(files, "/p/main.btq", Kind.QUALITY, "gentleness") == "/p/lib/skills.btq:gentleness"
+    assert found(files, "/p/main.btq", Kind.SIGNAL, "battery") == "/p/requirements.btq:battery"
+    assert found(files, "/p/lib/skills.btq", Kind.REQUIREMENT, "fast") is None
+    assert [definition.path for definition in files.defined_anywhere(Kind.REQUIREMENT, "fast")] == [
+        "/p/requirements.btq"
+    ]
+
+
+def test_an_include_is_looked_for_beside_the_file_and_then_in_the_include_paths() -> None:
+    files = Workspace.of({"/p/a/x.btq": 'include "y.btq"', "/p/shared/y.btq": "", "/p/z.btq": ""})
+    assert files.included("/p/a/x.btq", "y.btq") is None
+    assert files.included("/p/a/x.btq", "../z.btq") == "/p/z.btq"
+    found = files.with_project(Project(include_paths=("/p/shared",)))
+    assert found.included("/p/a/x.btq", "y.btq") == "/p/shared/y.btq"
+    assert found.included_files == {"/p/shared/y.btq"}
+
+
+def test_includes_in_a_circle_end() -> None:
+    files = Workspace.of({"/a": 'include "b"', "/b": 'include "c"', "/c": 'include "a"'})
+    assert files.closure("/a") == ("/c", "/b", "/a")
+    assert files.closure("/b") == ("/a", "/c", "/b")
+
+
+def test_references_across_files() -> None:
+    files = workspace()
+    model = files.scope("/p/main.btq").find(Kind.MODEL, "MoveBase")
+    assert model is not None
+    text = files.files["/p/main.btq"].text
+    assert [(reference.path, reference.span.start) for reference in files.references(model)] == [
+        ("/p/main.btq", text.index("MoveBase satisfies")),
+        ("/p/main.btq", text.index("MoveBase (station")),
+    ]
+    quality = files.scope("/p/main.btq").find(Kind.QUALITY, "gentleness")
+    assert quality is not None
+    assert len(files.references(quality)) == 1
+
+
+def test_repeated_classic_requirements_are_one_and_the_first_place_defines() -> None:
+    text = (
+        "BehaviorTree T\n    ->\n"
+        '        A (satisfies QualityReq ID = "rq" description = "a  b")\n'
+        '        B (satisfies QualityReq ID = "rq" description = "a b")\n'
+        "        C satisfies rq\n"
+        '        D (satisfies QualityReq ID = "rq")\n'
+    )
+    files = Workspace.of({"/f": text})
+    first, second = files.scope("/f").all(Kind.REQUIREMENT, "rq")
+    assert first.span.start == text.index('"rq"')
+    assert [reference.span.start for reference in files.references(first)] == [
+        text.index("rq\n"),
+        text.index('"rq")\n', text.index("D (")),
+    ]
+    assert second.span.start == text.index('"rq"', first.span.end)
+
+
+@pytest.mark.parametrize(
+    ("text", "main"),
+    [
+        ("BehaviorTree A\n    X\n", "A"),
+        ("BehaviorTree A\n    SubTree B\nBehaviorTree B\n    X\n", "A"),
+        ("BehaviorTree B\n    X\nBehaviorTree A\n    SubTree B\n", "A"),
+        ("Root B\nBehaviorTree A\n    SubTree B\nBehaviorTree B\n    X\n", "B"),
+        ("Root (main_tree_to_execute = B)\nBehaviorTree A\n    X\nBehaviorTree B\n    X\n", "B"),
+        ("Root C\nBehaviorTree A\n    X\n", None),
+        ("BehaviorTree A\n    X\nBehaviorTree B\n    X\n", None),
+        ("BehaviorTree A\n    SubTree A\nBehaviorTree B\n    SubTree A\n", "B"),
+        ("", None),
+    ],
+)
+def test_the_main_tree(text: str, main: str | None) -> None:
+    definition = Workspace.of({"/f": text}).main_tree("/f")
+    assert (definition.symbol.name if definition else None) == main
+
+
+def test_an_edit_of_one_file_parses_one_file() -> None:
+    before = workspace()
+    parsed = {path: file.parsed for path, file in before.files.items()}
+    after = before.with_file("/p/requirements.btq", "QualityReq slow\n")
+    assert {path for path in parsed if after.files[path].parsed is parsed[path]} == {
+        "/p/main.btq",
+        "/p/lib/skills.btq",
+    }
+    assert found(after, "/p/main.btq", Kind.REQUIREMENT, "fast") is None
+    assert found(before, "/p/main.btq", Kind.REQUIREMENT, "fast") == "/p/requirements.btq:fast"
+    assert after.with_file("/p/requirements.btq", FILES["/p/requirements.btq"]) == before
+    assert before.without_file("/p/main.btq").with_file("/p/main.btq", FILES["/p/main.btq"]) == before
