@@ -1,0 +1,65 @@
+"""Attributes of a node that are no ports: the engine's pre- and post-conditions, and what tools write and it ignores.
+
+One invariant: every attribute here begins with `_`; the engine takes no such attribute for a port.  It does not know
+`name` and `ID`, which a file says in other ways.  An attribute with a `_` that is not here is most likely a
+misspelling: the engine keeps it silently and nobody reads it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final, Literal
+
+from btq_lang.record import record
+
+
+@record
+class AttributeKind:
+    """An attribute.
+
+    Attributes:
+        group: pre: a pre-condition; post: a post-condition; engine: what else the engine reads; tool: what it ignores.
+        doc: one line.
+    """
+
+    name: str
+    group: Literal["pre", "post", "engine", "tool"]
+    doc: str
+
+    @property
+    def is_script(self) -> bool:
+        """Is its value a script?"""
+        return self.group in ("pre", "post")
+
+
+_KINDS: Final = (
+    # In the order in which the engine looks at them, whatever the order in the file.
+    AttributeKind(
+        "_failureIf", "pre", "FAILURE without a tick, if true when the node starts; not looked at while it runs"
+    ),
+    AttributeKind(
+        "_successIf", "pre", "SUCCESS without a tick, if true when the node starts; not looked at while it runs"
+    ),
+    AttributeKind(
+        "_skipIf", "pre", "SKIPPED without a tick, if true when the node starts; not looked at while it runs"
+    ),
+    AttributeKind("_while", "pre", "looked at in every tick; once false, the node is halted and SKIPPED: no failure"),
+    AttributeKind("_onHalted", "post", "run when the node is halted, also at the end of a tree that never reached it"),
+    AttributeKind("_onSuccess", "post", "run after the node has succeeded"),
+    AttributeKind("_onFailure", "post", "run after the node has failed"),
+    AttributeKind("_post", "post", "run after the node has completed, either way, and after _onSuccess or _onFailure"),
+    AttributeKind("_autoremap", "engine", "on a SubTree: give it every entry of this blackboard under its own name"),
+    AttributeKind("_description", "tool", "what the node is for, shown by Groot; btq writes requirements into it"),
+    AttributeKind("_collapsed", "tool", "Groot draws the subtree closed"),
+    AttributeKind("_favorite", "tool", "Groot lists the tree among the favorites"),
+    AttributeKind("_fullpath", "tool", "the path of a tree's instance, in the XML of a log"),
+    AttributeKind("_uid", "tool", "the number of a node, in the XML of a log"),
+    AttributeKind("_btq", "tool", "the requirement that a generated node enforces"),
+    AttributeKind(
+        "__shared_blackboard", "tool", "version 3 shared the blackboard; version 4 ignores it: use _autoremap"
+    ),
+    AttributeKind("__autoremap", "tool", "version 3's name of _autoremap; version 4 ignores it"),
+)
+
+# By name.
+RESERVED_ATTRIBUTES: Final[Mapping[str, AttributeKind]] = {kind.name: kind for kind in _KINDS}

@@ -1,0 +1,229 @@
+"""What the engine reads from the text of a port: refused, read whole, or read in part with the rest dropped silently.
+
+One invariant: a type that is not known here is never refused: its converter is in somebody's C++ program.  It does not
+know ports, scripts or blackboards; `{key}` is a pointer to an entry for every type.
+
+Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.2, 4.8.4 and 4.10.0.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final, Literal
+
+from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
+from btq_lang.record import record
+
+
+@record
+class LiteralProblem:
+    """What is wrong with a literal.
+
+    Attributes:
+        kind: refused: the engine ends with an error, at load or at the latest when it reads the port; trailing-text:
+            it drops what stands behind the number.
+        reason: in words, to stand behind "`text` ".
+        reads: what the engine reads instead; None where it refuses.
+    """
+
+    kind: Literal["refused", "trailing-text"]
+    reason: str
+    reads: str | None = None
+
+
+def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
+    """What is wrong with a literal on a port of that type, in that version of the engine; None: nothing.
+
+    Args:
+        port_type: as the engine prints it or as a model says it: `unsigned int`, `std::vector<double>`, `bool` …
+    """
+    if is_pointer(text):
+        return None
+    item = _list_item(port_type)
+    if item is not None:
+        return _check_list(port_type, item, text, version)
+    return _check_one(_plain(port_type), text, version)
+
+
+def is_pointer(text: str) -> bool:
+    """Is the text of a port `{key}`, a pointer to a blackboard entry, whatever the port's type?"""
+    return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
+
+
+def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
+    if plain in _INTEGERS:
+        return _check_integer(plain, text)
+    if plain in ("double", "float"):
+        return _check_real(plain, text, version)
+    if plain == "bool":
+        known = text in ("0", "1", "true", "True", "TRUE", "false", "False", "FALSE")
+        return None if known else LiteralProblem("refused", "is no bool: true, false, 1 or 0")
+    if plain == "BT::NodeStatus":
+        known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
+        return None if known else LiteralProblem("refused", "is no status: SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE")
+    return None
+
+
+def _check_integer(plain: str, text: str) -> LiteralProblem | None:
+    """std::from_chars: digits from the first character on, perhaps a `-`; a number out of range is refused."""
+    low, high = _INTEGERS[plain]
+    digits = _INTEGER.match(text)
+    if digits is None or (low == 0 and high == _UNSIGNED_64 and text[0] == "-"):
+        return LiteralProblem("refused", f"is no {plain}")
+    # More digits than any type has are not worth converting, and beyond some thousands int() raises.
+    significant = digits[0].lstrip("-0") or "0"
+    value = int(significant) if len(significant) <= 20 else _UNSIGNED_64 + 1
+    if not low <= (-value if text[0] == "-" else value) <= high:
+        return LiteralProblem("refused", f"is out of range: {plain} is {low} to {high}")
+    return _rest(text, digits.end())
+
+
+def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
+    """std::from_chars since 4.9; before, std::stod, which takes blanks and a `+` in front, and hexadecimal digits."""
+    number = (_REAL if at_least(version, "4.9") else _OLD_REAL).match(text)
+    if number is None:
+        return LiteralProblem("refused", f"is no {plain}")
+    value = _value(number[0])
+    smallest, largest = _MAGNITUDES[plain]
+    vanishes = abs(value) <= smallest and _DIGIT.search(_mantissa(number[0])) is not None
+    if not _named(number[0]) and (abs(value) > largest or vanishes):
+        return LiteralProblem("refused", f"is out of range for {plain}")
+    return _rest(text, number.end())
+
+
+def _rest(text: str, end: int) -> LiteralProblem | None:
+    """Blanks behind a number are dropped, too, but nobody misses them."""
+    if text[end:].isspace() or end == len(text):
+        return None
+    return LiteralProblem("trailing-text", f"is read as {text[:end].strip()}: the rest is dropped", text[:end].strip())
+
+
+def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralProblem | None:
+    """Items between semicolons, the last one perhaps followed by one; since 4.9 also `json:[1, 2]`."""
+    is_queue = "deque" in port_type
+    if item == "bool" and not is_queue and not at_least(version, "4.7.3"):
+        return LiteralProblem("refused", "is no list of bool: 4.6 reads none from text")
+    if text.startswith("json:") and not is_queue and at_least(version, "4.9"):
+        return _check_json(item, text[len("json:") :])
+    items = text.split(";")
+    if items[-1] == "":
+        items.pop()
+    found = [_check_one(item, one, version) for one in items]
+    for one, problem in zip(items, found, strict=True):
+        if problem is not None and problem.kind == "refused":
+            return LiteralProblem("refused", f"has an item that is refused: `{one}` {problem.reason}")
+    reads = [one if problem is None else problem.reads or "" for one, problem in zip(items, found, strict=True)]
+    if reads == items:
+        return None
+    return LiteralProblem("trailing-text", f"is read as {';'.join(reads)}: the rest is dropped", ";".join(reads))
+
+
+def _check_json(item: str, text: str) -> LiteralProblem | None:
+    """nlohmann::json's conversions: a number becomes an int by cutting it, true an int but no double."""
+    import json  # only here: it costs as much as reading the file that asks
+
+    try:
+        values = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError):
+        return LiteralProblem("refused", "is not well-formed behind `json:`")
+    if not isinstance(values, list):
+        return LiteralProblem("refused", "is no list behind `json:`")
+    wanted: dict[str, tuple[type, ...]] = {"double": (int, float), "bool": (bool,), "std::string": (str,)}
+    types = wanted.get(item, (int, float, bool))
+    for value in values:
+        if not isinstance(value, types) or (item == "double" and isinstance(value, bool)):
+            return LiteralProblem("refused", f"has an item that is no {item}: `{json.dumps(value)}`")
+    return None
+
+
+def _refuse_constant(word: str) -> None:
+    """NaN and Infinity, which Python reads and nobody else does."""
+    raise ValueError(word)
+
+
+def _plain(port_type: str) -> str:
+    """One name for a type that has several: `std::int32_t` and `int`, `unsigned` and `unsigned int`."""
+    name = " ".join(port_type.split())
+    name = "BT::NodeStatus" if name == "NodeStatus" else name
+    short = name.removeprefix("std::")
+    return _SYNONYMS.get(short, short if short in _INTEGERS else name)
+
+
+def _list_item(port_type: str) -> str | None:
+    """The type of a list's items, or None for what is no list the engine can read."""
+    found = _LIST.match(" ".join(port_type.split()))
+    if found is None:
+        return None
+    if "basic_string" in found[1] or found[1] in ("string", "std::string"):
+        return "std::string"
+    item = _plain(found[1].strip())
+    # The engine has converters for lists of these; any other is somebody's own.
+    return item if item in ("int", "double", "bool") else None
+
+
+def _mantissa(number: str) -> str:
+    return re.split(r"[pP]" if "x" in number.lower() else r"[eE]", number)[0].lower().replace("0x", "")
+
+
+def _value(number: str) -> float:
+    number = number.strip()
+    if "x" in number.lower():
+        try:
+            return float.fromhex(number)
+        except OverflowError:
+            return float("inf")
+    return 0.0 if _named(number) else float(number)
+
+
+def _named(number: str) -> bool:
+    """inf, infinity, nan, nan(…)"""
+    return number.strip().lstrip("+-")[:1] in ("i", "I", "n", "N")
+
+
+_UNSIGNED_64: Final = 2**64 - 1
+
+
+def _range(bits: int, signed: bool) -> tuple[int, int]:
+    return (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+
+
+_INTEGERS: Final = {
+    "int": _range(32, True),
+    "unsigned int": _range(32, False),
+    "long": _range(64, True),
+    "unsigned long": _range(64, False),
+    "short": _range(16, True),
+    "unsigned short": _range(16, False),
+    "signed char": _range(8, True),
+    "unsigned char": _range(8, False),
+}
+_SYNONYMS: Final = {
+    "int32_t": "int",
+    "int32": "int",
+    "unsigned": "unsigned int",
+    "uint": "unsigned int",
+    "uint32_t": "unsigned int",
+    "uint32": "unsigned int",
+    "long int": "long",
+    "int64_t": "long",
+    "long long": "long",
+    "unsigned long int": "unsigned long",
+    "uint64_t": "unsigned long",
+    "unsigned long long": "unsigned long",
+    "size_t": "unsigned long",
+    "int16_t": "short",
+    "uint16_t": "unsigned short",
+    "int8_t": "signed char",
+    "uint8_t": "unsigned char",
+}
+# Up to the first a number that is not 0 becomes 0, beyond the second it becomes infinite: the engine refuses both.
+_MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.006492321624085e-46, 3.4028235677973366e38)}
+
+_NAMED: Final = r"(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?)"
+_DECIMAL: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_HEXADECIMAL: Final = r"0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+_INTEGER: Final = re.compile(r"-?[0-9]+")
+_REAL: Final = re.compile(rf"-?(?:{_NAMED}|{_DECIMAL})")
+_OLD_REAL: Final = re.compile(rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})")
+_DIGIT: Final = re.compile(r"[1-9a-f]")
+_LIST: Final = re.compile(r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]")

@@ -1,0 +1,99 @@
+"""Which names the engine refuses, and why.
+
+One invariant: a name that passes here passes the engine's own check of the same version (src/xml_parsing.cpp,
+validateModelName and its neighbours; src/basic_types.cpp, findForbiddenChar).  It does not know whether a name can be
+an XML tag, nor whether it is taken.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
+
+
+def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
+    """Why the engine refuses the ID of a tree, the tree that a SubTree names, or the tag of a node; None: it does not.
+
+    The ID of the explicit form, `<Action ID="my node"/>`, is not checked by any version.
+    """
+    if not at_least(version, _RULES_SINCE):
+        return None
+    if name == "":
+        return "it is empty"
+    if name in ("Root", "root"):
+        return "`Root` is a reserved name"
+    return _forbidden_character(name)
+
+
+def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
+    """Why the engine refuses the name of a port in the model of a SubTree; None: it does not."""
+    if not at_least(version, _RULES_SINCE):
+        return None
+    if name == "":
+        return "it is empty"
+    if name[0] in "0123456789":
+        return "it begins with a digit"
+    return _forbidden_character(name) or _reserved(name)
+
+
+def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
+    """Why the engine refuses the `name` of a node; None: it does not.  Only control characters are refused."""
+    if not at_least(version, _RULES_SINCE):
+        return None
+    control = next((character for character in name if character in _CONTROLS and character not in "\t\n\r"), None)
+    return None if control is None else f"it contains the control character {_code(control)}"
+
+
+def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
+    """Does the engine take an attribute of that name for a port?  If not, it keeps it and nothing reads it."""
+    if name[:1] not in _LETTERS or name in ("name", "ID"):
+        return False
+    return not at_least(version, _RULES_SINCE) or _forbidden_character(name) is None
+
+
+def legal_name(name: str) -> str:
+    """A name made legal as a node's ID: `BatteryLow?` is BatteryLow, `Move Base` Move_Base, `3 Tubes` _3_Tubes.
+
+    What comes out is refused by no version of the engine, is an XML tag, and needs no quotes in a file: letters,
+    digits, `_`, and `-` inside.  Other characters at the ends are dropped, those between two pieces become one `_`.
+    """
+    pieces = "".join(character if _is_plain(character) else " " for character in name).split()
+    legal = "_".join(kept for piece in pieces if (kept := piece.strip("-")))
+    if legal in ("", "Root", "root"):
+        return f"{legal}_"
+    return f"_{legal}" if legal[0] in "0123456789" else legal
+
+
+def _is_plain(character: str) -> bool:
+    return character in "_-0123456789" or character.isalpha()
+
+
+def _forbidden_character(name: str) -> str | None:
+    found = next((character for character in name if _is_forbidden(character)), None)
+    if found is None:
+        return None
+    if found in _CONTROLS:
+        return f"it contains the control character {_code(found)}"
+    return "it contains a blank" if found == " " else f"it contains `{found}`"
+
+
+def _is_forbidden(character: str) -> bool:
+    return character in _FORBIDDEN or character in _CONTROLS
+
+
+def _reserved(name: str) -> str | None:
+    reserved = name in ("name", "ID") or (name in RESERVED_ATTRIBUTES and RESERVED_ATTRIBUTES[name].group != "tool")
+    return "it is the name of a reserved attribute" if reserved else None
+
+
+def _code(character: str) -> str:
+    return f"U+{ord(character):04X}"
+
+
+# 4.8.4, the last of the 4.8 line, brought the rules; 4.6 has none but IsAllowedPortName.
+_RULES_SINCE: Final = "4.8"
+_FORBIDDEN: Final = " <>&\"'/\\:*?|."
+_CONTROLS: Final = "".join(map(chr, range(32))) + "\x7f"
+_LETTERS: Final = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")

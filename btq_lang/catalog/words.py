@@ -1,0 +1,100 @@
+"""Words that look like node kinds and are none of the engine's: of the published language, and of older engines.
+
+One invariant: no word here is a tag, a symbol or an alias of `nodes.BUILTINS`.  A node of such a name is a custom
+node all the same; the table only says what to tell its writer.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.catalog.kinds import Category
+from btq_lang.record import record
+
+
+@record
+class KnownWord:
+    """A word that is no node of the engine.
+
+    Attributes:
+        tag: the XML tag that is written for it.
+        why: what became of it, or what it is, as a sentence.
+        replacement: the built-in to write in its place, where there is one that needs nothing else; else None.
+    """
+
+    word: str
+    category: Category
+    tag: str
+    why: str
+    replacement: str | None = None
+
+
+def _custom(word: str, category: Category, why: str) -> KnownWord:
+    return KnownWord(word, category, word, why)
+
+
+def _old(word: str, category: Category, why: str, replacement: str | None = None) -> KnownWord:
+    return KnownWord(word, category, word, why, replacement)
+
+
+_WORDS: Final = (
+    # The published language's own.
+    KnownWord(
+        "Test",
+        "Action",
+        "TestNode",
+        "TestNode is the engine's stand-in for substitution rules and is not registered: register an action TestNode",
+    ),
+    _custom("ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: name your own action"),
+    _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: name your own action"),
+    _custom("ManualSelector", "Control", "ManualSelector was a node of version 3; version 4 does not build it"),
+    _custom("ConsumeQueue", "Decorator", "ConsumeQueue is a C++ template that a program must register; see LoopDouble"),
+    _custom("PopFromQueue", "Action", "PopFromQueue is a C++ template that a program must register; see LoopDouble"),
+    # C++ names that people take for nodes.
+    _custom("QueueSize", "Action", "QueueSize is a C++ template that a program must register"),
+    _custom("StatefulAction", "Action", "StatefulAction is a C++ base class, not a node: name your own action"),
+    _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: name your own action"),
+    # Older engines'.
+    _old(
+        "SequenceStar",
+        "Control",
+        "SequenceStar is version 3's name of SequenceWithMemory",
+        "SequenceWithMemory",
+    ),
+    _old("FallbackStar", "Control", "FallbackStar is version 2's name of Fallback", "Fallback"),
+    _old(
+        "RetryUntilSuccesful",
+        "Decorator",
+        "RetryUntilSuccesful is version 3's misspelling of RetryUntilSuccessful",
+        "RetryUntilSuccessful",
+    ),
+    _old(
+        "SubTreePlus",
+        "SubTree",
+        "SubTreePlus is version 3's name of what SubTree does now; its __autoremap is _autoremap",
+    ),
+    *(
+        _old(
+            f"BlackboardCheck{kind}",
+            "Decorator",
+            f"BlackboardCheck{kind} was a node of version 3: write a Precondition with a script",
+        )
+        for kind in ("Int", "Double", "String", "Bool")
+    ),
+)
+
+# By word.
+KNOWN_WORDS: Final = {known.word: known for known in _WORDS}
+
+# Version 3's names of ports: (tag, port) to the port of today.
+OLD_PORTS: Final = {
+    ("Parallel", "success_threshold"): "success_count",
+    ("Parallel", "failure_threshold"): "failure_count",
+}
+
+# Unquoted and without `code`, these stand for a custom node of this category: classic files have no other way.
+PLACEHOLDERS: Final[dict[str, Category]] = {
+    "ScriptAction": "Action",
+    "Script": "Action",
+    "ScriptCondition": "Condition",
+}

@@ -1,0 +1,153 @@
+"""What the engine reads from a literal, by type and version."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.catalog.nodes import BUILTINS, VERSIONS, port_type
+
+INT_RANGE = "is out of range: int is -2147483648 to 2147483647"
+VECTOR = "std::vector<int, std::allocator<int> >"
+STRINGS = (
+    "std::vector<std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >, "
+    "std::allocator<std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> > > >"
+)
+
+
+@pytest.mark.parametrize(
+    ("port_type", "text"),
+    [
+        *(("int", text) for text in ("0", "-5", "007", "2147483647", "-2147483648", "5 ", "0" * 6000 + "1")),
+        ("unsigned int", "4294967295"),
+        ("unsigned", "0"),
+        ("std::int64_t", "-9223372036854775808"),
+        ("uint8_t", "255"),
+        *(("double", text) for text in ("1", "-1.5", ".5", "1.", "1e3", "1E-3", "inf", "-Infinity", "nan", "0e-999")),
+        ("float", "3.4e38"),
+        *(("bool", text) for text in ("0", "1", "true", "True", "TRUE", "false", "False", "FALSE")),
+        *(("BT::NodeStatus", text) for text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")),
+        *(("std::string", text) for text in ("", "abc", "5", "json:5")),
+        ("BT::Any", "anything"),
+        ("BT::AnyTypeAllowed", "anything"),
+        ("geometry_msgs::msg::PoseStamped", "anything"),
+        ("std::vector<geometry_msgs::msg::Pose>", "anything"),
+        ("", "anything"),
+        *((VECTOR, text) for text in ("", "1", "1;2;3", "1;2;", "json:[1, 2]", "json:[]", "json:[1.5, true]")),
+        ("std::vector<double>", "1.5;2"),
+        ("std::vector<bool>", "true;0"),
+        ("std::vector<bool>", "json:[true]"),
+        *((STRINGS, text) for text in ("a;b;;c", ";", 'json:["a"]')),
+        ("std::deque<int>", "1;2;3"),
+        ("int", "{cycles}"),
+        ("bool", "{@flag}"),
+        ("std::vector<int>", "{=}"),
+    ],
+)
+def test_good_literals(port_type: str, text: str) -> None:
+    assert check_literal(port_type, text) is None
+
+
+@pytest.mark.parametrize(
+    ("port_type", "text", "reason"),
+    [
+        *(("int", text, "is no int") for text in ("", "abc", "+5", " 5", "-", "{}", " {k} ", "json:5", "٣")),
+        ("int", "2147483648", INT_RANGE),
+        ("int", "9" * 6000, INT_RANGE),
+        ("int32_t", "-99999999999", INT_RANGE),
+        ("unsigned int", "-1", "is out of range: unsigned int is 0 to 4294967295"),
+        ("unsigned long", "-1", "is no unsigned long"),
+        ("uint8_t", "256", "is out of range: unsigned char is 0 to 255"),
+        *(("double", text, "is no double") for text in ("", "abc", "+1.5", " 1.5", "-.", "e3", ",5")),
+        *(("double", text, "is out of range for double") for text in ("1e999", "-1e999", "1e-999")),
+        *(("float", text, "is out of range for float") for text in ("1e39", "1e-50")),
+        *(("bool", text, "is no bool: true, false, 1 or 0") for text in ("", "yes", "tRUE", "2", "true ", "01")),
+        ("BT::NodeStatus", "success", "is no status: SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE"),
+        ("std::vector<int>", "1;;3", "has an item that is refused: `` is no int"),
+        ("std::vector<int>", "1; 2", "has an item that is refused: ` 2` is no int"),
+        ("std::vector<double>", "1;x", "has an item that is refused: `x` is no double"),
+        ("std::vector<int>", "json:[1", "is not well-formed behind `json:`"),
+        ("std::vector<double>", "json:[NaN]", "is not well-formed behind `json:`"),
+        ("std::vector<int>", "json:5", "is no list behind `json:`"),
+        ("std::vector<int>", 'json:["1"]', 'has an item that is no int: `"1"`'),
+        ("std::vector<double>", "json:[true]", "has an item that is no double: `true`"),
+        ("std::vector<bool>", "json:[1]", "has an item that is no bool: `1`"),
+        ("std::vector<std::string>", "json:[1]", "has an item that is no std::string: `1`"),
+        ("std::deque<int>", "json:[1]", "has an item that is refused: `json:[1]` is no int"),
+    ],
+)
+def test_refused_literals(port_type: str, text: str, reason: str) -> None:
+    problem = check_literal(port_type, text)
+    assert problem is not None
+    assert (problem.kind, problem.reason, problem.reads) == ("refused", reason, None)
+
+
+@pytest.mark.parametrize(
+    ("port_type", "text", "reads"),
+    [
+        ("int", "5abc", "5"),
+        ("int", "5.7", "5"),
+        ("int", "1e3", "1"),
+        ("int", "0x10", "0"),
+        ("unsigned int", "30 sec", "30"),
+        ("int", "-3,5", "-3"),
+        ("double", "1,5", "1"),
+        ("double", "1.5m", "1.5"),
+        ("double", "1e", "1"),
+        ("double", "0x10", "0"),
+        ("double", "infinite", "inf"),
+        (VECTOR, "1,2", "1"),
+        ("std::vector<double>", "1.5;2 m;3", "1.5;2;3"),
+    ],
+)
+def test_trailing_text(port_type: str, text: str, reads: str) -> None:
+    problem = check_literal(port_type, text)
+    assert problem is not None
+    assert (problem.kind, problem.reads) == ("trailing-text", reads)
+    assert problem.reason == f"is read as {reads}: the rest is dropped"
+
+
+@pytest.mark.parametrize(
+    ("port_type", "text", "expected"),
+    [
+        # std::stod before 4.9, std::from_chars since.
+        ("double", "+1.5", [None, None, "refused"]),
+        ("double", " 1.5", [None, None, "refused"]),
+        ("double", "0x10", [None, None, "trailing-text"]),
+        ("double", "0x1p9999", ["refused", "refused", "trailing-text"]),
+        ("double", "abc", ["refused", "refused", "refused"]),
+        ("std::vector<double>", "json:[1]", ["refused", "refused", None]),
+        ("std::vector<std::string>", "json:[1]", [None, None, "refused"]),
+        ("std::vector<bool>", "1;0", ["refused", None, None]),
+        ("std::deque<bool>", "1;0", [None, None, None]),
+        ("int", "5abc", ["trailing-text"] * 3),
+    ],
+)
+def test_versions_differ(port_type: str, text: str, expected: list[str | None]) -> None:
+    problems = [check_literal(port_type, text, version) for version in VERSIONS]
+    assert [problem and problem.kind for problem in problems] == expected
+
+
+def test_a_pointer_has_both_braces_and_something_between() -> None:
+    assert [text for text in ("{a}", "{}", "{a", "a}", " {a}", "{a} ", "{{}}") if is_pointer(text)] == ["{a}", "{{}}"]
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_engine_reads_its_own_defaults(version: str) -> None:
+    for kind in BUILTINS.values():
+        for port in kind.ports:
+            assert port.default is None or check_literal(port_type(port, version), port.default, version) is None
+
+
+@given(
+    st.sampled_from(["int", "unsigned long", "double", "float", "bool", VECTOR, STRINGS, "std::deque<double>"]),
+    st.text(alphabet='0123456789.eExX+-;,[]{} naifNjso:p"', max_size=20) | st.text(max_size=6),
+    st.sampled_from(VERSIONS),
+)
+def test_what_is_read_is_read_again(port_type: str, text: str, version: str) -> None:
+    problem = check_literal(port_type, text, version)
+    if problem is not None and problem.kind == "trailing-text":
+        assert problem.reads is not None
+        assert check_literal(port_type, problem.reads, version) is None
