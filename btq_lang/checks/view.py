@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from btq_lang.catalog.nodes import Category, NodeKind, lookup
+from btq_lang.catalog.nodes import NodeKind, lookup
 from btq_lang.checks.calls import Calls
 from btq_lang.diagnostics import Place, Related
 from btq_lang.record import record
@@ -35,7 +35,7 @@ class SeenNode:
     index: int
     kind: NodeKind | None
     definition: Definition | None
-    category: Category | None
+    category: str | None
 
     @property
     def model(self) -> Model | None:
@@ -49,7 +49,7 @@ class SeenNode:
 
     @property
     def is_subtree(self) -> bool:
-        return self.category is Category.SUBTREE
+        return self.category == "SubTree"
 
     def ancestors(self) -> Iterator[SeenNode]:
         """Its parent, the parent's parent, and so on."""
@@ -97,18 +97,18 @@ class View:
             waiting += [(child, seen, number) for number, child in reversed(_numbered(node.children))]
 
     def _look_up(self, node: Node, tree: Tree, parent: SeenNode | None, index: int) -> SeenNode:
-        category = Category(node.category.raw) if node.category else None
+        category: str | None = node.category.raw if node.category else None
         name = node.id
         kind: NodeKind | None = None
         definition: Definition | None = None
-        if name is not None and category is not Category.SUBTREE:
+        if name is not None and category != "SubTree":
             kind = lookup(name.text, name.quoted, len(node.nodes))
             if kind is None:
                 definition = self.scope.find(Kind.MODEL, name.text)
         if category is None and kind is not None:
             category = kind.category
         elif category is None and definition is not None and isinstance(model := definition.symbol.target, Model):
-            category = Category(model.category.raw)
+            category = model.category.raw
         return SeenNode(node, tree, parent, index, kind, definition, category)
 
     def place(self, definition: Definition) -> Place:

@@ -1,0 +1,62 @@
+"""The command line: `btq check`, `btq format`, `btq explain`, `btq init`, `btq completion`.
+
+Exit codes, everywhere: 0 clean, 1 findings, 2 usage or I/O.  Nothing is decided here: arguments in, the pure parts
+called, their answer printed.  A command imports what it needs when it runs, for most runs are one `btq check`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang import __version__
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser
+
+CLEAN, FINDINGS, TROUBLE = 0, 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; `arguments` without the program's name, None: those of the process."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if given in (["--version"], ["-V"]):
+        print(f"btq {__version__}")
+        return CLEAN
+    options = build_parser().parse_args(given)
+    try:
+        run = options.run
+    except AttributeError:
+        build_parser().print_help()
+        return TROUBLE
+    try:
+        code: int = run(options)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # the reader of our output has seen enough: `btq check | head`
+        sys.stderr.close()
+        return TROUBLE
+    return code
+
+
+def build_parser() -> ArgumentParser:
+    """The commands and their options; shell completion and the documentation are made from it."""
+    from argparse import ArgumentParser, RawDescriptionHelpFormatter
+
+    from btq_lang.commands import add_commands
+
+    parser = ArgumentParser(
+        prog="btq",
+        description="Quality-aware behavior trees for BehaviorTree.CPP: check, format and understand .btq files.",
+        epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
+        formatter_class=RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("-V", "--version", action="version", version=f"btq {__version__}")
+    add_commands(parser.add_subparsers(title="commands", metavar="COMMAND"))
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

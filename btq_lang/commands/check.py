@@ -1,0 +1,180 @@
+"""`btq check`: find what is wrong with files, mend what is certain, report."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+
+from btq_lang.checks import check
+from btq_lang.commands.files import STDIN, Files, Group
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.fixes import fixed
+from btq_lang.loader import LoadProblem, shown, write_whole
+from btq_lang.near import near
+from btq_lang.project import Project
+from btq_lang.record import replace
+from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.render.colour import wants_colour
+from btq_lang.rules import RULES, Severity
+from btq_lang.workspace import Workspace
+
+_ORDER = tuple(Severity)
+_FAILS = (Severity.ERROR, Severity.WARNING)
+_ROUNDS = 10  # of fixing: a fix may make room for another
+
+
+def run(options: Namespace) -> int:
+    """Check once, or again and again with `--watch`."""
+    unknown = _unknown_rules(options)
+    if unknown:
+        print(unknown, file=sys.stderr)
+        return 2
+    files = Files()
+    code, watched = _check(options, files)
+    if options.watch and STDIN not in options.paths:
+        _watch(options, files, watched)
+    return code
+
+
+def _check(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
+    """One run: its exit code, and the files that another run would depend on."""
+    groups, problems = files.groups(options.paths, options.stdin_filename)
+    groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
+    mended = 0
+    if options.fix:
+        groups, mended, trouble = _fix(groups, options, files)
+        problems += trouble
+    for problem in problems:
+        print(f"btq: {problem}", file=sys.stderr)
+    findings: list[Finding] = []
+    for group in groups:
+        for path, found in _found(group, options.jobs):
+            text = group.workspace.files[path].text
+            findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
+    texts = {path: file.text for group in groups for path, file in group.workspace.files.items()}
+    report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
+    _print(report, options, mended)
+    watched = tuple(path for group in groups for path in (*group.workspace.files, *group.absent))
+    if problems:
+        return 2, watched
+    return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
+
+
+def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
+    """The diagnostics of each file that was asked for, in order; many files on several processors."""
+    from btq_lang.commands.progress import Progress
+
+    with Progress(len(group.given), "checked") as progress:
+        workers = jobs or (min(os.cpu_count() or 1, len(group.given) // 100) if len(group.given) >= 200 else 1)
+        if workers > 1:
+            from btq_lang.commands.parallel import check_all
+
+            results = check_all(group.workspace, group.given, workers)
+        else:
+            results = (check(group.workspace, path) for path in group.given)
+        for path, found in zip(group.given, results, strict=True):
+            progress.step()
+            yield path, found
+
+
+def _fix(
+    groups: tuple[Group, ...], options: Namespace, files: Files
+) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
+    """Apply the safe fixes to the files that were asked for; the groups with the new texts, and how many fixes."""
+    done: list[Group] = []
+    trouble: list[LoadProblem] = []
+    mended = 0
+    for group in groups:
+        workspace = group.workspace
+        writable = tuple(path for path in group.given if path not in group.damaged)
+        for _ in range(_ROUNDS):
+            found = {path: tuple(d for d in check(workspace, path) if _is_wanted(d, options)) for path in writable}
+            texts, count = fixed(workspace, found)
+            if not count:
+                break
+            mended += count
+            for path, text in texts.items():
+                workspace = workspace.with_file(path, text)
+        for path in writable:
+            text = workspace.files[path].text
+            if files.stdin and path == files.stdin[0]:
+                sys.stdout.write(text)
+            elif text != group.workspace.files[path].text:
+                try:
+                    write_whole(path, text)
+                except OSError as error:
+                    trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+        done.append(replace(group, workspace=workspace))
+    return tuple(done), mended, tuple(trouble)
+
+
+def _print(report: Report, options: Namespace, mended: int) -> None:
+    # With --fix, standard input's new text is the output, so the report goes elsewhere.
+    stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
+    colour = options.color == "always" or (options.color == "auto" and wants_colour(stream.isatty(), os.environ))
+    width = _width() if stream.isatty() else 120
+    for piece in render(options.output_format, report, colour=colour, width=width):
+        stream.write(piece)
+    if mended and options.output_format in ("full", "concise"):
+        print(f"Fixed {mended} problem{'s' if mended > 1 else ''}", file=stream)
+
+
+def _watch(options: Namespace, files: Files, watched: tuple[str, ...]) -> None:
+    import time
+
+    from btq_lang.loader import stamp
+    from btq_lang.watch import watch
+
+    state = {"files": watched}
+
+    def paths() -> Iterator[str]:
+        """The files of the last run, and those that have come since."""
+        from btq_lang.loader import absolute, collect, find_project
+
+        yield from state["files"]
+        for path in options.paths:
+            yield from collect([path], find_project(absolute(path)).project)[0]
+
+    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+    try:
+        for changed in watch(paths, stamp, time.sleep, time.monotonic):
+            names = ", ".join(shown(path) for path in changed[:3]) + (", …" if len(changed) > 3 else "")
+            print(f"\n{time.strftime('%H:%M:%S')} {names} changed", file=sys.stderr)
+            _, state["files"] = _check(options, files)
+    except KeyboardInterrupt:
+        print(file=sys.stderr)
+
+
+def _configured(workspace: Workspace, options: Namespace) -> Workspace:
+    """The workspace with what the command line selects and ignores, on top of what the project file says."""
+    project: Project = workspace.project
+    select, ignore = _rules(options.select), _rules(options.ignore)
+    if not select and not ignore:
+        return workspace
+    return workspace.with_project(replace(project, select=select or project.select, ignore=project.ignore + ignore))
+
+
+def _rules(given: list[str]) -> tuple[str, ...]:
+    return tuple(rule.strip() for words in given for rule in words.split(",") if rule.strip())
+
+
+def _unknown_rules(options: Namespace) -> str:
+    for rule in _rules(options.select) + _rules(options.ignore):
+        if rule not in RULES:
+            likely = near(rule, RULES)
+            meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists the rules"
+            return f"btq check: there is no rule `{rule}`{meant}"
+    return ""
+
+
+def _is_wanted(diagnostic: Diagnostic, options: Namespace) -> bool:
+    return _ORDER.index(diagnostic.effective_severity) <= _ORDER.index(Severity(options.severity))
+
+
+def _width() -> int:
+    try:
+        return os.get_terminal_size().columns
+    except OSError:
+        return 120

@@ -1,0 +1,106 @@
+"""The files of a command line, in their projects, parsed once and for as long as they do not change."""
+
+from __future__ import annotations
+
+import os.path
+import sys
+from collections.abc import Iterable, Iterator
+
+from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, find_project, load
+from btq_lang.project import Project
+from btq_lang.record import record
+from btq_lang.workspace import File, Workspace
+
+STDIN = "-"
+
+
+@record
+class Group:
+    """The files of one project.
+
+    Attributes:
+        workspace: those files, and what they include.
+        given: the paths that were asked for, those of `workspace` that could be read.
+        damaged: the paths that are no UTF-8: never written back.
+        absent: where included files would be that are not there.
+    """
+
+    workspace: Workspace
+    given: tuple[str, ...]
+    damaged: tuple[str, ...]
+    absent: tuple[str, ...]
+
+
+class Files:
+    """What was read so far; asked again, it parses only what changed.
+
+    Attributes:
+        stdin: the path that standard input goes by, and its text, once it was read.
+    """
+
+    def __init__(self) -> None:
+        self.stdin: tuple[str, str] | None = None
+        self._known: dict[str, File] = {}
+
+    def groups(
+        self, paths: Iterable[str], stdin_filename: str | None = None
+    ) -> tuple[tuple[Group, ...], tuple[LoadProblem, ...]]:
+        """The files that paths stand for, by project, and what could not be read.
+
+        Each file belongs to the project file nearest above it, whatever the current folder.
+        """
+        problems: list[LoadProblem] = []
+        projects: dict[str, Found] = {}
+        members: dict[str, dict[str, None]] = {}
+
+        def project_of(path: str) -> Found:
+            folder = path if os.path.isdir(path) else os.path.dirname(path)
+            if folder not in projects:
+                projects[folder] = find_project(folder)
+                known = [found for found in projects.values() if found.path == projects[folder].path]
+                if projects[folder].path is None or len(known) == 1:
+                    problems.extend(projects[folder].problems)
+            return projects[folder]
+
+        for path in paths:
+            if path == STDIN:
+                name = self._read_stdin(stdin_filename)
+                members.setdefault(project_of(name).path or "", {})[name] = None
+                continue
+            found, unreachable = collect([path], project_of(absolute(path)).project)
+            problems += unreachable
+            for file in found:
+                home = project_of(file)
+                if file == absolute(path) or not excluder(home.project)(file):
+                    members.setdefault(home.path or "", {})[file] = None
+        by_path = {found.path or "": found.project for found in projects.values()}
+        groups = []
+        for key, files in members.items():
+            group, found_problems = self._load(tuple(files), by_path[key])
+            groups.append(group)
+            problems += found_problems
+        return tuple(groups), tuple(problems)
+
+    def _read_stdin(self, filename: str | None) -> str:
+        if self.stdin is None:
+            text = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
+            self.stdin = absolute(filename or "<stdin>"), text
+        return self.stdin[0]
+
+    def _load(self, paths: tuple[str, ...], project: Project) -> tuple[Group, tuple[LoadProblem, ...]]:
+        def includes_of(path: str, text: str) -> Iterator[str]:
+            for include in self._file(path, text).includes:
+                if include.path is not None:
+                    yield include.path.text
+
+        known = dict([self.stdin]) if self.stdin and self.stdin[0] in paths else {}
+        loaded = load((path for path in paths if path not in known), project, includes_of, known)
+        files = {path: self._file(path, text) for path, text in loaded.texts.items()}
+        given = tuple(path for path in paths if path in files)
+        return Group(Workspace(files, project), given, loaded.damaged, loaded.absent), loaded.problems
+
+    def _file(self, path: str, text: str) -> File:
+        known = self._known.get(path)
+        if known is None or known.text != text:
+            known = self._known[path] = File(path, text)
+        return known

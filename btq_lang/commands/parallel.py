@@ -1,0 +1,38 @@
+"""Checking many files on several processors.
+
+Each process has the whole workspace, so that a file's includes are there; it parses only what its own files need.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+
+from btq_lang.checks import check
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.project import Project
+from btq_lang.workspace import Workspace
+
+_CHUNK = 20  # files sent to a process at a time
+
+_workspace: Workspace | None = None
+
+
+def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Iterator[tuple[Diagnostic, ...]]:
+    """The diagnostics of each path, in order."""
+    texts = {path: file.text for path, file in workspace.files.items()}
+    # A forked process has the texts already; elsewhere they are sent to each process once.
+    context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
+    with ProcessPoolExecutor(workers, context, _begin, (texts, workspace.project)) as pool:
+        yield from pool.map(_check, paths, chunksize=_CHUNK)
+
+
+def _begin(texts: dict[str, str], project: Project) -> None:
+    global _workspace
+    _workspace = Workspace.of(texts, project)
+
+
+def _check(path: str) -> tuple[Diagnostic, ...]:
+    assert _workspace is not None, "every process begins with _begin"
+    return check(_workspace, path)

@@ -1,0 +1,42 @@
+"""Applying fixes: which of many can be applied together, and the texts after it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.workspace import Workspace
+
+
+def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tuple[dict[str, str], int]:
+    """The texts of files after their safe fixes, and how many were applied.
+
+    Of fixes that touch one place only the first is applied; a second round may apply the next.
+
+    Args:
+        found: the diagnostics of each file that may be changed; a fix that would change another file is left out.
+    """
+    edits: dict[str, list[Edit]] = {path: [] for path in found}
+    count = 0
+    for path, diagnostics in found.items():
+        for diagnostic in diagnostics:
+            fix = next((fix for fix in diagnostic.fixes if fix.safe), None)
+            if fix is not None and _fits(fix, path, edits):
+                count += 1
+                for change in fix.changes:
+                    edits[change.place.path or path].append(Edit(change.place.span, change.text))
+    texts = {path: apply_edits(workspace.files[path].text, made) for path, made in edits.items() if made}
+    return texts, count
+
+
+def _fits(fix: Fix, path: str, edits: Mapping[str, list[Edit]]) -> bool:
+    for change in fix.changes:
+        others = edits.get(change.place.path or path)
+        if others is None or any(_touches(change.place.span, edit.span) for edit in others):
+            return False
+    return True
+
+
+def _touches(first: Span, second: Span) -> bool:
+    return first.start <= second.end and second.start <= first.end
