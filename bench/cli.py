@@ -1,0 +1,219 @@
+"""How long the command line takes, over an interpreter that does nothing.
+
+One invariant: commands take turns, one run each, and what counts is their distance from `python -c pass` of the same
+run; and a command is only measured after it has shown that it works, for a crash is fast, and Python's exit code for
+it is that of a check with findings.  The interpreter is called by its own path (`sys.executable`), since shims in front
+of it cost more than btq may.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import missions
+
+FILES, NODES_A_FILE = 1_000, 50
+
+
+@dataclass
+class Command:
+    """A command, and what each run of it took: `wall` and `cpu` (its own and its children's) in seconds.
+
+    Attributes:
+        many: it checks the 1 000 files, so fewer rounds are enough.
+        failure: why it cannot be measured.
+    """
+
+    name: str
+    argv: tuple[str, ...]
+    many: bool = False
+    wall: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A figure that btq must reach, with the figure reached."""
+
+    text: str
+    reached: float
+    met: bool
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Measure and print; the exit code says nothing about speed."""
+    options = _options(arguments)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        _write_missions(folder, options.spelling)
+        measured = commands(folder, _btq())
+        run(measured, options.rounds, options.many_rounds)
+    goals = compare(measured)
+    if options.json:
+        print(json.dumps(as_data(measured, goals), indent=2))
+    else:
+        print(as_text(measured, goals))
+
+
+def commands(folder: Path, btq: tuple[str, ...]) -> list[Command]:
+    """What is measured; the first is what the others are compared with."""
+    made = [
+        Command("python -c pass", (sys.executable, "-c", "pass")),
+        Command("btq --version", (*btq, "--version")),
+        Command("btq check, 100 nodes", (*btq, "check", str(folder / "one" / "mission.btq"))),
+        Command("btq check, 1 000 files", (*btq, "check", str(folder / "many")), many=True),
+    ]
+    usage = subprocess.run([*btq, "check", "--help"], capture_output=True, text=True, check=False)
+    if "--jobs" in usage.stdout:
+        for jobs in ("1", "2"):
+            argv = (*btq, "check", "--jobs", jobs, str(folder / "many"))
+            made.append(Command(f"btq check, 1 000 files, {jobs} jobs", argv, many=True))
+    if failure := _blindness(folder, btq):
+        for command in made:
+            if "check" in command.argv:
+                command.failure = failure
+    return made
+
+
+def _blindness(folder: Path, btq: tuple[str, ...]) -> str:
+    """Why `btq check` is not to be believed, or nothing: it must find a bracket that is missing."""
+    (folder / "broken").mkdir()
+    file = folder / "broken" / "broken.btq"
+    file.write_text('BehaviorTree broken\n    -> (name = "x"\n', encoding="utf-8")
+    argv = (*btq, "check", str(file))
+    if failure := _failure(argv):
+        return failure
+    done = subprocess.run(argv, capture_output=True, text=True, check=False)
+    return "" if done.returncode == 1 and "broken.btq" in done.stdout + done.stderr else "it finds no missing bracket"
+
+
+def run(measured: Sequence[Command], rounds: int, many_rounds: int) -> None:
+    """Fill in the times, after a first run of each that shows it works and writes the .pyc files."""
+    for command in measured:
+        command.failure = command.failure or _failure(command.argv)
+    for turn in range(rounds):
+        for command in measured:
+            if command.failure or (command.many and turn >= many_rounds):
+                continue
+            wall, cpu = _spawn(command.argv)
+            command.wall.append(wall)
+            command.cpu.append(cpu)
+
+
+def _failure(argv: Sequence[str]) -> str:
+    """Why a command does not work, or nothing.  0 is a clean check, 1 one with findings, but 1 is also a crash."""
+    done = subprocess.run(argv, capture_output=True, text=True, check=False)
+    if "Traceback" in done.stderr or done.returncode not in (0, 1):
+        last = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
+        return last[0]
+    return ""
+
+
+def _spawn(argv: tuple[str, ...]) -> tuple[float, float]:
+    """Run a command, its output thrown away: seconds by the clock, seconds of processor."""
+    silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_RDWR, 0) for number in (0, 1, 2)]
+    start = time.perf_counter()
+    process = os.posix_spawn(argv[0], argv, os.environ, file_actions=silent)
+    _, _, usage = os.wait4(process, 0)
+    return time.perf_counter() - start, usage.ru_utime + usage.ru_stime
+
+
+def _write_missions(folder: Path, spelling: missions.Spelling) -> None:
+    (folder / "one").mkdir()
+    (folder / "one" / "mission.btq").write_text(missions.mission(100, missions.SEED, spelling), encoding="utf-8")
+    (folder / "many").mkdir()
+    for number in range(FILES):
+        text = missions.mission(NODES_A_FILE, number, spelling)
+        (folder / "many" / f"mission{number:04}.btq").write_text(text, encoding="utf-8")
+
+
+def _btq() -> tuple[str, ...]:
+    script = Path(sysconfig.get_path("scripts")) / "btq"
+    if not script.exists():
+        raise SystemExit(f"{script} does not exist: install btq for {sys.executable} first")
+    return (sys.executable, str(script))
+
+
+def compare(measured: Sequence[Command]) -> list[Goal]:
+    """The goals of docs/performance.md that this run can say something about."""
+    took = {command.name: statistics.median(command.wall) for command in measured if not command.failure}
+    base = took["python -c pass"]
+    goals = []
+    for name, allowed in (("btq --version", 0.010), ("btq check, 100 nodes", 0.030)):
+        if name in took:
+            over = took[name] - base
+            goals.append(Goal(f"{name}: ms over python -c pass <= {1000 * allowed:.0f}", 1000 * over, over <= allowed))
+    one = took.get("btq check, 1 000 files, 1 jobs", took.get("btq check, 1 000 files"))
+    two = took.get("btq check, 1 000 files, 2 jobs")
+    if one is not None:
+        goals.append(Goal("1 000 files of 50 nodes, one process: s <= 3", one, one <= 3))
+    if one is not None and two is not None:
+        goals.append(Goal("the same, 2 jobs, in times of one <= 0.6", two / one, two / one <= 0.6))
+    return goals
+
+
+def as_text(measured: Sequence[Command], goals: Sequence[Goal]) -> str:
+    """A table in Markdown."""
+    base = statistics.median(measured[0].wall)
+    lines = [
+        f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        "",
+        "| command | median ms | fastest | over `python -c pass` | processor ms | runs |",
+        "|---|---|---|---|---|---|",
+    ]
+    for command in measured:
+        if command.failure:
+            lines.append(f"| {command.name} | does not work: {command.failure} | | | | |")
+            continue
+        wall = statistics.median(command.wall)
+        figures = (wall, min(command.wall), wall - base, statistics.median(command.cpu))
+        shown = " | ".join(f"{1000 * figure:.1f}" for figure in figures)
+        lines.append(f"| {command.name} | {shown} | {len(command.wall)} |")
+    lines.append("")
+    lines += [f"{'met   ' if goal.met else 'MISSED'}  {goal.text}: {goal.reached:,.2f}" for goal in goals]
+    return "\n".join(lines)
+
+
+def as_data(measured: Sequence[Command], goals: Sequence[Goal]) -> dict[str, object]:
+    """Everything that was measured, for machines."""
+    return {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "cores": os.cpu_count(),
+        "commands": [
+            {
+                "name": command.name,
+                "failure": command.failure,
+                "wall_seconds": command.wall,
+                "cpu_seconds": command.cpu,
+            }
+            for command in measured
+        ],
+        "goals": [{"goal": goal.text, "reached": goal.reached, "met": goal.met} for goal in goals],
+    }
+
+
+def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=40, help="runs of each short command (default 40)")
+    parser.add_argument("--many-rounds", type=int, default=5, help="runs over the 1 000 files (default 5)")
+    parser.add_argument("--spelling", choices=("short", "classic"), default="short")
+    parser.add_argument("--json", action="store_true", help="print JSON with every single time")
+    return parser.parse_args(arguments)
+
+
+if __name__ == "__main__":
+    main()
