@@ -379,9 +379,9 @@ class ClauseParser(Cursor):
             lower = self.amount()
             upper = self.amount() if self.expect_word("and") else None
             return Bound(start, self.last_end(), "between", lower, upper)
-        first = self.raw if self.kind == NAME else ""
-        second = self.raws[self.index + 1] if self.kinds[self.index + 1] == NAME else ""
-        relation = _RELATIONS.get((first, second))
+        relation = None
+        if self.kind == NAME and self.kinds[self.index + 1] == NAME:
+            relation = _RELATIONS.get((self.raw, self.raws[self.index + 1]))
         if relation is None:
             self.expected("a bound: at most, at least, less than, more than or between")
             return None
@@ -488,8 +488,7 @@ class ClauseParser(Cursor):
 
     def atom(self) -> Condition | None:
         """Atom = Expr [ Cmp Expr [ Cmp Expr ] ] | "node" Path | "(" Cond ")\""""
-        following = self.kinds[self.index + 1]
-        if self.at_word("node") and (following == STRING or (following == NAME and not self.ends_condition())):
+        if self.at_word("node") and self.kinds[self.index + 1] in (NAME, STRING) and not self.ends_condition():
             start = self.start()
             self.advance()
             path = self.path("a node")

@@ -99,7 +99,7 @@ class Lexer:
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
         self._strange = False  # a character that begins nothing was reported on this line
-        self._seen = self._last_line = 0  # the last line start before `_seen`
+        self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
         self._root_level = -1  # the level of an open Root block's items
         self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
 
@@ -162,7 +162,7 @@ class Lexer:
         self.kinds, self.starts, self.raws = [], [], []
         self._brackets.clear()
         self._strange = False
-        self._seen = self._last_line = self.line_start
+        self._last_line = self.line_start
         position = self.position
         text, size = self.text, self.size
         while position < size:
@@ -182,7 +182,7 @@ class Lexer:
             elif character == "=" or character == ",":
                 position = self._operator(position)
             elif character == "(":
-                self._brackets.append((position, self._blanks(position)))
+                self._brackets.append((position, self._blanks()))
                 position = self._add(OPEN, position, position + 1)
             elif character == ")":
                 position = self._close(position)
@@ -392,13 +392,8 @@ class Lexer:
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
 
-    def _blanks(self, position: int) -> str:
-        """The blanks at the start of the line that holds `position`, which never goes back."""
-        seen = self._seen
-        start = max(self.text.rfind("\n", seen, position), self.text.rfind("\r", seen, position)) + 1
-        if start:
-            self._last_line = start
-        self._seen = position
+    def _blanks(self) -> str:
+        """The blanks at the start of the line at hand."""
         return _BLANKS.match(self.text, self._last_line)[0]  # type: ignore[index]  # it matches nothing at least
 
     def _continue(self, position: int) -> int:
@@ -409,6 +404,7 @@ class Lexer:
             if text[at] in "\r\n":
                 start = at + 1
             at += 1
+        self._last_line = start
         if at >= size or text[at] == ")" or _COMMENT_SIGN.match(text, at):
             return at
         blanks = text[start:at]

@@ -364,7 +364,7 @@ class Parser(NodeParser):
         """A line that begins no item: it and its block are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        if self.kinds[self.index + 1] in (NEWLINE, OPEN) or self.kind == SYMBOL:
+        if self.kind == SYMBOL or (self.kind != NEWLINE and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
         self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
         end = self.end_line()
