@@ -168,7 +168,7 @@ class NodeParser(ClauseParser):
                 self.advance()
                 last = self.name("the rest of the type")
                 if last is not None:
-                    type_ = Word(NAME, type_.start, f"{type_.raw}::{last.raw}")  # blanks around `::` are no part of it
+                    type_ = Word(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
         default = self.value() if self.accept("=") else None
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None

@@ -14,7 +14,7 @@ from typing import Final, TypeAlias
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import record
 from btq_lang.text import Span
-from btq_lang.tokens import STRING
+from btq_lang.tokens import QUANTITY, STRING
 
 _ESCAPE = re.compile(r"\\([\"'\\nt])")
 _ESCAPED = {"n": "\n", "t": "\t"}
@@ -824,7 +824,8 @@ def _closes(raw: str) -> bool:
 def shape(part: object) -> object:
     """A part of the tree without its offsets: two parts with one shape say the same."""
     if isinstance(part, Word):
-        return part.kind == STRING, part.text
+        text = "".join(part.raw.split()) if part.kind == QUANTITY else part.text  # `30s` is `30 s`
+        return part.kind == STRING, text
     if isinstance(part, tuple):
         return tuple(shape(element) for element in part)
     if isinstance(part, str | int | None):
