@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from btq_lang.checks import trees
+from btq_lang.checks import children, kinds, literals, names, ports, trees
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -28,6 +28,23 @@ CHECKS: tuple[Check, ...] = (
     trees.unknown_main_tree,
     trees.tree_root_count,
     trees.tree_named_like_node,
+    kinds.unknown_node,
+    kinds.not_an_engine_node,
+    kinds.newer_engine_node,
+    kinds.category_mismatch,
+    kinds.clause_as_node,
+    kinds.duplicate_definition,
+    ports.unknown_port,
+    ports.missing_port,
+    ports.unknown_attribute,
+    ports.duplicate_attribute,
+    literals.invalid_literal,
+    literals.quantity_on_unitless_port,
+    children.child_count,
+    children.switch_cases,
+    children.parallel_threshold,
+    names.forbidden_name,
+    names.duplicate_instance_name,
 )
 
 # A file that cannot be read as it stands is never reported as clean.

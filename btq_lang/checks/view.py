@@ -123,9 +123,16 @@ class View:
         return definition.path == self.path and definition.entry is entry
 
 
-def model_port(model: Model, name: str) -> Port | None:
-    """The port of a model with this name."""
-    return next((port for port in model.ports if port.name is not None and port.name.text == name), None)
+def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
+    """The ports that the tree behind a SubTree declares, in its block or in a model of its own."""
+    name = seen.node.id
+    if name is None:
+        return ()
+    for kind in (Kind.TREE, Kind.MODEL):
+        definition = view.scope.find(kind, name.text)
+        if definition is not None and isinstance(target := definition.symbol.target, Tree | Model) and target.ports:
+            return target.ports
+    return ()
 
 
 def _numbered(children: tuple[object, ...]) -> list[tuple[int, Node]]:

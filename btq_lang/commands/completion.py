@@ -1,0 +1,14 @@
+"""`btq completion`: print the completion script of a shell."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from btq_lang.cli import build_parser
+from btq_lang.shell import completion_script
+
+
+def run(options: Namespace) -> int:
+    sys.stdout.write(completion_script(options.shell, build_parser()))
+    return 0

@@ -1,0 +1,73 @@
+"""`btq init`: begin a project that checks clean."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+
+from btq_lang.loader import write_whole
+
+_PROJECT = """\
+# What holds for all missions of this project
+engine = ["4.6", "4.8", "4.10"]        # the versions of BehaviorTree.CPP that must load them
+qualities = "iso25010-2023"
+include-paths = ["."]
+
+[rules]
+# unknown-node = "error"
+"""
+
+_SKILLS = """\
+# What the robot can do: the interfaces of its nodes.
+
+Action MoveBase "Drive the base to a named station"
+    input station : string
+
+Action Charge "Charge until the battery is full"
+
+Condition BatteryLow "True below the level that a way home needs"
+"""
+
+_MISSION = """\
+include "skills.btq"
+
+signal battery : % from {battery_level} initially 100 %
+
+# Late design: measurable, and checked or enforced.
+QualityReq in_time : performance-efficiency.time-behaviour "Reach a station in time"
+    takes at most 30 s
+
+QualityReq way_home : performance-efficiency.resource-utilization "Arrive with some battery left"
+    leaves battery >= 20 %
+
+BehaviorTree Mission
+    R?
+        -> Recharge
+            BatteryLow
+            MoveBase (station = "charger") satisfies in_time
+            Charge
+        MoveBase (station = "bench")
+            satisfices reliability                        # early design: a concern, not yet measured
+            satisfies in_time, way_home
+"""
+
+FILES = {"btq.toml": _PROJECT, "skills.btq": _SKILLS, "mission.btq": _MISSION}
+
+
+def run(options: Namespace) -> int:
+    """Write the files; none is written if one is already there."""
+    folder = options.folder
+    there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
+    if there:
+        print(f"btq init: {', '.join(there)} already in {folder}: nothing written", file=sys.stderr)
+        return 2
+    try:
+        os.makedirs(folder, exist_ok=True)
+        for name, text in FILES.items():
+            write_whole(os.path.join(folder, name), text)
+    except OSError as error:
+        print(f"btq init: {error.filename or folder}: {error.strerror}", file=sys.stderr)
+        return 2
+    print(f"Wrote {', '.join(FILES)}. Next: btq check {folder}")
+    return 0
