@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.cursor import Cursor
 from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.lexer import unit_at
+from btq_lang.scan import unit_at
 from btq_lang.syntax import (
     Amount,
     Argument,

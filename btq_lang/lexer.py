@@ -15,6 +15,7 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.scan import line_end, name_end, number_at, string_end, symbol_at
 from btq_lang.text import Span
 from btq_lang.tokens import (
     BLANK,
@@ -32,10 +33,8 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
-    SYMBOLS,
     Token,
 )
-from btq_lang.units import SYMBOLS as UNITS
 from btq_lang.units import nearest_units
 
 
@@ -189,7 +188,7 @@ class Lexer:
             elif (character == "#" or character == "/") and (end := self._comment(position)) > position:
                 position = end
             elif "0" <= character <= "9":
-                position = self._number(position, position)
+                position = self._number(position)
             else:
                 position = self._other(position, character)
         if self._brackets and position >= size:
@@ -202,7 +201,7 @@ class Lexer:
 
     def line_end(self) -> int:
         """Where the line of text at hand ends."""
-        return _line_end(self.text, self.position)
+        return line_end(self.text, self.position)
 
     def enter_root(self) -> None:
         """The line just read opens a `Root` block: its items stand one level deeper."""
@@ -217,11 +216,11 @@ class Lexer:
         return end
 
     def _name(self, start: int) -> int:
-        end = name_end(self.text, start, self.size)
+        end = name_end(self.text, start)
         text = self.text
         word = text[start:end]
         kind = NAME
-        if len(word) <= 3 and (symbol := _symbol(text, start)):
+        if len(word) <= 3 and (symbol := symbol_at(text, start)):
             if len(symbol) >= len(word):
                 kind, end = SYMBOL, start + len(symbol)
         elif end < self.size and text[end] in "#/" and _COMMENT_SIGN.match(text, end):
@@ -236,7 +235,7 @@ class Lexer:
     def _other(self, start: int, character: str) -> int:
         """Symbols, signs and braces; what begins nothing is reported once a line and left out."""
         text = self.text
-        if symbol := _symbol(text, start):
+        if symbol := symbol_at(text, start):
             return self._add(SYMBOL, start, start + len(symbol))
         if (
             character == "-"
@@ -244,7 +243,7 @@ class Lexer:
             and "0" <= text[start + 1] <= "9"
             and not self._after_operand(start)
         ):
-            return self._number(start, start + 1)
+            return self._number(start)
         if character == "{" and (braced := _BRACED.match(text, start)):
             return self._add(BRACED, start, braced.end())
         if character in "#/" and _COMMENT_SIGN.match(text, start):
@@ -267,29 +266,12 @@ class Lexer:
             return False
         return not _has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
 
-    def _number(self, start: int, digits: int) -> int:
-        text, size = self.text, self.size
-        end = _digits_end(text, digits, size)
-        if end + 1 < size and text[end] == "." and "0" <= text[end + 1] <= "9":
-            end = _digits_end(text, end + 1, size)
-        if end < size and text[end] in "eE":
-            exponent = end + 2 if end + 1 < size and text[end + 1] in "+-" else end + 1
-            if exponent < size and "0" <= text[exponent] <= "9":
-                end = _digits_end(text, exponent, size)
-        unit = end
-        while unit < size and text[unit] in " \t":
-            unit += 1
-        if unit < size and (text[unit].isalpha() or text[unit] in "_%1°"):
-            unit_end = unit_at(text, unit)
-            glued = unit == end and (text[unit].isalpha() or text[unit] == "_")
-            if unit_end > unit and not _FOLLOWS.match(text, unit_end):
-                return self._add(QUANTITY, start, unit_end)
-            if glued:
-                return self._unknown_unit(start, unit)
-        return self._add(NUMBER, start, end)
+    def _number(self, start: int) -> int:
+        kind, end = number_at(self.text, start)
+        return self._add(kind, start, end) if kind != ERROR else self._unknown_unit(start, end)
 
     def _unknown_unit(self, start: int, unit: int) -> int:
-        end = name_end(self.text, unit, self.size)
+        end = name_end(self.text, unit)
         word = self.text[unit:end]
         number = self.text[start:unit]
         fixes = tuple(
@@ -307,14 +289,14 @@ class Lexer:
         text = self.text
         end = -1
         if start < (self._no_double if quote == '"' else self._no_single):
-            end = _string_end(text, start + 1, quote)
+            end = string_end(text, start + 1, quote)
             if end < 0:
                 if quote == '"':
                     self._no_double = start
                 else:
                     self._no_single = start
         if end < 0:
-            end = _line_end(text, start)
+            end = line_end(text, start)
             self._report(
                 "unclosed-string", start, end, f"this string has no closing {quote}",
                 ("it is read to the end of its line",),
@@ -374,12 +356,12 @@ class Lexer:
             return start
         if sign[0] == "/*":
             closing = text.find("*/", start + 2)
-            end = closing + 2 if closing >= 0 else _line_end(text, start)
+            end = closing + 2 if closing >= 0 else line_end(text, start)
             if closing < 0:
                 self._report("unclosed-comment", start, start + 2, "this comment has no closing */",
                              ("it is read to the end of its line",))  # fmt: skip
         else:
-            end = _line_end(text, start)
+            end = line_end(text, start)
         self.comments.append((start, end))
         return end
 
@@ -431,7 +413,7 @@ class Lexer:
         opened = self._brackets[-count][0]
         related: tuple[Related, ...] = ()
         if because is not None:
-            end = _line_end(self.text, because)
+            end = line_end(self.text, because)
             related = (Related(Place(Span(because, end)), "the brackets end before this line"),)
         self.problems.append(
             Diagnostic("unclosed-bracket", Span(opened, opened + 1), "this `(` has no `)`", related=related)
@@ -457,79 +439,11 @@ class Lexer:
         self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
 
 
-# ---- scanning: where the thing that begins at `start` ends ----
-
-
-def name_end(text: str, start: int, size: int) -> int:
-    """The end of the NAME that begins at `start`, which is a letter or `_`."""
-    end = start + 1
-    while end < size:
-        character = text[end]
-        if character.isalnum() or character == "_":
-            end += 1
-        elif character == "-" and end + 1 < size and (text[end + 1].isalnum() or text[end + 1] == "_"):
-            end += 2
-        else:
-            if (character == "?" or character == "!") and not (end + 1 < size and text[end + 1] == "="):
-                end += 1
-            break
-    return end
-
-
-def unit_at(text: str, start: int) -> int:
-    """The end of the UNIT that begins at `start`, or `start` where none does."""
-    factor = _FACTOR.match(text, start)
-    if factor is None:
-        return start
-    if factor[1] == "1":
-        if not text.startswith("/", factor.end()):
-            return start
-    elif factor[1] not in UNITS:
-        return start
-    end = factor.end()
-    while end < len(text) and text[end] in "*/":
-        factor = _FACTOR.match(text, end + 1)
-        if factor is None or factor[1] not in UNITS:
-            break
-        end = factor.end()
-    return start if text[start:end] == "1" else end
-
-
-def _string_end(text: str, start: int, quote: str) -> int:
-    """Behind the closing quote; -1 where there is none."""
-    end = text.find(quote, start)
-    while end >= 0:
-        backslash = text.find("\\", start, end)
-        if backslash < 0:
-            return end + 1
-        start = backslash + 2
-        if start > end:
-            end = text.find(quote, start)
-    return -1
-
-
-def _digits_end(text: str, start: int, size: int) -> int:
-    while start < size and "0" <= text[start] <= "9":
-        start += 1
-    return start
-
-
-def _line_end(text: str, start: int) -> int:
-    end = _LINE.match(text, start)
-    assert end is not None, "it matches nothing at least"
-    return end.end()
+# ---- pieces ----
 
 
 def _has_line_end(text: str, start: int, end: int) -> bool:
     return text.find("\n", start, end) >= 0 or text.find("\r", start, end) >= 0
-
-
-def _symbol(text: str, start: int) -> str:
-    """The longest symbol that begins at `start`."""
-    for symbol in _BY_FIRST.get(text[start], ()):
-        if text.startswith(symbol, start):
-            return symbol
-    return ""
 
 
 def _extends(blanks: str, outer: str, aliases: tuple[str, ...]) -> bool:
@@ -554,10 +468,6 @@ def _pieces(text: str, start: int, end: int) -> list[Token]:
 
 # ---- tables ----
 
-_BY_FIRST: Final = {
-    first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
-    for first in {symbol[0] for symbol in SYMBOLS}
-}
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _INSTEAD: Final = {
     "&": "write `and`",
@@ -571,14 +481,10 @@ _INSTEAD: Final = {
 }
 _BLANKS: Final = re.compile(r"[ \t]*")
 _PIECES: Final = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
-_LINE: Final = re.compile(r"[^\r\n]*")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
-_DIGIT: Final = re.compile(r"[0-9]")
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _WORD_WITH_SIGN: Final = re.compile(r"[^\s(),]+")
-_FACTOR: Final = re.compile(r"([^\W\d_]+|[%1])(?:\^-?\d+)?(?![\w^])")
-_FOLLOWS: Final = re.compile(r"[ \t]*(?:=(?!=)|\()")
 # The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
 _TOP_LINE: Final = re.compile(
     r"""

@@ -11,9 +11,10 @@ import gc
 from typing import Final
 
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
-from btq_lang.lexer import name_end, tokens
+from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import CATEGORIES, DIRECTIONS, NodeParser
+from btq_lang.scan import name_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -176,7 +177,7 @@ class Parser(NodeParser):
             super().no_block(level)
 
     def begins_item(self) -> bool:
-        end = name_end(self.text, self.lexer.position, len(self.text))
+        end = name_end(self.text, self.lexer.position)
         return self.text[self.lexer.position : end] in ITEM_WORDS
 
     def entry(self, item: Item, in_root: bool) -> None:

@@ -1,0 +1,134 @@
+"""Scanning: where the word, string, number or unit that begins at a place ends.
+
+One invariant: a function looks only at the text from where it starts, so all who read words agree on them.  It knows
+no lines, no brackets and no grammar, and reports nothing.
+
+What runs at every word has two forms, because no form is fast in both worlds: the interpreter wants a regular
+expression, and mypyc makes the most of a loop over characters.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
+from btq_lang.units import SYMBOLS as UNITS
+
+COMPILED: Final = not __file__.endswith(".py")
+
+
+def name_end(text: str, start: int) -> int:
+    """The end of the NAME that begins at `start`, which is a letter or `_`."""
+    size = len(text)
+    end = word_end(text, start + 1, size)
+    while end < size:
+        character = text[end]
+        if character == "-" and (further := word_end(text, end + 1, size)) > end + 1:
+            end = further
+        else:
+            if (character == "?" or character == "!") and not text.startswith("=", end + 1):
+                end += 1
+            break
+    return end
+
+
+def word_end(text: str, start: int, size: int) -> int:
+    """Behind letters, digits and `_`."""
+    if not COMPILED:
+        return _WORD(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    while start < size:
+        character = text[start]
+        if not (character.isalnum() or character == "_"):
+            break
+        start += 1
+    return start
+
+
+def blanks_end(text: str, start: int, size: int) -> int:
+    """Behind blanks and tabs."""
+    if not COMPILED:
+        return _BLANKS(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    while start < size:
+        character = text[start]
+        if character != " " and character != "\t":
+            break
+        start += 1
+    return start
+
+
+def line_end(text: str, start: int) -> int:
+    """Where the line of text ends."""
+    return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+
+
+def symbol_at(text: str, start: int) -> str:
+    """The longest symbol that begins at `start`; empty where none does."""
+    for symbol in _BY_FIRST.get(text[start], ()):
+        if text.startswith(symbol, start):
+            return symbol
+    return ""
+
+
+def string_end(text: str, start: int, quote: str) -> int:
+    """Behind the closing quote of the string whose text begins at `start`; -1 where there is none."""
+    end = text.find(quote, start)
+    while end >= 0:
+        backslash = text.find("\\", start, end)
+        if backslash < 0:
+            return end + 1
+        start = backslash + 2
+        if start > end:
+            end = text.find(quote, start)
+    return -1
+
+
+def number_at(text: str, start: int) -> tuple[int, int]:
+    """What begins at `start`, a digit or a `-` and a digit, and where it ends.
+
+    Returns:
+        NUMBER or QUANTITY and the end, or ERROR and the end of the number where a word that is no unit is glued to it.
+    """
+    size = len(text)
+    end = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
+    unit = end
+    while unit < size and (text[unit] == " " or text[unit] == "\t"):
+        unit += 1
+    if unit < size and ((character := text[unit]).isalpha() or character in "_%1°"):
+        unit_end = unit_at(text, unit)
+        if unit_end > unit and not _FOLLOWS(text, unit_end):
+            return QUANTITY, unit_end
+        if unit == end and (character.isalpha() or character == "_"):
+            return ERROR, end
+    return NUMBER, end
+
+
+def unit_at(text: str, start: int) -> int:
+    """The end of the UNIT that begins at `start`, or `start` where none does."""
+    factor = _FACTOR(text, start)
+    if factor is None:
+        return start
+    if factor[1] == "1":
+        if not text.startswith("/", factor.end()):
+            return start
+    elif factor[1] not in UNITS:
+        return start
+    end = factor.end()
+    while end < len(text) and text[end] in "*/":
+        factor = _FACTOR(text, end + 1)
+        if factor is None or factor[1] not in UNITS:
+            break
+        end = factor.end()
+    return start if text[start:end] == "1" else end
+
+
+_WORD: Final = re.compile(r"\w*").match
+_BLANKS: Final = re.compile(r"[ \t]*").match
+_LINE: Final = re.compile(r"[^\r\n]*").match
+_NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
+_FACTOR: Final = re.compile(r"([^\W\d_]+|[%1])(?:\^-?\d+)?(?![\w^])").match
+_FOLLOWS: Final = re.compile(r"[ \t]*(?:=(?!=)|\()").match
+_BY_FIRST: Final = {
+    first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
+    for first in {symbol[0] for symbol in SYMBOLS}
+}
