@@ -1,0 +1,315 @@
+"""Files: finding the project file, collecting, reading with what they include, and writing.
+
+The only module that reads or writes the user's disk.  One invariant: what cannot be read is told as a problem, never
+as an exception, and what is written is written whole or not at all.  Paths inside btq are absolute and normalised, with
+`/` between names; `shown` makes them readable.  Not known here: what the texts mean, not even how they name what they
+include.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import BinaryIO
+
+from btq_lang.globs import glob_matcher
+from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
+from btq_lang.record import record
+from btq_lang.text import LineIndex, Position
+
+SUFFIXES = (".btq", ".qualitybtcpp")
+_SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
+_BOM = "\ufeff"
+
+
+@record
+class LoadProblem:
+    """Something about a file that kept btq from doing what was asked."""
+
+    path: str
+    message: str
+    position: Position | None = None
+
+    def __str__(self) -> str:
+        """`path:line:column: message`, counted from 1, the path as `shown` writes it."""
+        place = f":{self.position.line + 1}:{self.position.column + 1}" if self.position else ""
+        return f"{shown(self.path)}{place}: {self.message}"
+
+
+@record
+class Found:
+    """The project that holds for a folder, and the file it was read from; None where there is no such file."""
+
+    project: Project
+    path: str | None
+    problems: tuple[LoadProblem, ...] = ()
+
+
+@record
+class Loaded:
+    """Files with all that they include.
+
+    Attributes:
+        texts: the text of each file that could be read: first those asked for, then the included ones.
+        given: the paths of `texts` that were asked for.
+        damaged: the paths of `texts` whose bytes are no UTF-8, so that writing the text back would lose something.
+        absent: where files that are included but were not found would be, for whoever waits for them.
+        problems: what could not be read, or not well.  An included file that exists nowhere is none: the rule
+            `missing-include` tells that at the line that includes it.
+    """
+
+    texts: dict[str, str]
+    given: tuple[str, ...]
+    damaged: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
+    problems: tuple[LoadProblem, ...] = ()
+
+
+def find_project(start: str) -> Found:
+    """The project of a file or folder: the nearest folder above with a btq.toml, or a pyproject.toml with `[tool.btq]`.
+
+    Where both stand in one folder, btq.toml is the one.
+    """
+    start = absolute(start)
+    folder = start if os.path.isdir(start) else os.path.dirname(start)
+    for root in _upwards(folder):
+        for kind in ("btq.toml", "pyproject.toml"):
+            path = absolute(os.path.join(root, kind))
+            if not os.path.isfile(path):
+                continue
+            text, problem = read(path)
+            if kind == "pyproject.toml" and not has_btq_table(text or ""):
+                continue
+            project, problems = parse_project(text or "", kind, root)
+            told = tuple(LoadProblem(path, found.message, found.position) for found in problems)
+            return Found(project, path, (problem, *told) if problem else told)
+    return Found(Project(folder), None)
+
+
+def load(
+    paths: Iterable[str],
+    project: Project,
+    includes_of: Callable[[str, str], Iterable[str]],
+    known: Mapping[str, str] | None = None,
+) -> Loaded:
+    """Read files and folders, and what the files include, and what that includes.
+
+    Args:
+        paths: what `collect` takes.
+        includes_of: the include strings of a file, from its path and its text.
+        known: texts that come from elsewhere (standard input), by path: asked for, and not read from the disk.
+    """
+    given, unreachable = collect(paths, project)
+    problems = list(unreachable)
+    texts: dict[str, str] = {}
+    damaged: list[str] = []
+    absent: dict[str, None] = {}
+
+    def add(path: str) -> bool:
+        text, problem = read(path)
+        problems.extend([problem] if problem else [])
+        if text is not None:
+            texts[path] = text
+            damaged.extend([path] if problem else [])
+        return text is not None
+
+    texts.update(known or {})
+    readable = (*texts, *(path for path in given if path not in texts and add(path)))
+    waiting = list(readable)
+    for path in waiting:
+        for include in includes_of(path, texts[path]):
+            candidates = include_candidates(project, path, include)
+            target = next((candidate for candidate in candidates if candidate in texts or _is_file(candidate)), None)
+            if target is None:
+                absent.update(dict.fromkeys(candidates))
+            elif target not in texts and add(target):
+                waiting.append(target)
+    return Loaded(texts, readable, tuple(damaged), tuple(absent), tuple(problems))
+
+
+def collect(paths: Iterable[str], project: Project) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
+    """The files that paths stand for, each once: a file is itself, a folder is all btq files below it, sorted.
+
+    Left out below a folder: hidden files and folders, `build`, `node_modules`, and what the project excludes.  Links to
+    folders are followed, but no folder is entered twice.
+    """
+    files: dict[str, None] = {}
+    problems: list[LoadProblem] = []
+    for path in map(absolute, paths):
+        if os.path.isdir(path):
+            files.update(dict.fromkeys(sorted(_files_below(path, project, problems))))
+        else:
+            files[path] = None
+    return tuple(files), tuple(problems)
+
+
+def read(path: str) -> tuple[str | None, LoadProblem | None]:
+    """The text of a file without its byte order mark, and what is wrong with it.
+
+    Bytes that are no UTF-8 become U+FFFD, and the problem says where the first one is; without a text there is always a
+    problem.  Line ends stay as they are.
+    """
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        return None, LoadProblem(path, f"cannot be read: {_reason(error)}")
+    problem = None
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode("utf-8").removeprefix(_BOM)
+        found = f"this is no UTF-8: byte 0x{data[error.start]:02x}"
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            found = "this is UTF-16, not UTF-8"
+        problem = LoadProblem(path, found, LineIndex(before).position(len(before)))
+        text = data.decode("utf-8", "replace")
+    return text.removeprefix(_BOM), problem
+
+
+def write_whole(path: str, text: str) -> None:
+    """Put a text into a file so that at every moment the file is the old one or the new one, whole.
+
+    The new text goes into a temporary file beside it, which then takes the name (POSIX rename; MoveFileEx on Windows).
+    A file that exists keeps its mode and its byte order mark, and a link stays a link.
+
+    Raises:
+        OSError: the file or its folder cannot be written; the file is then as it was.
+        UnicodeEncodeError: the text holds a lone surrogate; likewise.
+    """
+    path = os.path.realpath(path)
+    folder = os.path.dirname(path)
+    data = text.encode("utf-8")
+    mode = None
+    if os.path.exists(path):
+        if not os.access(path, os.W_OK):  # a rename would not ask
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+        mode = stat.S_IMODE(os.stat(path).st_mode)
+        with open(path, "rb") as old:
+            bom = _bom_of(old)
+            data = bom + data.removeprefix(bom)
+    file = _temporary(folder)
+    try:
+        with file:
+            if mode is not None:
+                os.chmod(file.name, mode)
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(file.name, path)
+    except BaseException:
+        os.unlink(file.name)
+        raise
+    _sync(folder)
+
+
+def stamp(path: str) -> tuple[int, int] | None:
+    """What changes when a file does: its modification time and its size; None where there is no file."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_mtime_ns, status.st_size
+
+
+def absolute(path: str) -> str:
+    """The one spelling of a path that btq uses inside; links stay as they are."""
+    return os.path.abspath(path).replace(os.sep, "/")
+
+
+def shown(path: str) -> str:
+    """An absolute path as people read it: relative to the current folder where it is inside it."""
+    here = absolute(".").rstrip("/") + "/"
+    return path.removeprefix(here)
+
+
+def _upwards(folder: str) -> Iterator[str]:
+    while True:
+        yield folder
+        above = os.path.dirname(folder)
+        if above == folder:
+            return
+        folder = above
+
+
+def _files_below(top: str, project: Project, problems: list[LoadProblem]) -> Iterator[str]:
+    excluded = excluder(project)
+    folders = [top]
+    links: list[str] = []
+    seen: set[tuple[int, int]] = set()
+    while folders or links:
+        # Links come last: a folder is then met under its own name first.
+        folder = folders.pop() if folders else links.pop(0)
+        try:
+            status = os.stat(folder)
+            entries = [] if (status.st_dev, status.st_ino) in seen else list(os.scandir(folder))
+        except OSError as error:
+            problems.append(LoadProblem(folder, f"cannot be read: {_reason(error)}"))
+            continue
+        seen.add((status.st_dev, status.st_ino))
+        for entry in sorted(entries, key=lambda entry: entry.name):
+            path = f"{folder.rstrip('/')}/{entry.name}"
+            if entry.name.startswith("."):
+                continue
+            if _is_folder(entry):
+                if entry.name not in _SKIPPED_FOLDERS and not excluded(path + "/"):
+                    (links if entry.is_symlink() else folders).append(path)
+            elif entry.name.endswith(SUFFIXES) and _is_file(path) and not excluded(path):
+                yield path
+
+
+def excluder(project: Project) -> Callable[[str], bool]:
+    """Whether the project leaves a path out when a folder is collected; a folder's path ends with `/`."""
+    matcher = glob_matcher(project.exclude)
+    root = absolute(project.root).rstrip("/") + "/"
+    return lambda path: matcher is not None and matcher.fullmatch(path.removeprefix(root)) is not None
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link to itself
+        return False
+
+
+def _is_file(path: str) -> bool:
+    """Not for pipes and devices: reading one that a file includes could wait for ever."""
+    try:
+        return os.path.isfile(path)
+    except ValueError:  # a NUL in the path
+        return False
+
+
+def _reason(error: Exception) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def _bom_of(file: BinaryIO) -> bytes:
+    bom = _BOM.encode()
+    return bom if file.read(len(bom)) == bom else b""
+
+
+def _temporary(folder: str) -> BinaryIO:
+    """A new file in a folder; `tempfile` would cost more to import than all the rest of a small run."""
+    number = 0
+    while True:
+        try:
+            return open(os.path.join(folder, f".btq-{os.getpid()}-{number}.tmp"), "xb")
+        except FileExistsError:  # another thread's, or left by a process that was killed
+            number += 1
+
+
+def _sync(folder: str) -> None:
+    """Make a rename last through a power cut, where the system lets a folder be synchronised."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError:  # Windows opens no folders
+        return
+    try:
+        os.fsync(descriptor)
+    except OSError:  # the file is in place all the same
+        pass
+    finally:
+        os.close(descriptor)

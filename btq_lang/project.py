@@ -1,0 +1,253 @@
+"""The project file: `btq.toml`, or the table `[tool.btq]` of a pyproject.toml.
+
+    engine = "4.10"                   # or a list; without it files must hold for every known version
+    qualities = "iso25010-2023"       # or "iso25010-2011"
+    include-paths = ["missions"]      # where includes are looked for, after the including file's own folder
+    exclude = ["generated/"]          # what a folder's check leaves out: see globs.py
+    select = ["unknown-node"]         # only these rules
+    ignore = ["unused-tree"]          # all but these
+
+    [rules]
+    missing-port = "warning"          # error, warning, info, hint, off
+
+One invariant: every text gives a project and never an exception; what is wrong in it is left out and told.  Not known
+here: the disk, and where the file was found.
+"""
+
+from __future__ import annotations
+
+import os.path
+import re
+from collections.abc import Iterable, Iterator
+from typing import Any, Literal, NamedTuple
+
+from btq_lang.catalog.kinds import VERSIONS, at_least
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.near import near
+from btq_lang.record import record, replace
+from btq_lang.rules import RULES, Severity
+from btq_lang.text import LineIndex, Position
+
+QUALITIES = ("iso25010-2023", "iso25010-2011")
+
+Kind = Literal["btq.toml", "pyproject.toml"]
+
+
+@record
+class Project:
+    """What holds for all files of a project.
+
+    Attributes:
+        root: the folder of the project file.
+        include_paths: folders, with `root` before them where they were relative.
+        engines: the versions of BehaviorTree.CPP that a file must hold for, oldest first.
+        qualities: the edition of the quality model where a file names none.
+        severities: the rules set in `[rules]`; None is off.
+        select: the only rules to apply; empty for all.
+        ignore: rules not to apply.
+        exclude: patterns of what a folder's check leaves out.
+    """
+
+    root: str = "."
+    include_paths: tuple[str, ...] = ()
+    engines: tuple[str, ...] = VERSIONS
+    qualities: str = QUALITIES[0]
+    severities: tuple[tuple[str, Severity | None], ...] = ()
+    select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    exclude: tuple[str, ...] = ()
+
+    @property
+    def pinned(self) -> bool:
+        """Whether the project says which versions it is for."""
+        return self.engines != VERSIONS
+
+    @property
+    def target(self) -> str:
+        """The version that files are written for: the newest they must hold for."""
+        return self.engines[-1]
+
+
+@record
+class ProjectProblem:
+    """Something in a project file that was left out, and where it stands if it could be found."""
+
+    message: str
+    position: Position | None = None
+
+
+def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[Project, tuple[ProjectProblem, ...]]:
+    """The project that a file describes, and what is wrong with the file.
+
+    Args:
+        kind: which of the two files it is; of a pyproject.toml only `[tool.btq]` is looked at.
+        root: the folder of the file, before which relative include paths count.
+    """
+    try:
+        table: object = _toml(text)
+    except (ValueError, RecursionError) as error:  # not only TOMLDecodeError: int() refuses 5,000 digits
+        return Project(root), (_syntax_problem(text, error),)
+    above: tuple[str, ...] = ()
+    for key in ("tool", "btq") if kind == "pyproject.toml" else ():
+        above = (*above, key)
+        table = table.get(key, {}) if isinstance(table, dict) else table
+    if not isinstance(table, dict):
+        return Project(root), (ProjectProblem(f"`{'.'.join(above)}` must be a table", _find(text, above)),)
+
+    fields: dict[str, Any] = {"root": root}
+    problems: list[ProjectProblem] = []
+    for key, value in table.items():
+        if key in _KEYS:
+            field, read = _KEYS[key]
+            fields[field], complaints = read(key, value)
+        else:
+            complaints = [_Complaint(f"unknown key `{key}`{_meant(key, _KEYS)}")]
+        for complaint in complaints:
+            at = _find(text, (*above, key, *complaint.below), complaint.value)
+            problems.append(ProjectProblem(complaint.message, at))
+    given = {field: value for field, value in fields.items() if value is not None}
+    if "include_paths" in given:
+        given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
+    return Project(**given), tuple(problems)
+
+
+def has_btq_table(text: str) -> bool:
+    """Whether a pyproject.toml has a table `[tool.btq]`, or one below it; seen without reading it as TOML."""
+    return re.search(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""", text) is not None
+
+
+def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics that a project wants, with the severities it gives them."""
+    severities = dict(project.severities)
+    for diagnostic in diagnostics:
+        rule = diagnostic.rule
+        if rule in project.ignore or (project.select and rule not in project.select):
+            continue
+        if rule not in severities:
+            yield diagnostic
+        elif severity := severities[rule]:
+            yield replace(diagnostic, severity=severity)
+
+
+def unknown_rule(name: str) -> str | None:
+    """What to say of a name that is no rule's; None for a rule."""
+    return None if name in RULES else f"unknown rule `{name}`{_meant(name, RULES)}"
+
+
+def include_candidates(project: Project, path: str, include: str) -> tuple[str, ...]:
+    """Where an included file may be, best first: beside the file at `path`, then in the include paths."""
+    folders = (os.path.dirname(path), *project.include_paths)
+    return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
+
+
+class _Complaint(NamedTuple):
+    """What is wrong with the value of a key: with the entry `below` it, or with the string `value` in it."""
+
+    message: str
+    below: tuple[str, ...] = ()
+    value: str | None = None
+
+
+_Read = tuple[Any, list[_Complaint]]  # None keeps the field as it is without the key
+
+
+def _engines(key: str, value: object) -> _Read:
+    wanted, complaints = _strings(key, [value] if isinstance(value, str) else value)
+    if complaints:
+        trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
+        return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
+    known = tuple(filter(_is_engine, wanted))
+    complaints = [
+        _Complaint(f"unknown engine version `{version}`: {VERSIONS[0]} to {VERSIONS[-1]} are known", value=version)
+        for version in wanted
+        if version not in known
+    ]
+    return tuple(sorted(set(known), key=lambda version: int(version[2:]))) or None, complaints
+
+
+def _is_engine(version: str) -> bool:
+    """A release line such as 4.9, also one between those that the catalog was held against."""
+    known = re.fullmatch(r"4\.(0|[1-9][0-9]?)", version) is not None
+    return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
+
+
+def _qualities(key: str, value: object) -> _Read:
+    if value in QUALITIES:
+        return value, []
+    return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, QUALITIES))}")]
+
+
+def _strings(key: str, value: object) -> _Read:
+    if isinstance(value, list) and all(isinstance(item, str) for item in value):
+        return tuple(value), []
+    return None, [_Complaint(f"`{key}` must be a list of strings")]
+
+
+def _rule_names(key: str, value: object) -> _Read:
+    names, complaints = _strings(key, value)
+    unknown = [_Complaint(message, value=name) for name in names or () if (message := unknown_rule(name))]
+    return None if names is None else tuple(name for name in names if name in RULES), complaints + unknown
+
+
+def _severities(key: str, value: object) -> _Read:
+    if not isinstance(value, dict):
+        return None, [_Complaint(f"`{key}` must be a table of rules and severities")]
+    severities: list[tuple[str, Severity | None]] = []
+    complaints: list[_Complaint] = []
+    for name, word in value.items():
+        if message := unknown_rule(name):
+            complaints.append(_Complaint(message, (name,)))
+        elif not isinstance(word, str) or word not in _SEVERITIES:
+            words = ", ".join(map(_quoted, _SEVERITIES))
+            complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}", (name,)))
+        else:
+            severities.append((name, _SEVERITIES[word]))
+    return tuple(severities), complaints
+
+
+_SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
+_KEYS = {
+    "engine": ("engines", _engines),
+    "qualities": ("qualities", _qualities),
+    "include-paths": ("include_paths", _strings),
+    "exclude": ("exclude", _strings),
+    "select": ("select", _rule_names),
+    "ignore": ("ignore", _rule_names),
+    "rules": ("severities", _severities),
+}
+
+
+def _toml(text: str) -> object:
+    # Only where there is a project file, for it costs more than to check a small file.
+    import sys
+    from importlib import import_module
+
+    return import_module("tomllib" if sys.version_info >= (3, 11) else "tomli").loads(text)
+
+
+def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
+    if isinstance(error, RecursionError):
+        return ProjectProblem("nested too deep")
+    # The reader's messages say the place in words, from 1; only Python 3.14's errors have it as numbers too.
+    message, _, place = str(error).partition(" (at ")
+    if numbers := re.findall(r"\d+", place):
+        return ProjectProblem(message, Position(int(numbers[0]) - 1, int(numbers[1]) - 1))
+    return ProjectProblem(message, LineIndex(text).position(len(text)) if place else None)
+
+
+def _meant(name: str, names: Iterable[str]) -> str:
+    return "".join(f": did you mean `{other}`?" for other in near(name, names, 1))
+
+
+def _quoted(word: str) -> str:
+    return f'"{word}"'
+
+
+def _joined(folder: str, path: str) -> str:
+    return os.path.normpath(os.path.join(folder, path)).replace(os.sep, "/")
+
+
+def _find(text: str, keys: tuple[str, ...], value: str | None = None) -> Position | None:
+    from btq_lang.toml_places import find_key  # only for a mistake
+
+    return find_key(text, keys, value)

@@ -1,0 +1,102 @@
+"""Diagnostics as text: for people at a terminal, for programs, for code hosts and for CI servers.
+
+One invariant: a renderer answers for every report, whatever characters its texts and messages hold and wherever its
+spans point; what it prints is safe for a terminal and well formed for a program.  Lines and columns count from 1,
+columns in code points.  Not known here: which findings to show, where the output goes and what the exit code is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.record import record, replace
+
+FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
+
+
+@record
+class Finding:
+    """A diagnostic on its way out: its spans count from the start of `text`, its places have no anchors."""
+
+    path: str
+    text: str
+    diagnostic: Diagnostic
+
+
+@record
+class Report:
+    """What one run found.
+
+    Attributes:
+        findings: in the order in which they are to appear.
+        texts: the other files that related places and fixes may name; a file that is missing here is shown by its name.
+        checked: the files that were asked for, those without findings too.
+    """
+
+    findings: tuple[Finding, ...]
+    texts: Mapping[str, str]
+    checked: tuple[str, ...] = ()
+
+
+def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
+    """The report in one of FORMATS: pieces that make the whole output when joined, the last one ending with a newline.
+
+    Args:
+        colour: ANSI colours, for `full` and `concise`; the others have none.
+        width: the columns of the terminal, for `full`; longer source lines are cut around what they show.
+
+    Raises:
+        ValueError: there is no such format.
+    """
+    # A run imports the one renderer that it uses: `json` alone would cost more than the whole of `full`.
+    if form == "full":
+        from btq_lang.render import full
+
+        return full.render(report, colour=colour, width=width)
+    if form == "concise":
+        from btq_lang.render import concise
+
+        return concise.render(report, colour=colour)
+    if form == "json":
+        from btq_lang.render import json_format
+
+        return json_format.render(report)
+    if form == "sarif":
+        from btq_lang.render import sarif
+
+        return sarif.render(report)
+    if form == "github":
+        from btq_lang.render import github
+
+        return github.render(report)
+    if form == "junit":
+        from btq_lang.render import junit
+
+        return junit.render(report)
+    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")
+
+
+def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
+    """The same report with every path as `shown` writes it, for people read relative paths."""
+
+    def place(old: Place) -> Place:
+        return old if old.path is None else replace(old, path=shown(old.path))
+
+    def diagnostic(old: Diagnostic) -> Diagnostic:
+        if not old.related and not old.fixes:
+            return old
+        return replace(
+            old,
+            related=tuple(Related(place(related.place), related.message) for related in old.related),
+            fixes=tuple(
+                Fix(fix.title, tuple(Change(place(change.place), change.text) for change in fix.changes), fix.safe)
+                for fix in old.fixes
+            ),
+        )
+
+    return Report(
+        tuple(Finding(shown(old.path), old.text, diagnostic(old.diagnostic)) for old in report.findings),
+        {shown(path): text for path, text in report.texts.items()},
+        tuple(map(shown, report.checked)),
+    )

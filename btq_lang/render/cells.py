@@ -1,0 +1,81 @@
+"""What characters look like on a terminal: which are safe to print, and how many cells each takes.
+
+Invariant: what comes out holds no control character of what went in: no escape sequence, no line end, no reordering of
+the text (Trojan Source, CVE-2021-42574).  Cells are counted a code point at a time, by Unicode's East Asian Width;
+emoji joined by U+200D count as their parts, for terminals do not agree on them.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+from functools import lru_cache
+
+TAB = 4
+
+_BIDI = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+_REPLACEMENT = "\ufffd"
+
+
+def printable(text: str) -> str:
+    """The text with a visible sign (`␛`, `�`) for each character that a terminal would obey or could not encode."""
+    return text if text.isprintable() else "".join(map(_sign, text))
+
+
+def cut(line: str, left: int, room: int) -> str:
+    """The cells from `left` on, at most `room` of them, with `…` beside them where something was cut off.
+
+    A sign for the cut on the left takes a cell of its own, before the cell `left`.
+    """
+    pieces, columns = laid_out(line)
+    if not left and columns[-1] <= room:
+        return "".join(pieces)
+    first = bisect_left(columns, left)
+    if first >= len(columns):
+        return "…"
+    last = max(first, bisect_right(columns, left + room) - 1)
+    blanks = " " * (columns[first] - left)  # half of a wide character, or of a tab, was cut off
+    return ("…" if left else "") + blanks + "".join(pieces[first:last]) + ("…" if last < len(pieces) else "")
+
+
+@lru_cache(maxsize=16)  # a frame asks for a line several times, and hostile files have everything on one long line
+def laid_out(line: str) -> tuple[Sequence[str], Sequence[int]]:
+    """What each character of a line prints, and the cell it begins in; a last cell is where the line ends."""
+    if line.isascii() and line.isprintable():
+        return line, range(len(line) + 1)
+    pieces: list[str] = []
+    columns = [0]
+    for character in line:
+        width = TAB - columns[-1] % TAB if character == "\t" else _width(character)
+        pieces.append(" " * width if character == "\t" else _sign(character))
+        columns.append(columns[-1] + width)
+    return pieces, columns
+
+
+def _sign(character: str) -> str:
+    if character.isprintable():
+        return character
+    if character < " ":
+        return chr(0x2400 + ord(character))
+    if character == "\x7f":
+        return "␡"
+    from unicodedata import category
+
+    kind = category(character)
+    # A C1 control, a lone surrogate, a line or paragraph separator, a noncharacter that XML refuses.
+    if kind in ("Cc", "Cs", "Zl", "Zp") or character in _BIDI or character in "\ufffe\uffff":
+        return _REPLACEMENT
+    return character
+
+
+def _width(character: str) -> int:
+    if character.isascii():
+        return 1
+    from unicodedata import category, east_asian_width
+
+    if east_asian_width(character) in "WF":
+        return 2
+    if _sign(character) == _REPLACEMENT or character == "\xad":
+        return 1  # a soft hyphen is a format character, yet terminals print it
+    # The vowels and finals of Hangul join the syllable before them.
+    return 0 if category(character) in ("Mn", "Me", "Cf") or "\u1160" <= character <= "\u11ff" else 1

@@ -1,0 +1,22 @@
+"""`concise`: one line a finding, `path:line:column: severity[rule] message`, as editors and grep read it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.render import Report
+from btq_lang.render.cells import printable
+from btq_lang.render.colour import painter
+from btq_lang.render.location import location
+from btq_lang.render.summary import summary
+
+
+def render(report: Report, *, colour: bool = False) -> Iterator[str]:
+    """A line for each finding, then the summary."""
+    paint = painter(colour)
+    for finding in report.findings:
+        at = location(report, finding)
+        severity = finding.diagnostic.effective_severity.value
+        rule = paint(severity, f"{severity}[{finding.diagnostic.rule}]")
+        yield f"{printable(at.path)}:{at.line}:{at.column}: {rule} {printable(finding.diagnostic.message)}\n"
+    yield summary(report) + "\n"

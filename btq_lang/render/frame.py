@@ -1,0 +1,119 @@
+"""A frame: the lines of a file around a span, with the span marked.
+
+Rows say what stands left and right of the gutter; numbers are aligned by whoever joins the frames of one diagnostic.
+Invariant: a mark stands below what it marks, whatever tabs and wide characters come before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btq_lang.record import record
+from btq_lang.render.cells import cut, laid_out
+from btq_lang.render.location import clamped, line_index
+from btq_lang.text import LineIndex, Position, Span
+
+_CONTEXT = 1  # lines shown above and below: above stands the parent or the opener
+_HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its end
+_MARGIN = "  "  # where the line along a span over several lines is drawn
+
+
+@record
+class Row:
+    """One line of a block: number, bar and body of `12 | body`.
+
+    Attributes:
+        bar: `|`; `-`, `+` in a diff; `=`, or a blank, before a remark; `-->`, `:::` before a path; `note:` before a
+            message that begins a part of the block.
+    """
+
+    number: int | None
+    body: str
+    bar: str = "|"
+
+
+def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str], str]) -> list[Row]:
+    """The rows that show a span.
+
+    Args:
+        mark: what stands below each cell of the span: `^` for the finding, `-` for what is related to it.
+        room: how many cells of a line may be shown.
+        paint: what colours the marks.
+    """
+    lines = line_index(text)
+    span = clamped(span, text)
+    start, end = lines.position(span.start), lines.position(span.end)
+    if span.end > span.start and end.column == 0:  # it ends with a line end: that belongs to the line before
+        end = Position(end.line - 1, len(lines.line(end.line - 1)) + 1)
+    several = end.line > start.line
+    margin = _MARGIN if several else ""
+    view = _view(lines, start, 1 if several else end.column - start.column, room - len(margin))
+    marked = _several(view, start, end, mark, paint) if several else _single(view, start, end, mark, paint)
+    above = range(max(0, start.line - _CONTEXT), start.line)
+    below = range(end.line + 1, min(end.line + 1 + _CONTEXT, lines.line_count))
+    return [*_context(view, above, margin), *marked, *_context(view, below, margin)]
+
+
+@record
+class _View:
+    """The part of the lines that is shown: `room` cells from `left` on, the same for all lines of a frame."""
+
+    lines: LineIndex
+    left: int
+    room: int
+
+    def line(self, number: int) -> str:
+        return cut(self.lines.line(number), self.left, self.room)
+
+    def cell(self, at: Position) -> int:
+        """The shown cell where a position is, one to the right of the sign for a cut on the left."""
+        return _cell(self.lines.line(at.line), at.column) - self.left + (1 if self.left else 0)
+
+
+def _view(lines: LineIndex, start: Position, columns: int, room: int) -> _View:
+    """What to show so that the span, or its beginning, stands in the middle of a line that is too long."""
+    line = lines.line(start.line)
+    first, last = _cell(line, start.column), _cell(line, start.column + columns)
+    total = max(_cell(line, len(line)), last)
+    if total <= room:
+        return _View(lines, 0, room)
+    return _View(lines, max(0, min(first - (room - min(last - first, room)) // 2, total - room)), room)
+
+
+def _single(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
+    first, last = view.cell(start), view.cell(end)
+    if first == last and first > 0 and start < end:
+        first -= 1  # a combining character is drawn in the cell before
+    marks = mark * max(1, min(last, view.room + 1) - first)
+    return [Row(start.line + 1, view.line(start.line)), Row(None, " " * first + paint(marks))]
+
+
+def _several(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
+    """A span over lines, as rustc draws it: `/` or `____^` where it begins, `|____^` where it ends."""
+    if view.lines.line(start.line)[: start.column].strip():
+        rows = [
+            Row(start.line + 1, _MARGIN + view.line(start.line)),
+            Row(None, " " + paint("_" * (1 + view.cell(start)) + mark)),
+        ]
+    else:
+        rows = [Row(start.line + 1, f"{paint('/')} {view.line(start.line)}")]
+    skipped = range(start.line + _HEAD, end.line - _TAIL + 1)
+    if len(skipped) < 2:
+        skipped = range(0)
+    for number in range(start.line + 1, end.line + 1):
+        if number not in skipped:
+            rows.append(Row(number + 1, f"{paint('|')} {view.line(number)}"))
+        elif number == skipped.start:
+            rows.append(Row(None, f"{paint('|')} ..."))
+    last = view.cell(Position(end.line, end.column - 1))
+    return [*rows, Row(None, paint("|" + "_" * (1 + max(0, min(last, view.room))) + mark))]
+
+
+def _context(view: _View, numbers: range, margin: str) -> list[Row]:
+    return [Row(number + 1, margin + view.line(number)) for number in numbers if view.lines.line(number).strip()]
+
+
+def _cell(line: str, column: int) -> int:
+    """The cell where a column begins; a line end is thought of as one cell wide."""
+    columns = laid_out(line)[1]
+    return columns[min(column, len(line))] + max(0, column - len(line))

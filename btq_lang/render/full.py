@@ -1,0 +1,102 @@
+"""`full`: findings with the lines they are about, as rustc and ruff print theirs.
+
+    error[unknown-node]: no node `Rety` is known
+      --> lab.btq:3:9
+       |
+     3 |         Rety (num_attempts = 6)
+       |         ^^^^
+       |
+       = help: replace `Rety` by `Retry` (--fix)
+
+Invariant: one finding is one block, its gutter as wide as its largest line number, with a blank line after it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.diagnostics import Place
+from btq_lang.render import Finding, Report
+from btq_lang.render.cells import printable
+from btq_lang.render.colour import Paint, painter
+from btq_lang.render.fix_diff import fix_diff
+from btq_lang.render.frame import Row, frame
+from btq_lang.render.location import line_index, location, text_of
+from btq_lang.render.summary import summary
+
+_LEAST_ROOM = 20  # a terminal narrower than this is not worth cutting for
+
+
+def render(report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
+    """Every finding as a block, then the summary."""
+    paint = painter(colour)
+    for finding in report.findings:
+        rows = list(_rows(report, finding, width, paint))
+        gutter = max(len(str(row.number or "")) for row in rows)
+        yield _header(finding, paint)
+        for row in rows:
+            yield _line(row, gutter, paint)
+        yield "\n"
+    yield summary(report) + "\n"
+
+
+def _header(finding: Finding, paint: Paint) -> str:
+    severity = finding.diagnostic.effective_severity.value
+    title = paint(severity, f"{severity}[{finding.diagnostic.rule}]")
+    return title + paint("message", f": {printable(finding.diagnostic.message)}") + "\n"
+
+
+def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterator[Row]:
+    diagnostic = finding.diagnostic
+    # What stands left of a line: its number, and ` | `; and a sign on either side of it where it is cut.
+    room = max(_LEAST_ROOM, width - len(str(line_index(finding.text).line_count)) - 5)
+    severity = diagnostic.effective_severity.value
+    yield from _place(report, finding, None, "^", severity, room, paint)
+    if diagnostic.notes or diagnostic.related or diagnostic.fixes:
+        yield Row(None, "")
+    for note in diagnostic.notes:
+        yield from _remark("note", note)
+    for related in diagnostic.related:
+        yield Row(None, printable(related.message), "note:")
+        yield from _place(report, finding, related.place, "-", "gutter", room, paint)
+    if diagnostic.related and diagnostic.fixes:
+        yield Row(None, "")
+    for fix in diagnostic.fixes:
+        yield from _remark("help", fix.title + (" (--fix)" if fix.safe else ""))
+        yield from fix_diff(report, finding, fix, room)
+
+
+def _place(
+    report: Report, finding: Finding, place: Place | None, mark: str, style: str, room: int, paint: Paint
+) -> Iterator[Row]:
+    at = location(report, finding, place)
+    text = text_of(report, finding, at.path)
+    if text is None:
+        yield Row(None, printable(at.path), "-->")
+        return
+    yield Row(None, f"{printable(at.path)}:{at.line}:{at.column}", "-->")
+    yield Row(None, "")
+    span = finding.diagnostic.span if place is None else place.span
+    yield from frame(text, span, mark=mark, room=room, paint=lambda marks: paint(style, marks))
+
+
+def _remark(kind: str, text: str) -> Iterator[Row]:
+    """A note or a help; its further lines stand below its first."""
+    first, *others = text.split("\n")
+    yield Row(None, f"{kind}: {printable(first)}", "=")
+    for line in others:
+        yield Row(None, " " * (len(kind) + 2) + printable(line), " ")
+
+
+def _line(row: Row, gutter: int, paint: Paint) -> str:
+    """A row as it is printed; `note:` begins a part of its own at the left edge, `-->` points out of the gutter."""
+    if row.bar == "note:":
+        return paint("message", "note") + f": {row.body}\n"
+    if row.bar in ("-->", ":::"):
+        return f"{' ' * gutter}{paint('gutter', row.bar)} {row.body}\n"
+    number = str(row.number or "")
+    if row.bar in "-+":
+        changed = paint(row.bar, f"{row.bar} {row.body}".rstrip())
+        return f"{paint('gutter', number.rjust(gutter))} {changed}\n"
+    left = paint("gutter", f"{number.rjust(gutter)} {row.bar}")
+    return f"{left} {row.body}".rstrip() + "\n"

@@ -1,0 +1,53 @@
+"""`github`: workflow commands, which GitHub Actions shows as annotations on the changed lines.
+
+    ::error file=lab.btq,line=3,endLine=3,col=9,endColumn=13,title=unknown-node::lab.btq:3:9: no node `Rety` is known
+
+The escapes are those of actions/toolkit (packages/core/src/command.ts), but for `%0D`: no carriage return gets that
+far.  The log shows the message alone, so the place stands in it once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.render import Finding, Report
+from btq_lang.render.cells import printable
+from btq_lang.render.location import location
+from btq_lang.rules import Severity
+
+_COMMANDS = {
+    Severity.ERROR: "error",
+    Severity.WARNING: "warning",
+    Severity.INFO: "notice",
+    Severity.HINT: "notice",
+}
+
+
+def render(report: Report) -> Iterator[str]:
+    """A line for each finding."""
+    return (_command(report, finding) for finding in report.findings)
+
+
+def _command(report: Report, finding: Finding) -> str:
+    diagnostic = finding.diagnostic
+    at = location(report, finding)
+    properties = {"file": printable(at.path), "line": at.line, "endLine": at.end_line}
+    if at.line == at.end_line:  # GitHub refuses columns for annotations over several lines
+        properties |= {"col": at.column, "endColumn": at.end_column}
+    properties["title"] = diagnostic.rule
+    lines = [
+        f"{at.path}:{at.line}:{at.column}: {diagnostic.message}",
+        *(f"note: {note}" for note in diagnostic.notes),
+        *(f"help: {fix.title}" for fix in diagnostic.fixes),
+    ]
+    written = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    return f"::{_COMMANDS[diagnostic.effective_severity]} {written}::{_data(lines)}\n"
+
+
+def _data(lines: list[str]) -> str:
+    shown = "\n".join(printable(line) for text in lines for line in text.split("\n"))
+    return shown.replace("%", "%25").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data([text]).replace(":", "%3A").replace(",", "%2C")

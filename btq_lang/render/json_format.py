@@ -1,0 +1,78 @@
+"""`json`: everything a report holds, for programs.
+
+The document, format 1; a later btq adds keys but changes none without a new number:
+
+    {"format": 1, "tool": "btq", "version": VERSION,
+     "diagnostics": [{"rule": NAME, "severity": "error" | "warning" | "info" | "hint", "message": TEXT,
+                      "path": PATH, "range": RANGE, "related": [{"message": TEXT, "path": PATH, "range": RANGE}],
+                      "notes": [TEXT], "tags": ["unnecessary" | "deprecated"],
+                      "fixes": [{"title": TEXT, "safe": BOOL,
+                                 "edits": [{"path": PATH, "range": RANGE, "text": TEXT}]}]}],
+     "summary": {"error": N, "warning": N, "info": N, "hint": N, "fixable": N, "files": N}}
+
+    RANGE = {"start": {"line": N, "column": N}, "end": {"line": N, "column": N}}
+
+Lines and columns count from 1, columns in Unicode code points, and the end is exclusive.  A fix is `safe` where `btq
+check --fix` applies it.  The text is ASCII, so that every terminal and locale carries it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+from btq_lang import __version__
+from btq_lang.diagnostics import Place
+from btq_lang.render import Finding, Report
+from btq_lang.render.location import location
+from btq_lang.render.summary import count, is_fixable
+
+
+def render(report: Report) -> Iterator[str]:
+    """The document, in one piece."""
+    document = {
+        "format": 1,
+        "tool": "btq",
+        "version": __version__,
+        "diagnostics": [_diagnostic(report, finding) for finding in report.findings],
+        "summary": {
+            **{severity.value: number for severity, number in count(report.findings).items()},
+            "fixable": sum(map(is_fixable, report.findings)),
+            "files": len(report.checked),
+        },
+    }
+    yield json.dumps(document, indent=2) + "\n"
+
+
+def _diagnostic(report: Report, finding: Finding) -> dict[str, object]:
+    diagnostic = finding.diagnostic
+    return {
+        "rule": diagnostic.rule,
+        "severity": diagnostic.effective_severity.value,
+        "message": diagnostic.message,
+        **_range(report, finding),
+        "related": [
+            {"message": related.message, **_range(report, finding, related.place)} for related in diagnostic.related
+        ],
+        "notes": list(diagnostic.notes),
+        "tags": [tag.name.lower() for tag in diagnostic.tags],
+        "fixes": [
+            {
+                "title": fix.title,
+                "safe": fix.safe,
+                "edits": [{**_range(report, finding, change.place), "text": change.text} for change in fix.changes],
+            }
+            for fix in diagnostic.fixes
+        ],
+    }
+
+
+def _range(report: Report, finding: Finding, place: Place | None = None) -> dict[str, object]:
+    at = location(report, finding, place)
+    return {
+        "path": at.path,
+        "range": {
+            "start": {"line": at.line, "column": at.column},
+            "end": {"line": at.end_line, "column": at.end_column},
+        },
+    }

@@ -1,0 +1,71 @@
+"""`junit`: the XML that CI servers read as test results: a test case for each file that was checked.
+
+Errors and warnings of a file make its one `<failure>`, a line each, for GitLab and Jenkins read no second one; what is
+milder stands in its `<system-out>`.  Invariant: the XML is well formed for every text.  Format: the JUnit schema of
+Jenkins' xUnit plugin (junit-10.xsd).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.render import Finding, Report
+from btq_lang.render.cells import printable
+from btq_lang.render.location import location
+from btq_lang.render.summary import counted
+from btq_lang.rules import Severity
+
+_FAILURES = (Severity.ERROR, Severity.WARNING)
+
+
+def render(report: Report) -> Iterator[str]:
+    """The document, line by line."""
+    cases: dict[str, list[Finding]] = {path: [] for path in report.checked}
+    for finding in report.findings:
+        cases.setdefault(finding.path, []).append(finding)
+    numbers = f'tests="{len(cases)}" failures="{sum(any(map(_fails, case)) for case in cases.values())}" errors="0"'
+    yield '<?xml version="1.0" encoding="UTF-8"?>\n'
+    yield f'<testsuites name="btq check" {numbers}>\n'
+    yield f'  <testsuite name="btq check" {numbers}>\n'
+    for path, findings in cases.items():
+        yield from _case(report, path, findings)
+    yield "  </testsuite>\n</testsuites>\n"
+
+
+def _case(report: Report, path: str, findings: list[Finding]) -> Iterator[str]:
+    failures = [finding for finding in findings if _fails(finding)]
+    others = [finding for finding in findings if not _fails(finding)]
+    start = f'    <testcase classname="btq" name="{_escaped(path)}" file="{_escaped(path)}" time="0"'
+    if not findings:
+        yield start + "/>\n"
+        return
+    yield start + ">\n"
+    if failures:
+        worst = next(severity for severity in _FAILURES if _has(failures, severity))
+        yield f'      <failure type="{worst.value}" message="{counted(failures)}">'
+        yield "\n".join(_lines(report, failures)) + "</failure>\n"
+    if others:
+        yield "      <system-out>" + "\n".join(_lines(report, others)) + "</system-out>\n"
+    yield "    </testcase>\n"
+
+
+def _fails(finding: Finding) -> bool:
+    return finding.diagnostic.effective_severity in _FAILURES
+
+
+def _has(findings: Iterable[Finding], severity: Severity) -> bool:
+    return any(finding.diagnostic.effective_severity is severity for finding in findings)
+
+
+def _lines(report: Report, findings: Iterable[Finding]) -> Iterator[str]:
+    for finding in findings:
+        at, diagnostic = location(report, finding), finding.diagnostic
+        severity = diagnostic.effective_severity.value
+        yield _escaped(f"{at.path}:{at.line}:{at.column}: {severity}[{diagnostic.rule}] {diagnostic.message}")
+        for note in diagnostic.notes:
+            yield from (_escaped(f"  {line}") for line in note.split("\n"))
+
+
+def _escaped(text: str) -> str:
+    """What XML 1.0 can carry in content and attributes: `printable` leaves no control character and no surrogate."""
+    return printable(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

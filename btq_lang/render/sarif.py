@@ -1,0 +1,122 @@
+"""`sarif`: SARIF 2.1.0 (OASIS, sarif-v2.1.0-os), which GitHub code scanning, Azure DevOps and editors read.
+
+Invariant: one run, one result a finding, and just the rules that have results, in the order of the table of rules.
+Columns are code points, which `columnKind` declares.  Relative paths hang below `%SRCROOT%`, the name that GitHub gives
+to the checkout.  One departure: `{` in a message is not doubled, as §3.11.5 asks; those who show messages without
+arguments do not undo it, and `{{goal}}` would mislead.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from urllib.parse import quote
+
+from btq_lang import __version__
+from btq_lang.diagnostics import Fix, Place
+from btq_lang.render import Finding, Report
+from btq_lang.render.location import location
+from btq_lang.rules import RULES, Severity, page
+
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note", Severity.HINT: "note"}
+
+Json = dict[str, object]
+
+
+def render(report: Report, page: Callable[[str], str] = page) -> Iterator[str]:
+    """The log, in one piece; `page` gives the Markdown page of a rule."""
+    used = {finding.diagnostic.rule for finding in report.findings}
+    indexes = {rule: index for index, rule in enumerate(rule for rule in RULES if rule in used)}
+    log = {
+        "$schema": _SCHEMA,
+        "version": "2.1.0",
+        "runs": [
+            {
+                "tool": {
+                    "driver": {
+                        "name": "btq",
+                        "version": __version__,
+                        "rules": [_rule(rule, page) for rule in indexes],
+                    }
+                },
+                "columnKind": "unicodeCodePoints",
+                "results": [_result(report, finding, indexes) for finding in report.findings],
+            }
+        ],
+    }
+    yield json.dumps(log, indent=2) + "\n"
+
+
+def _rule(name: str, page: Callable[[str], str]) -> Json:
+    rule = RULES[name]
+    text = page(name)
+    return {
+        "id": name,
+        "shortDescription": {"text": rule.summary},
+        "help": {"text": text, "markdown": text},
+        "defaultConfiguration": {"level": _LEVELS[rule.severity]},
+    }
+
+
+def _result(report: Report, finding: Finding, indexes: dict[str, int]) -> Json:
+    diagnostic = finding.diagnostic
+    result: Json = {
+        "ruleId": diagnostic.rule,
+        "ruleIndex": indexes[diagnostic.rule],
+        "level": _LEVELS[diagnostic.effective_severity],
+        "message": {"text": "\n".join([diagnostic.message, *(f"note: {note}" for note in diagnostic.notes)])},
+        "locations": [{"physicalLocation": _physical(report, finding)}],
+    }
+    if diagnostic.related:
+        result["relatedLocations"] = [
+            {
+                "id": number,
+                "message": {"text": related.message},
+                "physicalLocation": _physical(report, finding, related.place),
+            }
+            for number, related in enumerate(diagnostic.related, 1)
+        ]
+    if fixes := [_fix(report, finding, fix) for fix in diagnostic.fixes if fix.changes]:
+        result["fixes"] = fixes
+    return result
+
+
+def _fix(report: Report, finding: Finding, fix: Fix) -> Json:
+    changes: dict[str, list[Json]] = {}
+    for change in fix.changes:
+        replacement = {
+            "deletedRegion": _region(report, finding, change.place),
+            "insertedContent": {"text": change.text},
+        }
+        changes.setdefault(change.place.path or finding.path, []).append(replacement)
+    return {
+        "description": {"text": fix.title},
+        "artifactChanges": [
+            {"artifactLocation": _artifact(path), "replacements": replacements}
+            for path, replacements in changes.items()
+        ],
+    }
+
+
+def _physical(report: Report, finding: Finding, place: Place | None = None) -> Json:
+    path = finding.path if place is None or place.path is None else place.path
+    return {"artifactLocation": _artifact(path), "region": _region(report, finding, place)}
+
+
+def _region(report: Report, finding: Finding, place: Place | None) -> Json:
+    at = location(report, finding, place)
+    return {"startLine": at.line, "startColumn": at.column, "endLine": at.end_line, "endColumn": at.end_column}
+
+
+def _artifact(path: str) -> Json:
+    try:
+        name = path.encode("utf-8", "surrogateescape")  # a file name may hold bytes that are no UTF-8
+    except UnicodeEncodeError:
+        name = path.encode("utf-8", "surrogatepass")
+    uri = quote(name, safe="/")
+    if path.startswith("/"):
+        return {"uri": f"file://{uri}"}
+    if path[1:3] == ":/":  # a drive of Windows
+        return {"uri": f"file:///{path[0]}:{uri[len(path[0]) + 3 :]}"}
+    return {"uri": uri, "uriBaseId": "%SRCROOT%"}

@@ -1,0 +1,46 @@
+"""What a run found, in numbers and in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btq_lang.render import Finding, Report
+from btq_lang.rules import Severity
+
+_WORDS = {
+    Severity.ERROR: ("error", "errors"),
+    Severity.WARNING: ("warning", "warnings"),
+    Severity.INFO: ("info message", "info messages"),
+    Severity.HINT: ("hint", "hints"),
+}
+
+
+def summary(report: Report) -> str:
+    """`Found 3 errors, 1 warning (2 fixable with --fix)`, or that nothing was found."""
+    if not report.findings:
+        return f"No problems found in {_number(len(report.checked), 'file', 'files')}"
+    fixable = sum(map(is_fixable, report.findings))
+    return f"Found {counted(report.findings)}" + (f" ({fixable} fixable with --fix)" if fixable else "")
+
+
+def counted(findings: Iterable[Finding]) -> str:
+    """`3 errors, 1 warning`, worst first; empty for no findings."""
+    counts = count(findings)
+    return ", ".join(_number(counts[severity], *words) for severity, words in _WORDS.items() if counts[severity])
+
+
+def count(findings: Iterable[Finding]) -> dict[Severity, int]:
+    """How many findings there are of each severity, worst first."""
+    counts = dict.fromkeys(Severity, 0)
+    for finding in findings:
+        counts[finding.diagnostic.effective_severity] += 1
+    return counts
+
+
+def is_fixable(finding: Finding) -> bool:
+    """`btq check --fix` mends it."""
+    return any(fix.safe for fix in finding.diagnostic.fixes)
+
+
+def _number(number: int, one: str, many: str) -> str:
+    return f"{number} {one if number == 1 else many}"

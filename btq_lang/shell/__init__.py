@@ -1,0 +1,128 @@
+"""Completion scripts for shells, made from the argparse parser itself, so that they can never miss an option.
+
+One invariant: a script holds all it needs: no process is started, not even btq, while somebody waits for a Tab.  Not
+known here: what the commands do, and where a shell wants its script.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from btq_lang.record import record
+
+SHELLS = ("bash", "zsh", "fish", "powershell")
+
+
+@record
+class Option:
+    """An option of a command.
+
+    Attributes:
+        names: all its spellings, `-q` and `--quiet`.
+        help: its help, in one line.
+        takes_value: the word behind it belongs to it.
+        choices: the values to offer; empty where they are files, or anything.
+    """
+
+    names: tuple[str, ...]
+    help: str
+    takes_value: bool
+    choices: tuple[str, ...]
+
+
+@record
+class Command:
+    """The program itself, or a command of it.
+
+    Attributes:
+        line: what is typed to get to it: `btq`, `btq check`.
+        commands: the names of the commands below it, with their help.
+        choices: the arguments to offer, where they are not files.
+        takes_files: an argument may be a file.
+    """
+
+    line: str
+    options: tuple[Option, ...]
+    commands: tuple[tuple[str, str], ...]
+    choices: tuple[str, ...]
+    takes_files: bool
+
+
+def completion_script(
+    shell: str, parser: argparse.ArgumentParser, choices: Mapping[str, Iterable[str]] | None = None
+) -> str:
+    """The script that teaches a shell the commands, options and values of a parser.
+
+    Args:
+        choices: the values to offer for arguments whose parser lists none, by `dest`.
+
+    Raises:
+        ValueError: the shell is none of SHELLS.
+    """
+    commands = tuple(_commands(parser, parser.prog, choices or {}))
+    if shell == "bash":
+        from btq_lang.shell import bash
+
+        return bash.script(commands)
+    if shell == "zsh":
+        from btq_lang.shell import zsh
+
+        return zsh.script(commands)
+    if shell == "fish":
+        from btq_lang.shell import fish
+
+        return fish.script(commands)
+    if shell == "powershell":
+        from btq_lang.shell import powershell
+
+        return powershell.script(commands)
+    raise ValueError(f"no completion for {shell!r}: there is one for {', '.join(SHELLS)}")
+
+
+def valued_options(commands: tuple[Command, ...]) -> Iterator[tuple[list[str], tuple[str, ...]]]:
+    """The command lines that end with one option that takes a value, and the values to offer there."""
+    for command in commands:
+        for option in command.options:
+            if option.takes_value:
+                yield [f"{command.line} {name}" for name in option.names], option.choices
+
+
+def _commands(parser: argparse.ArgumentParser, line: str, choices: Mapping[str, Iterable[str]]) -> Iterator[Command]:
+    """The parser as a command, then the commands below it.
+
+    argparse has no public way to ask for its actions; these attributes are what argcomplete and shtab read too.
+    """
+    options: list[Option] = []
+    commands: list[tuple[str, str]] = []
+    arguments: list[str] = []
+    takes_files = False
+    below: list[Command] = []
+    for action in parser._actions:
+        if action.help == argparse.SUPPRESS:
+            continue
+        if isinstance(action, argparse._SubParsersAction):
+            helps = {listed.dest: _help(listed, parser) for listed in action._choices_actions}
+            for name, command in action.choices.items():
+                commands.append((name, helps.get(name, "")))
+                below += _commands(command, f"{line} {name}", choices)
+            continue
+        values = tuple(filter(_is_plain, map(str, action.choices or choices.get(action.dest, ()))))
+        if action.option_strings:
+            options.append(Option(tuple(action.option_strings), _help(action, parser), action.nargs != 0, values))
+        elif values:
+            arguments += values
+        else:
+            takes_files = True
+    yield Command(line, tuple(options), tuple(commands), tuple(arguments), takes_files)
+    yield from below
+
+
+def _help(action: argparse.Action, parser: argparse.ArgumentParser) -> str:
+    return " ".join(((action.help or "") % {**vars(action), "prog": parser.prog}).split())
+
+
+def _is_plain(word: str) -> bool:
+    """A word that no shell reads as anything but itself: all others are not offered."""
+    return re.fullmatch(r"[\w.@%+,/-]+", word) is not None

@@ -1,0 +1,44 @@
+"""Where keys and values stand in a TOML file: the standard reader gives values without positions.
+
+This looks for the lines that a person would look for, and for a key in an inline table behind the key of that table.
+Invariant: what it answers is a place in the text, or None; it never raises, also for a text that is no TOML.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from btq_lang.text import LineIndex, Position
+
+_LONG_STRING = re.compile(r""""{3}.*?"{3}|'{3}.*?'{3}""", re.DOTALL)
+_KEY_LINE = re.compile(r"""^[ \t]*(?:\[{1,2}([^\[\]\n]+)\]|([\w.\-"' \t]+?)[ \t]*=)""", re.MULTILINE)
+_NAME = re.compile(r"""[\w\-]+|"[^"]*"|'[^']*'""")
+
+
+def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Position | None:
+    """Where a key stands, from the outermost table's name on; or a string in its value."""
+    text = _LONG_STRING.sub(lambda string: re.sub(r"[^\n]", " ", string[0]), text)
+    found, known, end = -1, 0, len(text)
+    for path, start, stop in _key_lines(text):
+        shared = min(len(path), len(keys))
+        if path[:shared] == keys[:shared] and shared > known:
+            found, known, end = start, shared, stop
+    if found < 0:
+        return None
+    words = [*map(re.escape, keys[known:]), *([f"[\"']{re.escape(value)}[\"']"] if value is not None else [])]
+    for word in words:
+        match = re.compile(word).search(text, found + 1, end)
+        found = match.start() if match else found
+    return LineIndex(text).position(found)
+
+
+def _key_lines(text: str) -> Iterator[tuple[tuple[str, ...], int, int]]:
+    """The full name in each line that has one, where it begins, and where the next such line begins."""
+    lines = list(_KEY_LINE.finditer(text))
+    table: tuple[str, ...] = ()
+    for line, following in zip(lines, [*lines[1:], None], strict=True):
+        names = tuple(name.strip("\"'") for name in _NAME.findall(line[1] or line[2]))
+        path = names if line[1] else table + names
+        table = names if line[1] else table
+        yield path, line.start(1 if line[1] else 2), following.start() if following else len(text)

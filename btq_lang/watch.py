@@ -1,0 +1,56 @@
+"""Waiting for files to change, by asking again and again.
+
+Polling, because the standard library offers nothing else on all systems, and because it works on network drives and in
+containers, where notifications do not.  One invariant: a change is told once, when the files have come to rest, so that
+nobody reads a half-written one; but it is told, also of a file that never rests.  Not known here: the disk and the
+clock; both are given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator
+
+INTERVAL = 0.3
+_REST, _LOOKS = 0.05, 20  # between two looks at files that are changing, and how often at most
+_SHARE = 10  # looking takes at most one part in this many of the time
+
+
+def watch(
+    files: Callable[[], Iterable[str]],
+    stamp: Callable[[str], Hashable],
+    wait: Callable[[float], object],
+    now: Callable[[], float],
+    interval: float = INTERVAL,
+) -> Iterator[tuple[str, ...]]:
+    """The paths that came, went or changed since the last time, sorted; for ever.
+
+    Args:
+        files: the paths to look at; asked each time, for there may be new ones.
+        stamp: what changes when a file does; None for a file that does not exist.
+        wait: waits for so many seconds; what it raises ends the watching (KeyboardInterrupt).
+        now: a clock in seconds that only goes forward.
+        interval: how often to look, in seconds; less often where looking itself takes long.
+    """
+    before = _stamps(files, stamp)
+    pause = interval
+    while True:
+        wait(pause)
+        begun = now()
+        after = _stamps(files, stamp)
+        pause = max(interval, (now() - begun) * _SHARE)
+        if after == before:
+            continue
+        for _ in range(_LOOKS):
+            seen = after
+            wait(_REST)
+            after = _stamps(files, stamp)
+            if after == seen:
+                break
+        changed = tuple(sorted(path for path in before.keys() | after.keys() if before.get(path) != after.get(path)))
+        before = after
+        if changed:  # else the files are again what they were
+            yield changed
+
+
+def _stamps(files: Callable[[], Iterable[str]], stamp: Callable[[str], Hashable]) -> dict[str, Hashable]:
+    return {path: found for path in files() if (found := stamp(path)) is not None}
