@@ -58,7 +58,7 @@ class File:
 
     @cached_property
     def parsed(self) -> Parsed:
-        return parse(self.text)
+        return parse(self.text if is_btq(self.path) else "")
 
     @cached_property
     def summaries(self) -> tuple[Summary, ...]:
@@ -108,10 +108,16 @@ class Scope:
 
     Attributes:
         paths: those files, included ones before the file that includes them.
+        complete: all includes were found and understood, so a name that is not here is nowhere.
     """
 
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
         self.paths = paths
+        self.complete = all(
+            (target := workspace.included_by(path, include)) is not None and is_btq(target)
+            for path in paths
+            for include in workspace.files[path].includes
+        )
         self._found: dict[tuple[Kind, str], list[Definition]] = {}
         self._names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
         for path in paths:
@@ -180,6 +186,12 @@ class Workspace:
                 return candidate
         return None
 
+    def included_by(self, path: str, include: Include) -> str | None:
+        """As `included`; what a ROS package holds is known to none but the robot."""
+        if include.path is None or any(pair.key.text == "ros_pkg" for pair in include.attributes):
+            return None
+        return self.included(path, include.path.text)
+
     def closure(self, path: str) -> tuple[str, ...]:
         """A file and all that it includes, included ones first; a file that includes itself is in it once."""
         seen: set[str] = set()
@@ -203,7 +215,8 @@ class Workspace:
 
     def _targets(self, path: str) -> Iterator[str]:
         for include in self.files[path].includes:
-            if include.path is not None and (target := self.included(path, include.path.text)):
+            target = self.included_by(path, include)
+            if target is not None:
                 yield target
 
     def scope(self, path: str) -> Scope:
@@ -286,6 +299,11 @@ class Workspace:
             }
             trees = [tree for tree in trees if tree.symbol.name not in used]
         return trees[0] if len(trees) == 1 else None
+
+
+def is_btq(path: str) -> bool:
+    """Whether a file is written in this language; an XML file may be included too."""
+    return not path.endswith(".xml")
 
 
 def _attribute(root: Root, key: str) -> Word | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from btq_lang.checks import children, kinds, literals, names, ports, trees
+from btq_lang.checks import children, includes, kinds, literals, names, ports, requirements, trees
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -21,6 +21,8 @@ from btq_lang.workspace import File, Workspace
 Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 
 CHECKS: tuple[Check, ...] = (
+    includes.missing_include,
+    includes.cyclic_include,
     trees.unknown_tree,
     trees.duplicate_tree,
     trees.recursive_tree,
@@ -45,6 +47,10 @@ CHECKS: tuple[Check, ...] = (
     children.parallel_threshold,
     names.forbidden_name,
     names.duplicate_instance_name,
+    requirements.unknown_requirement,
+    requirements.conflicting_requirement,
+    requirements.unused_requirement,
+    requirements.requirement_without_text,
 )
 
 # A file that cannot be read as it stands is never reported as clean.

@@ -22,7 +22,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if name is None or seen.kind or seen.definition or seen.is_subtree or name.text in KNOWN_WORDS:
             continue
         likely = near(name.text, (*_names_of_builtins(), *view.scope.names(Kind.MODEL)))
-        if not likely and not _has_palette(view):
+        if not likely and not (_has_palette(view) and view.scope.complete):
             continue
         if seen.node.category is not None and not _has_palette(view):
             continue  # written as a declaration: `Action Foo` says that there is such a node

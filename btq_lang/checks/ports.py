@@ -50,8 +50,10 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if seen.kind is not None:
             if is_placeholder(seen):
                 continue
+            known = tuple(port.name for port in seen.kind.ports)
+            slips = {near(key, known, 1) for key in given.difference(known)}  # told as unknown, with a fix
             for port in seen.kind.ports:
-                if port.required and port.name not in given:
+                if port.required and port.name not in given and (port.name,) not in slips:
                     yield _missing(view, seen, port.name, port.doc, None)
         elif seen.is_subtree:
             if given & {"_autoremap", "__shared_blackboard", "__autoremap"}:

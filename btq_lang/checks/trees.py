@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.checks.includes import include_fix
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.near import near
@@ -19,15 +20,15 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree | Root):
         return
     for use in view.uses(entry, Kind.TREE):
-        if view.scope.find(Kind.TREE, use.name) is not None:
+        if view.scope.find(Kind.TREE, use.name) is not None or not view.scope.complete:
             continue
         elsewhere = view.workspace.defined_anywhere(Kind.TREE, use.name)
         fixes = tuple(
             replace_fix(f"Replace `{use.name}` by `{name}`", use.span, _written(name))
             for name in near(use.name, view.scope.names(Kind.TREE))
         )
-        notes = tuple(f"a tree of this name stands in {other.path}: include that file" for other in elsewhere[:3])
-        yield Diagnostic("unknown-tree", use.span, f"there is no tree `{use.name}`", notes=notes, fixes=fixes)
+        fixes += tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        yield Diagnostic("unknown-tree", use.span, f"there is no tree `{use.name}`", fixes=fixes)
 
 
 def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -1,0 +1,71 @@
+"""Included files that are missing, or that include themselves."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterator
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.near import near
+from btq_lang.syntax import Entry, Include, quote
+from btq_lang.text import Span
+
+
+def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An included file that cannot be found."""
+    include = entry.item
+    if not isinstance(include, Include) or include.path is None or _from_ros_package(include):
+        return
+    path = include.path.text
+    if view.workspace.included_by(view.path, include) is not None:
+        return
+    folder = posixpath.dirname(view.path)
+    known = {posixpath.relpath(other, folder or "."): other for other in view.workspace.files if other != view.path}
+    fixes = tuple(
+        replace_fix(f"Replace it by `{other}`", include.path.span, quote(other)) for other in _meant(path, known)
+    )
+    places = ", ".join(f"`{place}`" for place in (folder or ".", *view.workspace.project.include_paths))
+    yield Diagnostic(
+        "missing-include",
+        include.path.span,
+        f"there is no file `{path}`",
+        notes=(f"looked for in {places}; `include-paths` in btq.toml adds folders",),
+        fixes=fixes,
+    )
+
+
+def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A file that includes itself, directly or not."""
+    include = entry.item
+    if not isinstance(include, Include) or include.path is None:
+        return
+    target = view.workspace.included_by(view.path, include)
+    if target is None or view.path not in view.workspace.closure(target):
+        return
+    how = "itself" if target == view.path else f"`{include.path.text}`, which includes this file again"
+    yield Diagnostic(
+        "cyclic-include",
+        include.path.span,
+        f"this file includes {how}",
+        notes=("the engine follows such a circle until it crashes",),
+    )
+
+
+def include_fix(view: View, path: str) -> Fix:
+    """Include another file, behind the includes that are there."""
+    folder = posixpath.dirname(view.path)
+    shown = posixpath.relpath(path, folder or ".")
+    includes = [entry for entry in view.file.parsed.entries if isinstance(entry.item, Include)]
+    at = view.file.text.find("\n", includes[-1].start) + 1 if includes else 0
+    place = Place(Span(at, at), view.path)
+    return Fix(f"Include `{shown}`", (Change(place, f"include {quote(shown)}\n"),))
+
+
+def _from_ros_package(include: Include) -> bool:
+    return any(pair.key.text == "ros_pkg" for pair in include.attributes)
+
+
+def _meant(path: str, known: dict[str, str]) -> tuple[str, ...]:
+    same_name = [other for other in known if posixpath.basename(other) == posixpath.basename(path)]
+    return tuple(same_name[:3]) or near(path, known)
