@@ -12,11 +12,12 @@ from collections.abc import Iterable
 def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:
     """The candidates nearest to `word`, best first: at most `limit`, none that only a wild guess would offer.
 
-    One edit is allowed for every three letters of the word.  A candidate that differs in case alone leaves no room
-    for any other; the word itself is never an answer.
+    One edit is allowed for every three letters of the word, three in all, and one more than the best candidate needs.
+    A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
     folded = word.casefold()
-    cutoff = len(folded) // 3
+    letters = frozenset(folded)
+    cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
@@ -25,10 +26,18 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
             continue
         if other == folded:
             same_letters.append((distance(word, candidate), candidate))
-        elif abs(len(other) - len(folded)) <= cutoff and (edits := distance(folded, other, cutoff)) <= cutoff:
+        # Most candidates fall here, at a tenth of the price: every edit mends one letter that only one of the two has.
+        elif (
+            abs(len(other) - len(folded)) <= cutoff
+            and len(letters.difference(other)) <= cutoff
+            and len(frozenset(other) - letters) <= cutoff
+            and (edits := distance(folded, other, cutoff)) <= cutoff
+        ):
             found.append((edits, distance(word, candidate), candidate))
-    best = [name for *_, name in sorted(same_letters)] or [name for *_, name in sorted(found)]
-    return tuple(best[:limit])
+    if same_letters:
+        return tuple(name for _, name in sorted(same_letters))[:limit]
+    found.sort()
+    return tuple(name for edits, _, name in found if edits <= found[0][0] + 1)[:limit]
 
 
 def distance(a: str, b: str, enough: int | None = None) -> int:

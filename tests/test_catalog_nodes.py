@@ -276,7 +276,7 @@ def test_reserved_attributes() -> None:
         "post": ["_onHalted", "_onSuccess", "_onFailure", "_post"],
         "engine": ["_autoremap"],
         "tool": [
-            *("_description", "_collapsed", "_favorite", "_fullpath", "_uid", "_btq"),
+            *("_description", "_collapsed", "_favorite", "_hardcoded", "_subtreeOnly", "_fullpath", "_uid", "_btq"),
             *("__shared_blackboard", "__autoremap"),
         ],
     }

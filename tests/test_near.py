@@ -26,6 +26,8 @@ WORDS = st.text(alphabet="abC-", max_size=8)
         ("rq", ["rx", "r", "rqs"], ()),
         ("", ["a", ""], ()),
         ("lattency", [], ()),
+        ("relaibility", ["flexibility", "legibility", "reliability"], ("reliability",)),
+        ("performance-and-efficiency", ["performance-efficiency"], ()),
     ],
 )
 def test_near(word: str, candidates: list[str], expected: tuple[str, ...]) -> None:
@@ -65,3 +67,12 @@ def test_near_answers_are_candidates_within_the_cutoff(word: str, candidates: li
         assert answer in candidates
         assert answer != word
         assert distance(word.casefold(), answer.casefold()) <= len(word) // 3
+
+
+@given(WORDS, st.lists(WORDS, max_size=20))
+def test_near_leaves_nothing_out_that_is_near(word: str, candidates: list[str]) -> None:
+    others = {candidate for candidate in candidates if candidate != word}
+    same = {other for other in others if other.casefold() == word.casefold()}
+    edits = {other: distance(other.casefold(), word.casefold()) for other in others}
+    most = min(len(word) // 3, 3, 1 + min(edits.values(), default=0))
+    assert set(near(word, candidates, limit=99)) == (same or {other for other in others if edits[other] <= most})

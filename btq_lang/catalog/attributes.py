@@ -52,6 +52,8 @@ _KINDS: Final = (
     AttributeKind("_description", "tool", "what the node is for, shown by Groot; btq writes requirements into it"),
     AttributeKind("_collapsed", "tool", "Groot draws the subtree closed"),
     AttributeKind("_favorite", "tool", "Groot lists the tree among the favorites"),
+    AttributeKind("_hardcoded", "tool", "MoveIt Pro: the tree came with the robot and is not edited"),
+    AttributeKind("_subtreeOnly", "tool", "MoveIt Pro: the tree is offered as a subtree, not as a mission"),
     AttributeKind("_fullpath", "tool", "the path of a tree's instance, in the XML of a log"),
     AttributeKind("_uid", "tool", "the number of a node, in the XML of a log"),
     AttributeKind("_btq", "tool", "the requirement that a generated node enforces"),

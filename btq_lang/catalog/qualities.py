@@ -1,0 +1,321 @@
+"""Looking up quality names: what a QualityPath means in an edition of ISO/IEC 25010.
+
+One invariant: a name written as a canonical id of the edition is exact and nothing else is proposed for it, and
+whatever is proposed is itself exact.  It does not know the qualities that a file declares: look there first.
+
+Names compare after folding case, blanks, `-`, `_` and British or American spelling.  What counts as exact:
+the id of a characteristic or of a robotics quality; characteristic and sub-characteristic; a sub-characteristic alone,
+where the edition has no other and the word has no other meaning; and the pairs of the published paper.  All else that
+is understood is an alias (another word, or another word in front), another edition's name, or ambiguous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final, Literal
+
+from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
+from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
+from btq_lang.near import near
+from btq_lang.record import record
+
+Edition = Literal["2011", "2023"]
+
+# By the word behind `qualities` in a file.
+EDITIONS: Final[dict[str, Edition]] = {"iso25010-2023": "2023", "iso25010-2011": "2011"}
+DEFAULT_EDITION: Final[Edition] = "2023"
+
+
+@record
+class Quality:
+    """A quality.
+
+    Attributes:
+        id: canonical: `performance-efficiency.time-behaviour`.
+        name: as the standard prints it.
+        parent: the id of the characteristic it is part of.
+        kind: product and in-use: of the ISO's models; robotics: an addition; ai: of ISO/IEC 25059.
+        editions: where the id and this definition stand.
+        source: the standard.
+        nearest: of a robotics quality, the nearest one of the 2023 edition.
+        measures: of a robotics quality, what to measure, in words.
+    """
+
+    id: str
+    name: str
+    definition: str
+    parent: str | None
+    kind: Literal["product", "in-use", "robotics", "ai"]
+    editions: tuple[Edition, ...]
+    source: str
+    nearest: str | None = None
+    measures: str = ""
+
+
+@record
+class QualityMatch:
+    """What a QualityPath means.
+
+    Attributes:
+        kind: exact; alias: another word for it; other-edition: a name of the edition not chosen; ambiguous; unknown.
+        quality: the quality that is meant, where it is one: a name of another edition that has no equal in this one
+            means the other edition's.
+        candidates: what to write instead, the likeliest first; none for an exact or an unknown name.
+        safe: there is one candidate and it is the quality that is meant: replacing the name keeps the meaning.
+        explanation: why, or what to know about the word, for a reader; may be empty.
+        near: of an unknown name, ids that look like it.
+    """
+
+    kind: Literal["exact", "alias", "other-edition", "ambiguous", "unknown"]
+    quality: Quality | None = None
+    candidates: tuple[Quality, ...] = ()
+    safe: bool = False
+    explanation: str = ""
+    near: tuple[str, ...] = ()
+
+
+def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
+    """What the parts of a QualityPath mean in an edition.
+
+    Args:
+        words: the path's names as written: `("performance", "time-behavior")`, `("time-behaviour",)`.
+    """
+    index = _index(edition)
+    keys = tuple(fold(word) for word in words)
+    if not words:
+        return QualityMatch("unknown")
+    exact = index.by_key.get(".".join(keys))
+    if exact is not None:
+        return QualityMatch("exact", exact, explanation=_remark(keys))
+    if keys in _PAPER_NAMES:
+        paper = get(_PAPER_NAMES[keys], edition)
+        return QualityMatch("exact", paper)
+    match = _find_word(words[0], keys[0], index) if len(words) == 1 else _find_path(words, keys, index)
+    return match or QualityMatch("unknown", near=_near(words, keys, index))
+
+
+def get(id_: str, edition: Edition = DEFAULT_EDITION) -> Quality | None:
+    """The quality of a canonical id, if the edition has it."""
+    return _index(edition).by_id.get(id_)
+
+
+def qualities(edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
+    """Every quality that an edition knows: the product's, those in use, robotics', then ISO/IEC 25059's."""
+    return tuple(_index(edition).by_id.values())
+
+
+def siblings(quality: Quality, edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
+    """The other qualities beside one: under the same characteristic, or the other characteristics of its kind."""
+    return tuple(
+        other
+        for other in qualities(edition)
+        if other.id != quality.id and other.parent == quality.parent and (other.parent or other.kind == quality.kind)
+    )
+
+
+def parts(id_: str, edition: Edition = DEFAULT_EDITION) -> tuple[Quality, ...]:
+    """The sub-characteristics of a characteristic."""
+    return tuple(quality for quality in qualities(edition) if quality.parent == id_)
+
+
+def successors(id_: str) -> tuple[str, ...]:
+    """What a name of 2011 became in 2023; none: nothing is in its place, or 2011 has no such name.
+
+    A sub-characteristic that has no successor of its own has those of its characteristic.
+    """
+    if get(id_, "2011") is None:
+        return ()
+    if id_ in SUCCESSORS:
+        return SUCCESSORS[id_]
+    if get(id_, "2023") is not None:
+        return (id_,)
+    return SUCCESSORS.get(id_.partition(".")[0], ())
+
+
+def predecessors(id_: str) -> tuple[str, ...]:
+    """What a name of 2023 was in 2011; none: it is new."""
+    if get(id_, "2011") is not None and id_ not in SUCCESSORS:
+        return (id_,)
+    return tuple(old for old, new in SUCCESSORS.items() if id_ in new)
+
+
+def fold(word: str) -> str:
+    """A name as names are compared: `Time Behavior`, `time_behaviour` and `time-behaviour` fall together."""
+    return _american(word.casefold().translate(_BLANKS))
+
+
+def _find_word(word: str, key: str, index: _Index) -> QualityMatch | None:
+    """A single word that is no id."""
+    _, meanings = AMBIGUOUS.get(key, ("", ()))
+    meant = tuple(index.by_id[id_] for id_ in meanings if id_ in index.by_id)
+    if len(meant) > 1:
+        return QualityMatch("ambiguous", None, meant, explanation=_remark((key,)))
+    parts_so_called = index.by_part.get(key, ())
+    if len(parts_so_called) == 1:
+        return QualityMatch("exact", parts_so_called[0], explanation=_remark((key,)))
+    if parts_so_called:
+        told = f"`{word}` is part of several characteristics"
+        return QualityMatch("ambiguous", None, parts_so_called, explanation=told)
+    if meant:
+        return QualityMatch("alias", meant[0], meant, True, _remark((key,)))
+    other = _index("2011" if index.edition == "2023" else "2023")
+    old = other.by_key.get(key) or (other.by_part.get(key) or (None,))[0]
+    if old is not None:
+        return _of_other_edition(old, index)
+    if key in _ALIASES:
+        return _alias(word, _ALIASES[key], index)
+    additions = index.by_addition.get(key, ())
+    return QualityMatch("exact", additions[0]) if len(additions) == 1 else None
+
+
+def _find_path(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> QualityMatch | None:
+    """Several words that are no id: understood where both the front and the last word are, and belong together."""
+    other = _index("2011" if index.edition == "2023" else "2023")
+    old = other.by_key.get(".".join(keys))
+    if old is not None:
+        return _of_other_edition(old, index)
+    front = {quality.id for quality in _meanings(find(words[:-1], index.edition))}
+    inside = [index.by_key.get(f"{fold(id_)}.{keys[-1]}") for id_ in front if "." not in id_]
+    last = _meanings(find(words[-1:], index.edition))
+    found = tuple(dict.fromkeys([part for part in inside if part] or [one for one in last if _lies(one, front, index)]))
+    if not found:
+        return None
+    if len(found) > 1:
+        return QualityMatch("ambiguous", None, found, explanation=f"`{'.'.join(words)}` may mean each of these")
+    return QualityMatch("alias", found[0], found, True, f"`{'.'.join(words)}` is another word for {found[0].id}")
+
+
+def _lies(quality: Quality, front: set[str], index: _Index) -> bool:
+    """Does a quality belong under one of these ids?  A robotics quality belongs under what is nearest to it."""
+    if quality.parent is not None:
+        return quality.parent in front
+    nearest = _in_edition(quality.nearest, index) if quality.nearest is not None else ()
+    return any(id_ in front or id_.partition(".")[0] in front for id_ in nearest)
+
+
+def _meanings(match: QualityMatch) -> tuple[Quality, ...]:
+    return match.candidates or (() if match.quality is None else (match.quality,))
+
+
+def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
+    candidates = tuple(index.by_id[id_] for id_ in _in_edition(old.id, index))
+    now = " or ".join(quality.id for quality in candidates)
+    same = len(candidates) == 1 and _are_equal(old.id, candidates[0].id)
+    if index.edition == "2023":
+        told = f"`{old.id}` is a name of {old.source}"
+        told += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has nothing in its place"
+    else:
+        told = f"`{old.id}` is new in {old.source}"
+        told += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has nothing in its place"
+    return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, told)
+
+
+def _are_equal(id_: str, other: str) -> bool:
+    """Are a name of 2011 and one of 2023, in either order, names of the same quality?"""
+    old, new = (id_, other) if get(id_, "2011") is not None else (other, id_)
+    return old not in NO_EQUAL and successors(old) == (new,) and predecessors(new) == (old,)
+
+
+def _alias(word: str, id_: str, index: _Index) -> QualityMatch:
+    """Aliases lead to ids of 2023, which may be others in 2011, or none."""
+    found = tuple(index.by_id[one] for one in _in_edition(id_, index))
+    told = f"`{word}` is another word for {' or '.join(quality.id for quality in found)}"
+    if len(found) == 1:
+        return QualityMatch("alias", found[0], found, True, told)
+    if found:
+        return QualityMatch("ambiguous", None, found, explanation=told)
+    new = _index("2023").by_id[id_]
+    return QualityMatch("other-edition", new, explanation=f"`{word}` means {id_}, which is new in {new.source}")
+
+
+def _in_edition(id_: str, index: _Index) -> tuple[str, ...]:
+    """The ids that stand for an id of either edition in the index's one."""
+    if id_ in index.by_id:
+        return (id_,)
+    return successors(id_) if index.edition == "2023" else predecessors(id_)
+
+
+def _remark(keys: tuple[str, ...]) -> str:
+    return AMBIGUOUS[keys[0]][0] if len(keys) == 1 and keys[0] in AMBIGUOUS else ""
+
+
+def _near(words: tuple[str, ...], keys: tuple[str, ...], index: _Index) -> tuple[str, ...]:
+    """Ids for a name that is none: what its last word means, or else what the whole or the last word looks like."""
+    last = [quality.id for quality in _meanings(find(words[-1:], index.edition))] if len(words) > 1 else []
+    known: dict[str, tuple[str, ...]] = {key: (quality.id,) for key, quality in index.by_key.items()}
+    for group in (index.by_part, index.by_addition):
+        known |= {key: tuple(quality.id for quality in named) for key, named in group.items()}
+    known |= {key: _in_edition(id_, index) for key, id_ in _ALIASES.items()}
+    looks = near(".".join(keys), known) or near(keys[-1], known)
+    ids = [*last, *(id_ for key in looks for id_ in known[key])]
+    return tuple(dict.fromkeys(id_ for id_ in ids if id_ in index.by_id))[:3]
+
+
+class _Index:
+    """The qualities of an edition, by id and by folded names.
+
+    Attributes:
+        by_key: folded ids.
+        by_part: folded names of the ISO's sub-characteristics, without the characteristic.
+        by_addition: the same of ISO/IEC 25059's.
+    """
+
+    def __init__(self, edition: Edition) -> None:
+        self.edition: Final = edition
+        self.by_id: Final = {quality.id: quality for quality in _of_edition(edition)}
+        # Ids are lower case and ASCII, so half of fold() is enough.
+        self.by_key: Final = {_american(id_.replace("-", "")): quality for id_, quality in self.by_id.items()}
+        self.by_part: Final[dict[str, tuple[Quality, ...]]] = {}
+        self.by_addition: Final[dict[str, tuple[Quality, ...]]] = {}
+        for key, quality in self.by_key.items():
+            if quality.parent is not None:
+                group = self.by_addition if quality.kind == "ai" else self.by_part
+                part = key.partition(".")[2]
+                group[part] = (*group.get(part, ()), quality)
+
+
+def _of_edition(edition: Edition) -> Iterable[Quality]:
+    for its, kind, source, model in MODELS:
+        if its == edition:
+            for id_, definition, below in model:
+                yield Quality(id_, _name(id_), definition, None, kind, (edition,), source)
+                for part, part_definition in below:
+                    yield Quality(f"{id_}.{part}", _name(part), part_definition, id_, kind, (edition,), source)
+    both: tuple[Edition, ...] = ("2011", "2023")
+    for id_, definition, nearest, measures in ROBOTICS:
+        name = id_.replace("-", " ")
+        yield Quality(id_, name, definition, None, "robotics", both, "robotics practice", nearest, measures)
+    for parent, part, definition in AI:
+        yield Quality(f"{parent}.{part}", _name(part), definition, parent, "ai", both, "ISO/IEC 25059:2023")
+
+
+def _name(id_: str) -> str:
+    return NAMES.get(id_) or id_.replace("-", " ").capitalize()
+
+
+def _american(key: str) -> str:
+    for british, american in _SPELLINGS:
+        key = key.replace(british, american)
+    return key
+
+
+_indexes: Final[dict[Edition, _Index]] = {}
+
+
+def _index(edition: Edition) -> _Index:
+    """An edition's index, made when it is first asked for: most files need one edition, many none."""
+    if edition not in _indexes:
+        _indexes[edition] = _Index(edition)
+    return _indexes[edition]
+
+
+_BLANKS: Final = dict.fromkeys(map(ord, "-_ \t\r\n"))
+_SPELLINGS: Final = (
+    ("behaviour", "behavior"),
+    ("isation", "ization"),
+    ("isability", "izability"),
+    ("analys", "analyz"),
+)
+# The words of these tables are folded already, but for the `-` that makes them readable.
+_PAPER_NAMES: Final = {tuple(name.replace("-", "") for name in names): id_ for names, id_ in PAPER_NAMES.items()}
+_ALIASES: Final = {word: id_ for id_, words in ALIASES.items() for word in words.replace("-", "").split()}
