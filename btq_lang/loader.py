@@ -18,6 +18,7 @@ from btq_lang.globs import glob_matcher
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import record
 from btq_lang.text import LineIndex, Position
+from btq_lang.workspace import File, Workspace
 
 SUFFIXES = (".btq", ".qualitybtcpp")
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
@@ -65,6 +66,28 @@ class Loaded:
     damaged: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
     problems: tuple[LoadProblem, ...] = ()
+
+
+def open_workspace(*paths: str) -> Workspace:
+    """The workspace of files and folders, with all that they include, in the project of the first path.
+
+    Args:
+        paths: files as they are, folders for all btq files below them.
+
+    Raises:
+        OSError: a file or folder cannot be read, or is no UTF-8; the message says where.
+    """
+    found = find_project(paths[0] if paths else ".")
+    files: dict[str, File] = {}
+
+    def includes_of(path: str, text: str) -> Iterator[str]:
+        files[path] = File(path, text)
+        return (include.path.text for include in files[path].includes if include.path is not None)
+
+    loaded = load(paths or (".",), found.project, includes_of)
+    for problem in (*found.problems, *loaded.problems):
+        raise OSError(str(problem))
+    return Workspace(files, found.project)
 
 
 def find_project(start: str) -> Found:
@@ -261,10 +284,18 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem]) -> Ite
 
 
 def excluder(project: Project) -> Callable[[str], bool]:
-    """Whether the project leaves a path out when a folder is collected; a folder's path ends with `/`."""
+    """Whether the project leaves a path out, or a folder that it is in; a folder's path ends with `/`."""
     matcher = glob_matcher(project.exclude)
     root = absolute(project.root).rstrip("/") + "/"
-    return lambda path: matcher is not None and matcher.fullmatch(path.removeprefix(root)) is not None
+
+    def excluded(path: str) -> bool:
+        if matcher is None:
+            return False
+        names = path.removeprefix(root).split("/")
+        above = ("/".join(names[:number]) + "/" for number in range(1, len(names)))
+        return any(map(matcher.fullmatch, (*above, "/".join(names))))
+
+    return excluded
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

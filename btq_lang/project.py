@@ -28,8 +28,6 @@ from btq_lang.record import record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import LineIndex, Position
 
-QUALITIES = ("iso25010-2023", "iso25010-2011")
-
 Kind = Literal["btq.toml", "pyproject.toml"]
 
 
@@ -51,7 +49,7 @@ class Project:
     root: str = "."
     include_paths: tuple[str, ...] = ()
     engines: tuple[str, ...] = VERSIONS
-    qualities: str = QUALITIES[0]
+    qualities: str = "iso25010-2023"
     severities: tuple[tuple[str, Severity | None], ...] = ()
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
@@ -172,9 +170,11 @@ def _is_engine(version: str) -> bool:
 
 
 def _qualities(key: str, value: object) -> _Read:
-    if value in QUALITIES:
+    from btq_lang.catalog.qualities import EDITIONS  # its tables are large, and few files have this key
+
+    if value in (*EDITIONS,):
         return value, []
-    return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, QUALITIES))}")]
+    return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, EDITIONS))}")]
 
 
 def _strings(key: str, value: object) -> _Read:

@@ -117,6 +117,13 @@ def test_what_is_left_out_below_a_folder(folder: Path) -> None:
     assert names(collect(["x"], project)[0]) == ["x/a.btq"]
 
 
+def test_the_excluder_knows_folders_of_a_path(folder: Path) -> None:
+    excluded = loader.excluder(Project(root=str(folder), exclude=("gen/", "x/old")))
+    paths = ["gen/a.btq", "x/gen/y/a.btq", "gen/", "x/old/a.btq", "x/old", "gen", "x/a.btq", "old/a.btq"]
+    assert [path for path in paths if excluded(f"{folder}/{path}")] == paths[:5]
+    assert not loader.excluder(Project())("gen/a.btq")
+
+
 def test_what_is_named_is_taken(folder: Path) -> None:
     make(folder, "build/a.btq", "gen/x.xml", ".hidden/c.btq")
     project = Project(root=str(folder), exclude=("gen/",))
@@ -211,6 +218,13 @@ def test_files_that_are_missing(folder: Path) -> None:
     assert names(loaded.given) == ["a.btq"]
     assert list(map(str, loaded.problems)) == ["gone.btq: cannot be read: No such file or directory"]
     assert names(loaded.absent) == ["lost.btq", "lib/lost.btq", "sub", "lib/sub", "nul\0", "lib/nul\0"]
+
+
+def test_texts_from_elsewhere_are_not_read_from_the_disk(folder: Path) -> None:
+    make(folder, "a.btq: include c.btq", "b.btq: include a.btq", "c.btq: c")
+    loaded = load(["b.btq"], Project(), includes_of, {f"{folder}/a.btq": "nothing", f"{folder}/new.btq": "new"})
+    assert names(loaded.given) == ["a.btq", "new.btq", "b.btq"]
+    assert list(loaded.texts.values()) == ["nothing", "new", "include a.btq"]
 
 
 def test_damaged_files_are_loaded_and_named(folder: Path) -> None:

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.project import Project, configured, has_btq_table, include_candidates, parse_project, unknown_rule
 from btq_lang.rules import RULES, Severity
@@ -57,6 +58,7 @@ def test_every_key() -> None:
 def test_nothing_said_is_the_default(text: str, kind: str) -> None:
     assert parse_project(text, kind) == (Project(), ())  # type: ignore[arg-type]  # one of the two kinds
     assert (Project().engines, Project().target, Project().qualities) == (VERSIONS, "4.10", "iso25010-2023")
+    assert EDITIONS[Project().qualities] == DEFAULT_EDITION
 
 
 @pytest.mark.parametrize(
