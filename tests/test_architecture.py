@@ -1,0 +1,97 @@
+"""The layers of ARCHITECTURE.md, held: a module imports only from its own row or the rows above it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import btq_lang
+
+PACKAGE = Path(btq_lang.__file__).parent
+
+# Row by row, from the ground up; a package stands for all its modules.
+ROWS: tuple[frozenset[str], ...] = (
+    frozenset({"record", "text", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
+    frozenset({"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "plain", "parser", "script"}),
+    frozenset({"catalog"}),
+    frozenset({"toml_places", "project", "symbols", "workspace"}),
+    frozenset({"checks", "formatter", "render", "fixes"}),
+    frozenset({"loader", "watch", "shell", "commands", "cli", "__main__", "server"}),
+)
+ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
+READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog"})  # the rules' pages and the catalog's data too
+PROTOCOL = frozenset({"pygls", "lsprotocol"})
+
+
+def modules() -> Iterator[tuple[str, Path]]:
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        yield parts[0], path
+
+
+def imports(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{name.name}" for name in node.names if node.module == "btq_lang")
+
+
+@pytest.mark.parametrize(("module", "path"), list(modules()), ids=lambda value: str(value).rpartition("btq_lang/")[2])
+def test_a_module_imports_only_downwards(module: str, path: Path) -> None:
+    if module == "__init__":
+        return
+    row = ROW_OF[module]
+    for imported in imports(path):
+        parts = imported.split(".")
+        if parts[0] in PROTOCOL:
+            assert module == "server", f"{path.name} imports {imported}"
+        if parts[0] == "lxml":
+            assert module == "btcpp", f"{path.name} imports {imported}"
+        if parts[0] == "btq_lang" and len(parts) > 1 and parts[1] in ROW_OF and parts[1] != module:
+            assert ROW_OF[parts[1]] <= row, f"{path.name} imports {imported}"
+            assert row != 4 or ROW_OF[parts[1]] != 4, f"{path.name} imports its sibling {imported}"
+
+
+@pytest.mark.parametrize(("module", "path"), list(modules()), ids=lambda value: str(value).rpartition("btq_lang/")[2])
+def test_only_the_edges_open_files(module: str, path: Path) -> None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    opened = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "open"]
+    assert not opened or module in READS_THE_DISK
+
+
+def test_every_module_has_a_row() -> None:
+    assert {module for module, _ in modules()} - {"__init__"} <= set(ROW_OF)
+
+
+def test_no_module_is_named_as_one_of_the_standard_library() -> None:
+    assert not {path.stem for _, path in modules()} & (sys.stdlib_module_names - {"__init__", "__main__"})
+
+
+@pytest.mark.parametrize(
+    ("statement", "absent"),
+    [
+        ("import btq_lang", {"pygls", "lsprotocol", "lxml", "re", "btq_lang.parser"}),
+        (
+            "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
+            {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"},
+        ),
+        ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "re", "btq_lang.parser"}),
+    ],
+)
+def test_what_a_start_does_not_import(statement: str, absent: set[str]) -> None:
+    program = f"{statement}\nimport sys\nprint(sorted(set(sys.modules) & {absent!r}))"
+    run = subprocess.run(
+        [sys.executable, "-S", "-c", f"import sys; sys.path.insert(0, '.')\n{program}"],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=PACKAGE.parent,
+    )
+    assert run.stdout.splitlines()[-1] == "[]"
