@@ -67,25 +67,27 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
 def _check_integer(plain: str, text: str) -> LiteralProblem | None:
     """std::from_chars: digits from the first character on, perhaps a `-`; a number out of range is refused."""
     low, high = _INTEGERS[plain]
-    digits = _INTEGER.match(text)
-    if digits is None or (low == 0 and high == _UNSIGNED_64 and text[0] == "-"):
+    end = start = 1 if text[:1] == "-" and plain != "unsigned long" else 0
+    while end < len(text) and text[end] in "0123456789":
+        end += 1
+    if end == start:
         return LiteralProblem("refused", f"is no {plain}")
     # More digits than any type has are not worth converting, and beyond some thousands int() raises.
-    significant = digits[0].lstrip("-0") or "0"
-    value = int(significant) if len(significant) <= 20 else _UNSIGNED_64 + 1
-    if not low <= (-value if text[0] == "-" else value) <= high:
+    digits = text[start:end].lstrip("0") or "0"
+    value = int(digits) if len(digits) <= 20 else high + 2  # with a `-` too, beyond the range
+    if not low <= (-value if start else value) <= high:
         return LiteralProblem("refused", f"is out of range: {plain} is {low} to {high}")
-    return _rest(text, digits.end())
+    return _rest(text, end)
 
 
 def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
     """std::from_chars since 4.9; before, std::stod, which takes blanks and a `+` in front, and hexadecimal digits."""
-    number = (_REAL if at_least(version, "4.9") else _OLD_REAL).match(text)
+    number = re.match(_REAL if at_least(version, "4.9") else _OLD_REAL, text)
     if number is None:
         return LiteralProblem("refused", f"is no {plain}")
     value = _value(number[0])
     smallest, largest = _MAGNITUDES[plain]
-    vanishes = abs(value) <= smallest and _DIGIT.search(_mantissa(number[0])) is not None
+    vanishes = abs(value) <= smallest and _mantissa(number[0]).strip("+-.0 \t\n\v\f\r") != ""
     if not _named(number[0]) and (abs(value) > largest or vanishes):
         return LiteralProblem("refused", f"is out of range for {plain}")
     return _rest(text, number.end())
@@ -151,7 +153,7 @@ def _plain(port_type: str) -> str:
 
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items, or None for what is no list the engine can read."""
-    found = _LIST.match(" ".join(port_type.split()))
+    found = re.match(_LIST, " ".join(port_type.split())) if "<" in port_type else None
     if found is None:
         return None
     if "basic_string" in found[1] or found[1] in ("string", "std::string"):
@@ -178,9 +180,6 @@ def _value(number: str) -> float:
 def _named(number: str) -> bool:
     """inf, infinity, nan, nan(…)"""
     return number.strip().lstrip("+-")[:1] in ("i", "I", "n", "N")
-
-
-_UNSIGNED_64: Final = 2**64 - 1
 
 
 def _range(bits: int, signed: bool) -> tuple[int, int]:
@@ -219,11 +218,10 @@ _SYNONYMS: Final = {
 # Up to the first a number that is not 0 becomes 0, beyond the second it becomes infinite: the engine refuses both.
 _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.006492321624085e-46, 3.4028235677973366e38)}
 
+# Compiled when first used: that costs more than all the rest of this module, and few files have a real or a list.
 _NAMED: Final = r"(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?)"
 _DECIMAL: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _HEXADECIMAL: Final = r"0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
-_INTEGER: Final = re.compile(r"-?[0-9]+")
-_REAL: Final = re.compile(rf"-?(?:{_NAMED}|{_DECIMAL})")
-_OLD_REAL: Final = re.compile(rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})")
-_DIGIT: Final = re.compile(r"[1-9a-f]")
-_LIST: Final = re.compile(r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]")
+_REAL: Final = rf"-?(?:{_NAMED}|{_DECIMAL})"
+_OLD_REAL: Final = rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})"
+_LIST: Final = r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]"
