@@ -4,7 +4,7 @@ nodes       look-up of node kinds; `kinds` holds the records, `engine_nodes` and
 attributes  attributes that are no ports: pre- and post-conditions, and what tools write
 names       which names the engine refuses
 literals    what the engine reads from a literal
-qualities   look-up of quality names; `quality_model` holds the rows
+qualities   look-up of quality names; `quality_model` and `quality_words` hold the rows
 
 One invariant: tables and look-ups only.  Nothing here knows a file, a tree or a diagnostic; units are in
 `btq_lang.units`, for the lexer needs them.
