@@ -14,8 +14,9 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
-from btq_lang.scan import line_end, name_end, number_at, string_end, symbol_at
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.scan import blanks_end, line_end, name_end, number_at, string_end, symbol_at, unit_run
+from btq_lang.syntax import quote as quoted
 from btq_lang.text import Span
 from btq_lang.tokens import (
     BLANK,
@@ -101,6 +102,7 @@ class Lexer:
         self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
         self._root_level = -1  # the level of an open Root block's items
         self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
+        self._no_comment_end = self.size + 1  # nor any */
 
     # ---- lines ----
 
@@ -124,14 +126,14 @@ class Lexer:
             else:
                 self.position = position
                 self.line_start = start
-                self._indent(text[start : blanks_end if blanks_end >= 0 else position], position)
+                self._indent(text[start : blanks_end if blanks_end >= 0 else position])
                 return True
         self.position = position
         self.level = 0
         self.line_start = size
         return False
 
-    def _indent(self, blanks: str, position: int) -> None:
+    def _indent(self, blanks: str) -> None:
         """Open a block, close blocks, or adopt a column that no open block has."""
         indents, aliases = self._indents, self._aliases
         if blanks == indents[-1]:
@@ -145,16 +147,27 @@ class Lexer:
                 aliases.append(())
                 level = len(indents) - 1
             else:
-                level = len(indents) - 1
-                while not _extends(blanks, indents[level - 1], aliases[level - 1]):
-                    level -= 1
-                self._report_indentation(blanks, indents[level], position)
-                aliases[level] += (indents[level],)
-                indents[level] = blanks
+                level = self._adopting_level(blanks)
+                self._report_indentation(blanks, indents[level])
+                if level == 0:
+                    aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
+                else:
+                    aliases[level] = (*aliases[level], indents[level])[-_ALIASES:]
+                    indents[level] = blanks
         del indents[level + 1 :], aliases[level + 1 :]
         self.level = level
         if level < self._root_level:
             self._root_level = -1
+
+    def _adopting_level(self, blanks: str) -> int:
+        """The block that a line belongs to whose indentation fits none: for an item that of the items, else the
+        deepest whose opener stands further left."""
+        if _TOP_LINE.match(self.text, self.position):
+            return max(self._root_level, 0)
+        level = len(self._indents) - 1
+        while not _extends(blanks, self._indents[level - 1], self._aliases[level - 1]):
+            level -= 1
+        return level
 
     def scan(self) -> None:
         """Cut the opened line into tokens, through all lines that its brackets join."""
@@ -198,14 +211,16 @@ class Lexer:
             end = position + (2 if text.startswith("\r\n", position) else 1)
         self._add(NEWLINE, position, end)
         self.position = end
+        if self._is_root_line():
+            self._root_level = self.level + 1
 
     def line_end(self) -> int:
         """Where the line of text at hand ends."""
         return line_end(self.text, self.position)
 
-    def enter_root(self) -> None:
-        """The line just read opens a `Root` block: its items stand one level deeper."""
-        self._root_level = self.level + 1
+    def _is_root_line(self) -> bool:
+        """Whether the line at hand, of which at least one token is read, begins a `Root` block."""
+        return self.raws[0] == "Root" and self.kinds[0] == NAME and self.level in (0, self._root_level)
 
     # ---- tokens, each from its first character to the position behind it ----
 
@@ -250,6 +265,8 @@ class Lexer:
             return self._quote_this(start)
         if text[start : start + 2] in _TWO or character in ":.<>+-*/%^":
             return self._operator(start)
+        if self._brackets and character not in _INSTEAD and self._in_value(start):
+            return self._quote_value(start)
         end = start + 1
         while end < self.size and text[end] == character:
             end += 1
@@ -268,21 +285,11 @@ class Lexer:
 
     def _number(self, start: int) -> int:
         kind, end = number_at(self.text, start)
-        return self._add(kind, start, end) if kind != ERROR else self._unknown_unit(start, end)
-
-    def _unknown_unit(self, start: int, unit: int) -> int:
-        end = name_end(self.text, unit)
-        word = self.text[unit:end]
-        number = self.text[start:unit]
-        fixes = tuple(
-            replace_fix(f"Replace `{word}` by `{symbol}`", Span(unit, end), f" {symbol}")
-            for symbol in nearest_units(word)
-        )
-        notes = () if fixes else (f'a name that begins with a digit is written in quotes: "{number}{word}"',)
-        self.problems.append(
-            Diagnostic("unknown-unit", Span(unit, end), f"`{word}` is no unit", notes=notes, fixes=fixes)
-        )
-        return self._add(QUANTITY, start, end)
+        if kind == ERROR:
+            unit = blanks_end(self.text, end, self.size)
+            kind, end = QUANTITY, unit_run(self.text, unit)
+            self.problems.append(unknown_unit(self.text, unit, end))
+        return self._add(kind, start, end)
 
     def _string(self, start: int, quote: str) -> int:
         """A string runs to its closing quote, however many lines; if there is none, to the end of its line."""
@@ -296,16 +303,24 @@ class Lexer:
                 else:
                     self._no_single = start
         if end < 0:
-            end = line_end(text, start)
-            self._report(
-                "unclosed-string", start, end, f"this string has no closing {quote}",
-                ("it is read to the end of its line",),
-            )  # fmt: skip
-        elif "\n" in (raw := text[start:end]) or "\r" in raw:
+            return self._unclosed_string(start, quote)
+        raw = text[start:end]
+        if "\n" in raw or "\r" in raw:
             self._check_lines(start, end)
-        if "\\" in (raw := text[start:end]):
+        if "\\" in raw:
             self._check_escapes(start, raw)
         return self._add(STRING, start, end)
+
+    def _unclosed_string(self, start: int, quote: str) -> int:
+        end = line_end(self.text, start)
+        said = start + 1 + len(self.text[start + 1 : end].rstrip(" \t,)"))
+        fix = replace_fix(f"Close it with {quote}", Span(said, said), quote)
+        message = f"this string has no closing {quote}"
+        notes = ("it is read to the end of its line",)
+        self.problems.append(Diagnostic("unclosed-string", Span(start, end), message, notes=notes, fixes=(fix,)))
+        self._add(STRING, start, end)
+        self._close_lost(start, end)
+        return end
 
     def _check_lines(self, start: int, end: int) -> None:
         for line in _LINE_START.finditer(self.text, start, end):
@@ -323,26 +338,69 @@ class Lexer:
                 return
 
     def _check_escapes(self, start: int, raw: str) -> None:
-        index = raw.find("\\")
-        while 0 <= index < len(raw) - 1:
-            if raw[index + 1] not in "\"'\\nt":
-                at = start + index
-                fix = replace_fix("Write `\\\\`", Span(at, at + 1), "\\\\", safe=True)
-                message = f"`{raw[index : index + 2]}` is no escape: it stands for both its characters"
-                self.problems.append(Diagnostic("unknown-escape", Span(at, at + 2), message, fixes=(fix,)))
-                return
-            index = raw.find("\\", index + 2)
+        """One hint a string, whose fix mends all of it."""
+        unknown = [start + escape.start() for escape in _ESCAPE.finditer(raw) if escape[1] not in "\"'\\nt"]
+        if not unknown:
+            return
+        span = Span(unknown[0], unknown[0] + 2)
+        shown = self.text[span.start : span.end]
+        if not shown.isprintable():
+            shown, span = "\\", Span(span.start, span.start + 1)
+        fix = Fix("Write `\\\\`", tuple(Change(Place(Span(at, at + 1)), "\\\\") for at in unknown), safe=True)
+        message = f"`{shown}` is no escape: the backslash stands for itself"
+        notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
+        self.problems.append(Diagnostic("unknown-escape", span, message, notes=notes, fixes=(fix,)))
 
-    def _quote_this(self, start: int) -> int:
-        """A comment sign inside a word or value: take all of it for one name, and say that it needs quotes."""
+    def _quote_this(self, at: int) -> int:
+        """A comment sign, or a word before one, where no comment may begin: the word around it needs quotes; behind
+        what is no word a blank is missing."""
         text = self.text
-        end = _WORD_WITH_SIGN.match(text, start).end()  # type: ignore[union-attr]  # it matches the sign at least
-        fix = replace_fix("Put quotes around it", Span(start, end), f'"{text[start:end]}"', safe=True)
+        start, end = self._whole_word(at)
         sign = _COMMENT_SIGN.search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
-        message = f"`{sign[0]}` begins a comment only behind a blank: quote this"
-        self.problems.append(Diagnostic("misplaced-comment", Span(start, end), message, fixes=(fix,)))
+        message = f"`{sign[0]}` begins a comment only behind a blank"
+        insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
+        in_value = bool(self.raws) and self.raws[-1] == "="
+        if start == sign.start() and self.raws and not in_value:
+            fix = Fix(insert.title, insert.changes, safe=True)
+            self.problems.append(Diagnostic("misplaced-comment", Span(start, sign.end()), message, fixes=(fix,)))
+            return self._read_comment(start)
+        fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=in_value)
+        fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
+        self.problems.append(Diagnostic("misplaced-comment", Span(start, end), f"{message}: quote this", fixes=fixes))
         return self._add(NAME, start, end)
+
+    def _quote_value(self, at: int) -> int:
+        """A character that begins nothing, inside a value: `a = 1;2`."""
+        start, end = self._whole_word(at)
+        fix = replace_fix("Put quotes around it", Span(start, end), quoted(self.text[start:end]), safe=True)
+        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=(fix,)))
+        return self._add(NAME, start, end)
+
+    def _in_value(self, at: int) -> bool:
+        """Whether what begins at `at` stands behind `key =`, or without a blank behind a word that does."""
+        last = len(self.raws) - 1
+        while last > 0 and self._joins(last, at):
+            at = self.starts[last]
+            last -= 1
+        return last >= 0 and self.raws[last] == "="
+
+    def _whole_word(self, at: int) -> tuple[int, int]:
+        """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
+        word = _WHOLE_WORD.match(self.text, at)
+        assert word is not None, "a word or a sign begins here"
+        while self.raws and self._joins(len(self.raws) - 1, at):
+            at = self.starts.pop()
+            self.kinds.pop()
+            self.raws.pop()
+        return at, word.end()
+
+    def _joins(self, index: int, at: int) -> bool:
+        """Whether a token makes one word with what begins at `at`: there is no blank between, and it is no `=`."""
+        kind, raw = self.kinds[index], self.raws[index]
+        if kind not in (NAME, NUMBER, QUANTITY, OPERATOR) or raw == "=" or raw == ",":
+            return False
+        return self.starts[index] + len(raw) == at
 
     def _comment(self, start: int) -> int:
         """The end of the comment that begins here, or `start` where none may begin."""
@@ -354,15 +412,26 @@ class Lexer:
             return start
         if self.raws and self.raws[-1] == "=":
             return start
-        if sign[0] == "/*":
+        return self._read_comment(start)
+
+    def _read_comment(self, start: int) -> int:
+        text = self.text
+        closes = text.startswith("/*", start)
+        if closes and start < self._no_comment_end:
             closing = text.find("*/", start + 2)
-            end = closing + 2 if closing >= 0 else line_end(text, start)
-            if closing < 0:
-                self._report("unclosed-comment", start, start + 2, "this comment has no closing */",
-                             ("it is read to the end of its line",))  # fmt: skip
-        else:
-            end = line_end(text, start)
+            if closing >= 0:
+                self.comments.append((start, closing + 2))
+                return closing + 2
+            self._no_comment_end = start
+        end = line_end(text, start)
         self.comments.append((start, end))
+        if closes:
+            fix = replace_fix("Close it at the end of the line", Span(end, end), " */")
+            message = "this comment has no closing */"
+            notes = ("it is read to the end of its line",)
+            span = Span(start, start + 2)
+            self.problems.append(Diagnostic("unclosed-comment", span, message, notes=notes, fixes=(fix,)))
+            self._close_lost(start, end)
         return end
 
     # ---- brackets ----
@@ -390,7 +459,7 @@ class Lexer:
         if at >= size or text[at] == ")" or _COMMENT_SIGN.match(text, at):
             return at
         blanks = text[start:at]
-        if (blanks == "" or self._at_root_column(blanks)) and _TOP_LINE.match(text, at):
+        if self._at_top_column(blanks) and _TOP_LINE.match(text, at):
             self._end_brackets(len(self._brackets), position, at)
             return position
         ended = 0
@@ -404,9 +473,19 @@ class Lexer:
         self._end_brackets(ended, position, at)
         return at if self._brackets else position
 
-    def _at_root_column(self, blanks: str) -> bool:
+    def _at_top_column(self, blanks: str) -> bool:
+        """Whether an item may begin there; behind `Root (` without `)` that is any column of its block to be."""
         level = self._root_level
-        return 0 < level < len(self._indents) and blanks == self._indents[level]
+        if blanks == "" or (0 < level < len(self._indents) and blanks == self._indents[level]):
+            return True
+        return self._is_root_line() and _extends(blanks, self._indents[-1], ())
+
+    def _close_lost(self, start: int, end: int) -> None:
+        """Close the brackets whose `)` is lost in a string or comment that runs to the end of its line."""
+        lost = self.text.count(")", start, end) - self.text.count("(", start, end)
+        for _ in range(min(lost, len(self._brackets))):
+            self._brackets.pop()
+            self._add(CLOSE, end, end)
 
     def _end_brackets(self, count: int, position: int, because: int | None) -> None:
         """Close `count` brackets where no `)` is, so that the parser sees them closed; report the outermost."""
@@ -415,31 +494,46 @@ class Lexer:
         if because is not None:
             end = line_end(self.text, because)
             related = (Related(Place(Span(because, end)), "the brackets end before this line"),)
-        self.problems.append(
-            Diagnostic("unclosed-bracket", Span(opened, opened + 1), "this `(` has no `)`", related=related)
-        )
         del self._brackets[-count:]
         end = self.starts[-1] + len(self.raws[-1])
         for _ in range(count):
             self._add(CLOSE, end, end)
+        fix = replace_fix("Add `)`", Span(end, end), ")" * count)
+        message = "this `(` has no `)`"
+        span = Span(opened, opened + 1)
+        self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
 
     # ---- reports ----
 
     def _report(self, rule: str, start: int, end: int, message: str, notes: tuple[str, ...] = ()) -> None:
         self.problems.append(Diagnostic(rule, Span(start, end), message, notes=notes))
 
-    def _report_indentation(self, blanks: str, expected: str, position: int) -> None:
-        if set(blanks) - set(expected) or set(expected) - set(blanks):
-            message = "tabs and blanks are mixed: this indentation cannot be compared with the block's"
+    def _report_indentation(self, blanks: str, expected: str) -> None:
+        if expected.startswith(blanks) or blanks.startswith(expected):
+            message = f"no open block is indented by {_shown(blanks)}"
         else:
-            message = "this indentation fits no open block"
-        note = f"it is read as the block indented by {_shown(expected)}"
-        span = Span(position - len(blanks), position)
-        fix = replace_fix("Indent it like that block", span, expected)
+            message = f"tabs and blanks are mixed: {_shown(blanks)} cannot be compared with {_shown(expected)}"
+        note = f"the line is read as if indented by {_shown(expected)}"
+        span = Span(self.line_start, self.line_start + len(blanks))
+        fix = replace_fix(f"Indent it by {_shown(expected)}", span, expected)
         self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
 
 
 # ---- pieces ----
+
+
+def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
+    """What stands there is no unit; the fixes replace it by what was probably meant."""
+    word = text[start:end]
+    glued = start > 0 and text[start - 1].isdigit()
+    symbols = nearest_units(word)
+    fixes = tuple(
+        replace_fix(f"Replace `{word}` by `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
+        for symbol in symbols
+    )
+    notes = ("a name that begins with a digit is written in quotes",) if glued and not symbols else ()
+    message = f"`{word}` is no unit" + (f": did you mean `{symbols[0]}`?" if symbols else "")
+    return Diagnostic("unknown-unit", Span(start, end), message, notes=notes, fixes=fixes)
 
 
 def _has_line_end(text: str, start: int, end: int) -> bool:
@@ -473,7 +567,6 @@ _INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
     "!": "write `not`",
-    ";": "a line ends without a sign",
     "[": "attributes stand in `( … )`",
     "{": "a blackboard entry is written `{key}`, on one line and without quotes",
     "\xa0": "this is a no-break space: use an ordinary blank",
@@ -484,15 +577,17 @@ _PIECES: Final = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
-_WORD_WITH_SIGN: Final = re.compile(r"[^\s(),]+")
+_WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
+_ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
+_ALIASES: Final = 16  # columns taken for one block; more of them would only cost time
 # The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
 _TOP_LINE: Final = re.compile(
     r"""
     BehaviorTree [ \t]+ ID [ \t]* = (?!=)
-    | (?:BehaviorTree|Root|TreeNodesModel) [ \t]* (?= [\r\n(] | \Z )
+    | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
     | (?:BehaviorTree|Root|TreeNodesModel|include|signal|context|apply|quality|qualities|QualityReq)
       (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
-        | [ \t]* (?: "(?:[^"\\\r\n]|\\.)*" | '(?:[^'\\\r\n]|\\.)*' ) )
+        | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
       (?! [ \t]* = )
     """,
     re.VERBOSE,

@@ -340,7 +340,6 @@ class Parser(NodeParser):
             where = "inside a Root" if in_root else "in this file"
             self.complain("second-root", word.span.shifted(self.base), f"a second Root {where}: there is one")
         self.has_root = True
-        self.lexer.enter_root()
         end = self.end_line()
         item = Root(word.start, end, name, attributes, bracketed)
         self.entry(item, in_root)

@@ -14,6 +14,7 @@ from typing import Final
 
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 from btq_lang.units import SYMBOLS as UNITS
+from btq_lang.units import parse_unit
 
 COMPILED: Final = not __file__.endswith(".py")
 
@@ -87,7 +88,8 @@ def number_at(text: str, start: int) -> tuple[int, int]:
     """What begins at `start`, a digit or a `-` and a digit, and where it ends.
 
     Returns:
-        NUMBER or QUANTITY and the end, or ERROR and the end of the number where a word that is no unit is glued to it.
+        NUMBER or QUANTITY and the end, or ERROR and the end of the number where a word that is no unit is glued to it
+        or units follow it that make none together.
     """
     size = len(text)
     end = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
@@ -96,9 +98,10 @@ def number_at(text: str, start: int) -> tuple[int, int]:
         unit += 1
     if unit < size and ((character := text[unit]).isalpha() or character in "_%1°"):
         unit_end = unit_at(text, unit)
-        if unit_end > unit and not _FOLLOWS(text, unit_end):
-            return QUANTITY, unit_end
-        if unit == end and (character.isalpha() or character == "_"):
+        if unit_end > unit:
+            if not _FOLLOWS(text, unit_end):
+                return (QUANTITY, unit_end) if is_unit(text[unit:unit_end]) else (ERROR, end)
+        elif character == "°" or (unit == end and (character.isalpha() or character == "_")):
             return ERROR, end
     return NUMBER, end
 
@@ -122,11 +125,23 @@ def unit_at(text: str, start: int) -> int:
     return start if text[start:end] == "1" else end
 
 
+def is_unit(word: str) -> bool:
+    """Whether a whole word is a unit: `degC` and `s` are, `degC/s` is not."""
+    return word in UNITS or parse_unit(word) is not None
+
+
+def unit_run(text: str, start: int) -> int:
+    """The end of what somebody probably wrote as a unit, right or wrong."""
+    return _UNIT_RUN(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+
+
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
 _NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
-_FACTOR: Final = re.compile(r"([^\W\d_]+|[%1])(?:\^-?\d+)?(?![\w^])").match
+# A unit is a whole word: in `6 m-base` and `6 m!` there is none.
+_FACTOR: Final = re.compile(r"([^\W\d_]+(?!-\w|[?!](?!=))|[%1])(?:\^-?\d+)?(?![\w^])").match
+_UNIT_RUN: Final = re.compile(r"(?:[\w%°·^]|(?<=\^)-|[*/](?=[^\W_]|[%°]))*").match
 _FOLLOWS: Final = re.compile(r"[ \t]*(?:=(?!=)|\()").match
 _BY_FIRST: Final = {
     first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
