@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
+_SYMBOLS_LIKE_OPTIONS = ("->",)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -24,6 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given in (["--version"], ["-V"]):
         print(f"btq {__version__}")
         return CLEAN
+    if given[:1] == ["explain"]:  # `->` is a node, not an option
+        given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
     options = build_parser().parse_args(given)
     try:
         run = options.run

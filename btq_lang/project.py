@@ -119,7 +119,7 @@ def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[
     severities = dict(project.severities)
     for diagnostic in diagnostics:
         rule = diagnostic.rule
-        if rule in project.ignore or (project.select and rule not in project.select):
+        if rule not in _ALWAYS and (rule in project.ignore or (project.select and rule not in project.select)):
             continue
         if rule not in severities:
             yield diagnostic
@@ -136,6 +136,10 @@ def include_candidates(project: Project, path: str, include: str) -> tuple[str, 
     """Where an included file may be, best first: beside the file at `path`, then in the include paths."""
     folders = (os.path.dirname(path), *project.include_paths)
     return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
+
+
+# A file that cannot be read as it stands is never passed off as clean by a selection.
+_ALWAYS = frozenset(("syntax-error",))
 
 
 class _Complaint(NamedTuple):

@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from btq_lang.checks import children, includes, kinds, literals, names, ports, requirements, trees
+from btq_lang.checks import children, includes, kinds, literals, names, ports, qualities, requirements, trees
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
+from btq_lang.project import configured
 from btq_lang.record import replace
 from btq_lang.syntax import Entry
 from btq_lang.text import Span
@@ -51,10 +52,10 @@ CHECKS: tuple[Check, ...] = (
     requirements.conflicting_requirement,
     requirements.unused_requirement,
     requirements.requirement_without_text,
+    qualities.unknown_quality,
+    qualities.old_quality_name,
+    qualities.ambiguous_quality,
 )
-
-# A file that cannot be read as it stands is never reported as clean.
-ALWAYS = frozenset(("syntax-error",))
 
 
 def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
@@ -75,24 +76,11 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     for entry in view.file.parsed.entries:
         diagnostics = [*entry.diagnostics, *(diagnostic for check in CHECKS for diagnostic in check(view, entry))]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
-    found = list(_as_configured(found, workspace))
+    found = list(configured(workspace.project, found))
     if found and "btq:" in view.file.text:
         suppressed = suppressed_lines(view.file)
         found = [each for each in found if not suppressed(each)]
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
-
-
-def _as_configured(found: list[Diagnostic], workspace: Workspace) -> Iterator[Diagnostic]:
-    project = workspace.project
-    severities = dict(project.severities)
-    for diagnostic in found:
-        rule = diagnostic.rule
-        if rule not in ALWAYS and (rule in project.ignore or (project.select and rule not in project.select)):
-            continue
-        if rule not in severities:
-            yield diagnostic
-        elif (severity := severities[rule]) is not None:
-            yield replace(diagnostic, severity=severity)
 
 
 def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:

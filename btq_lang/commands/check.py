@@ -12,12 +12,11 @@ from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.fixes import fixed
 from btq_lang.loader import LoadProblem, shown, write_whole
-from btq_lang.near import near
-from btq_lang.project import Project
+from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
-from btq_lang.rules import RULES, Severity
+from btq_lang.rules import Severity
 from btq_lang.workspace import Workspace
 
 _ORDER = tuple(Severity)
@@ -27,10 +26,10 @@ _ROUNDS = 10  # of fixing: a fix may make room for another
 
 def run(options: Namespace) -> int:
     """Check once, or again and again with `--watch`."""
-    unknown = _unknown_rules(options)
-    if unknown:
-        print(unknown, file=sys.stderr)
-        return 2
+    for rule in _rules(options.select) + _rules(options.ignore):
+        if trouble := unknown_rule(rule):
+            print(f"btq check: {trouble}", file=sys.stderr)
+            return 2
     files = Files()
     code, watched = _check(options, files)
     if options.watch and STDIN not in options.paths:
@@ -158,15 +157,6 @@ def _configured(workspace: Workspace, options: Namespace) -> Workspace:
 
 def _rules(given: list[str]) -> tuple[str, ...]:
     return tuple(rule.strip() for words in given for rule in words.split(",") if rule.strip())
-
-
-def _unknown_rules(options: Namespace) -> str:
-    for rule in _rules(options.select) + _rules(options.ignore):
-        if rule not in RULES:
-            likely = near(rule, RULES)
-            meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists the rules"
-            return f"btq check: there is no rule `{rule}`{meant}"
-    return ""
 
 
 def _is_wanted(diagnostic: Diagnostic, options: Namespace) -> bool:

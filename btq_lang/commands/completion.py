@@ -6,9 +6,12 @@ import sys
 from argparse import Namespace
 
 from btq_lang.cli import build_parser
+from btq_lang.rules import RULES
 from btq_lang.shell import completion_script
 
 
 def run(options: Namespace) -> int:
-    sys.stdout.write(completion_script(options.shell, build_parser()))
+    sys.stdout.write(
+        completion_script(options.shell, build_parser(), dict.fromkeys(("subject", "select", "ignore"), RULES))
+    )
     return 0
