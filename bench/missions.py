@@ -164,7 +164,7 @@ def _tree_name(index: int, draw: _Draw) -> str:
         return "mainTree"
     words = [draw.of(_VERBS), draw.of(_THINGS)]
     if draw.chance(0.16):
-        return f"{index} {words[0].lower()} {words[1].lower()}"
+        return f"{index}-{words[0].lower()}-{words[1].lower()}"  # in btq quoted, for the engine a name
     return f"{words[0]}{words[1]}{index}"
 
 
