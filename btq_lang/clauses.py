@@ -8,8 +8,10 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.cursor import Cursor
-from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.scan import unit_at
+from btq_lang.diagnostics import replace_fix
+from btq_lang.lexer import unknown_unit
+from btq_lang.near import near
+from btq_lang.scan import is_unit, unit_run
 from btq_lang.syntax import (
     Amount,
     Argument,
@@ -47,10 +49,10 @@ from btq_lang.syntax import (
     Table,
     Window,
     Word,
+    unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
-from btq_lang.units import nearest_units
+from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
@@ -76,7 +78,8 @@ FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "
 COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
 
-MAX_NESTING: Final = 100  # of brackets, `not` and signs in one condition
+MAX_NESTING: Final = 50  # of brackets in one condition
+MAX_OPERATORS: Final = 100  # in one condition
 
 
 class ClauseParser(Cursor):
@@ -84,7 +87,8 @@ class ClauseParser(Cursor):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        self._nesting = 0
+        self._nesting = 0  # how many conditions are open, one in the brackets of another
+        self._operators = 0  # how many the outermost of them has so far
 
     # ---- requirements ----
 
@@ -187,7 +191,7 @@ class ClauseParser(Cursor):
                 return tuple(found)
             found.append(clause)
         if at_least_one and not found:
-            self.expected("a clause: takes, keeps, in at least, on violation, …")
+            self.expected(_A_CLAUSE)
         return tuple(found)
 
     def clause(self) -> Clause | None:
@@ -226,6 +230,9 @@ class ClauseParser(Cursor):
             self.expect_word("by")
             method = self.one_of(METHODS)
             return How(start, self.last_end(), method)
+        if self.wrong_unit() and not self.is_verb(1):
+            self.expected(_A_CLAUSE)
+            return None
         return self.claim()
 
     def odds(self) -> Odds:
@@ -282,10 +289,8 @@ class ClauseParser(Cursor):
         if not (self.kind == NAME and self.raw in VERBS):
             subject = self.subject()
         if not (self.kind == NAME and self.raw in VERBS):
-            if subject is None or isinstance(subject, Path):
-                self.expected("a clause (takes, keeps, in at least, on violation, …), or a node and a verb")
-            else:
-                self.expected("a verb: takes, succeeds, needs, keeps, …")
+            if subject is not None:
+                self.no_verb(subject)
             return None
         verb = self.take()
         bound: Bound | None = None
@@ -321,6 +326,30 @@ class ClauseParser(Cursor):
             event = self.event() if self.expect_word("after") else None
         return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
 
+    def is_verb(self, further: int) -> bool:
+        """Whether the next word but `further` is a verb."""
+        index = self.index + further
+        return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERBS
+
+    def no_verb(self, subject: Subject) -> None:
+        """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
+        if self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
+            self.misspelt(self.here(), self.raw, likely[0])
+        elif not isinstance(subject, Path):
+            self.expected(_A_VERB)
+        elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERBS | HEADS, limit=1)):
+            self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
+        else:
+            name = "/".join(word.raw for word in subject.names)
+            shown = name if len(name) < 40 else f"{name[:37]}…"
+            self.expected(f"a verb behind `{shown}` (takes, succeeds, needs, keeps, …)", (_INSTEAD_OF_A_NODE,))
+
+    def misspelt(self, span: Span, word: str, likely: str) -> None:
+        """Complain of a word that begins no clause, and pass over the rest."""
+        fix = replace_fix(f"Replace `{word}` by `{likely}`", span, likely)
+        self.complain("syntax-error", span, f"`{word}` begins no clause: did you mean `{likely}`?", (), (fix,))
+        self.recover()
+
     def subject(self) -> Subject | None:
         """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
         start = self.start()
@@ -333,10 +362,10 @@ class ClauseParser(Cursor):
             first = self.event()
             last = self.event() if self.expect_word("to") else None
             return Between(start, self.last_end(), first, last)
-        if self.at_word("sum") and self.is_word(self.index + 1, "of"):
-            self.advance()
-            self.advance()
+        if self.accept_word("sum"):
             paths: list[Path] = []
+            if not self.expect_word("of"):
+                return None
             while path := self.path("a node"):
                 paths.append(path)
                 if not self.accept(","):
@@ -430,18 +459,16 @@ class ClauseParser(Cursor):
         """UNIT, behind the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
         first = self.starts[self.index]
         start = self.start()
-        if self.kind == NEWLINE or self.kind == CLOSE:
-            self.expected("a unit: s, m/s, %, 1, bool or text")
+        if self.kind not in (NAME, NUMBER, QUANTITY, STRING) and not self.at("%"):
+            self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
-        end = unit_at(self.text, first)
-        if end == first:
-            word = self.raw
-            end = first + len(word)
-            if word not in UNITLESS:
-                fixes = tuple(
-                    replace_fix(f"Replace it by `{near}`", Span(first, end), near) for near in nearest_units(word)
-                )
-                self.problems.append(Diagnostic("unknown-unit", Span(first, end), f"`{word}` is no unit", fixes=fixes))
+        end = max(unit_run(self.text, first), first + len(self.raw))  # right or wrong
+        word = self.text[first:end]
+        if self.kind == STRING and is_unit(inner := unquote(word)):
+            fix = replace_fix(f"Write `{inner}`", self.here(), inner, safe=True)
+            self.complain("syntax-error", self.here(), "a unit stands without quotes", (), (fix,))
+        elif word not in UNITLESS and not is_unit(word):
+            self.report(unknown_unit(self.text, first, end))
         while self.starts[self.index] < end and self.kind != NEWLINE:
             self.advance()
         return Word(NAME, start, self.text[first:end])
@@ -450,22 +477,42 @@ class ClauseParser(Cursor):
 
     def cond(self) -> Condition | None:
         """Cond = Conj { "or" Conj }"""
+        if self._nesting == 0:
+            self._operators = 0
         if self._nesting >= MAX_NESTING:
-            at = self.starts[self.index]
-            self.complain(
-                "nested-too-deep", Span(at, at + len(self.raw)), f"more than {MAX_NESTING} brackets in brackets"
-            )
-            self.recover()
+            self.too_deep(f"more than {MAX_NESTING} brackets in brackets")
             return None
         self._nesting += 1
         left = self.conj()
-        while left is not None and self.accept_word("or"):
+        while left is not None and (self.accept_word("or") or self.accept_wrong_or()):
             right = self.conj()
             if right is None:
                 break
-            left = Binary(left.start, right.end, "or", left, right)
+            left = self.binary("or", left, right)
         self._nesting -= 1
         return left
+
+    def accept_wrong_or(self) -> bool:
+        """`||`, reported and read as `or`"""
+        if self.kind != SYMBOL or self.raw != "||":
+            return False
+        fix = replace_fix("Write `or`", self.here(), "or", safe=True)
+        self.complain("syntax-error", self.here(), "conditions are joined by `or`, not by `||`", (), (fix,))
+        self.advance()
+        return True
+
+    def binary(self, operator: str, left: Condition, right: Condition) -> Condition:
+        """Two operands and what joins them; too many in one condition are reported, for a chain is a deep tree."""
+        self._operators += 1
+        if self._operators > MAX_OPERATORS:
+            self.too_deep(f"more than {MAX_OPERATORS} operators in one condition")
+            return left
+        return Binary(left.start, right.end, operator, left, right)
+
+    def too_deep(self, message: str) -> None:
+        note = "write a part of it as a context of its own: `context part : …`"
+        self.complain("nested-too-deep", self.here(), message, (note,))
+        self.recover()
 
     def conj(self) -> Condition | None:
         """Conj = Neg { "and" Neg }"""
@@ -474,7 +521,7 @@ class ClauseParser(Cursor):
             right = self.neg()
             if right is None:
                 break
-            left = Binary(left.start, right.end, "and", left, right)
+            left = self.binary("and", left, right)
         return left
 
     def neg(self) -> Condition | None:
@@ -500,11 +547,10 @@ class ClauseParser(Cursor):
         operands = [first]
         while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
             if self.raw == "=":
-                if self.group:
+                if self.group and self._nesting < 2:  # the next attribute's
                     break
-                at = self.starts[self.index]
-                fix = replace_fix("Write `==`", Span(at, at + 1), "==", safe=True)
-                self.complain("syntax-error", Span(at, at + 1), "values are compared with `==`", (), (fix,))
+                fix = replace_fix("Write `==`", self.here(), "==", safe=True)
+                self.complain("syntax-error", self.here(), "values are compared with `==`", (), (fix,))
             if len(operators) == 2:
                 self.expected("at most two comparisons in a row")
                 break
@@ -520,7 +566,16 @@ class ClauseParser(Cursor):
 
     def ends_condition(self) -> bool:
         """Whether the next word ends the operand at hand, so that a lone `node` is a name like any other."""
-        return self.raws[self.index + 1] in HEADS or self.raws[self.index + 1] in ("and", "or")
+        return self.raws[self.index + 1] in _ENDS_OPERAND
+
+    def at_keyword(self) -> bool:
+        """Whether the word at hand begins a clause or joins conditions; without what must follow it is a name."""
+        if self.raw not in _ENDS_OPERAND:
+            return False
+        following = self.index + 1
+        if self.raw in _FOLLOWED_BY:
+            return self.is_word(following, _FOLLOWED_BY[self.raw])
+        return self.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) and not self.ends_condition()
 
     def expr(self) -> Condition | None:
         """Expr = Term { ( "+" | "-" ) Term }"""
@@ -531,7 +586,7 @@ class ClauseParser(Cursor):
             right = self.term()
             if right is None:
                 break
-            left = Binary(left.start, right.end, operator, left, right)
+            left = self.binary(operator, left, right)
         return left
 
     def term(self) -> Condition | None:
@@ -543,7 +598,7 @@ class ClauseParser(Cursor):
             right = self.factor()
             if right is None:
                 break
-            left = Binary(left.start, right.end, operator, left, right)
+            left = self.binary(operator, left, right)
         return left
 
     def factor(self) -> Condition | None:
@@ -566,7 +621,7 @@ class ClauseParser(Cursor):
                 signal = self.plain_name("a signal")
                 self.close_group("`)`")
                 return Call(start, self.last_end(), function, signal)
-            if self.raw not in HEADS:
+            if not self.at_keyword():
                 return Operand(self.take())
         if self.kind == OPEN:
             self.advance()
@@ -574,14 +629,22 @@ class ClauseParser(Cursor):
             inner = self.cond()
             self.close_group("`)`")
             return inner
-        self.expected("a condition: a signal, a context, a value, …", _instead(self.raw))
+        self.expected("a condition: a signal, a context, a value, …")
         return None
 
 
-def _instead(raw: str) -> tuple[str, ...]:
-    return ("write `or`",) if raw == "||" else ()
-
-
+_A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
+_A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
+_INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
+_ENDS_OPERAND: Final = HEADS | {"and", "or", "if", "else"}
+_FOLLOWED_BY: Final = {
+    "in": "at",
+    "with": "probability",
+    "over": "last",
+    "on": "violation",
+    "verified": "by",
+    "sum": "of",
+}
 _RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}

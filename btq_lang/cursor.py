@@ -1,15 +1,18 @@
 """The cursor: where a parse stands in its logical line, and the few moves and complaints every production is made of.
 
 One invariant: no move goes behind the NEWLINE that ends the line, so a production may look at what follows without
-asking whether anything does.  One mistake gives one complaint: a second one on the same line of text is not reported.
+asking whether anything does.  One mistake gives one complaint: a second one on the same line of text is not reported,
+nor is one where the lexer has said what is wrong.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from typing import Final
 
 from btq_lang.diagnostics import Diagnostic, Fix
-from btq_lang.lexer import Lexer
+from btq_lang.lexer import Lexer, unknown_unit
+from btq_lang.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax import Word
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
@@ -40,23 +43,28 @@ class Cursor:
         self.more = False
         self.group = 0
         self.problems: list[Diagnostic] = []
-        self._complained_at = -1
+        self._silent_from = self._silent_to = -1  # the last line of text with a complaint
+        self._known = 0  # how many problems the lexer had before this logical line
+        self._said: list[int] | None = None  # where it found a mistake in it
+        self._unclosed = len(text)  # the first of its brackets that is not closed
 
     # ---- lines ----
 
     def scan(self) -> None:
         """Cut the open line into tokens and stand on the first."""
         lexer = self.lexer
+        self._known = len(lexer.problems)
         lexer.scan()
         self.kinds, self.starts, self.raws = lexer.kinds, lexer.starts, lexer.raws
         self.index = 0
         self.kind = self.kinds[0]
         self.raw = self.raws[0]
+        self._said = None
 
-    def end_line(self) -> int:
+    def end_line(self, notes: tuple[str, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
         if self.kind != NEWLINE:
-            self.expected("the end of the line")
+            self.expected("the end of the line", notes)
         last = len(self.kinds) - 2
         end = self.starts[last] + len(self.raws[last]) if last >= 0 else self.starts[0]
         self.more = self.lexer.open_line()
@@ -120,10 +128,11 @@ class Cursor:
             return True
         return False
 
-    def expect(self, operator: str) -> bool:
+    def expect(self, operator: str, further: str = "") -> bool:
+        """The operator, and `further` is what a complaint says about it."""
         if self.accept(operator):
             return True
-        self.expected(f"`{operator}`")
+        self.expected(f"`{operator}`{further}")
         return False
 
     def expect_word(self, word: str) -> bool:
@@ -170,7 +179,11 @@ class Cursor:
     # ---- complaints ----
 
     def here(self) -> Span:
-        """The token at hand, counted from the start of the file."""
+        """The token at hand, counted from the start of the file; where the line ends, the place behind its last
+        token."""
+        if self.kind == NEWLINE:
+            at = self.last_end() + self.base
+            return Span(at, at)
         at = self.starts[self.index]
         return Span(at, at + len(self.raw))
 
@@ -180,32 +193,61 @@ class Cursor:
             return "the end of the line"
         if self.kind == CLOSE and not self.raw:
             return "the end of the brackets"
-        shown = self.raw.split("\n", 1)[0]
+        shown = self.raw[: line_end(self.raw, 0)]
         return f"`{shown if len(shown) <= 40 else shown[:37] + '…'}`"
 
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
         attribute, or to the end of the line."""
-        at = self.starts[self.index]
-        self.complain(
-            "syntax-error", Span(at, at + len(self.raw)), f"expected {what}, found {self.found()}", notes, fixes
-        )
+        wrong_unit = self.wrong_unit()
+        if wrong_unit is not None:
+            self.report(wrong_unit)
+        else:
+            self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", notes, fixes)
         self.recover()
+
+    def wrong_unit(self) -> Diagnostic | None:
+        """What is probably meant as a unit: the word behind a number, or what follows `30 m/`."""
+        if self.index == 0:
+            return None
+        before = self.kinds[self.index - 1]
+        start = self.starts[self.index - 1]
+        at = self.starts[self.index]
+        if before == NUMBER and self.kind == NAME and line_end(self.text, start) > at:
+            found = unknown_unit(self.text, at, max(unit_run(self.text, at), at + len(self.raw)))
+            return found if found.fixes else None
+        if before == QUANTITY and (self.at("/") or self.at("*")) and self.adjacent(self.index):
+            unit = number_end(self.text, start)
+            unit += len(self.text[unit:at]) - len(self.text[unit:at].lstrip())
+            end = unit_run(self.text, unit)
+            return unknown_unit(self.text, unit, end) if end > at else None
+        return None
 
     def complain(
         self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()
     ) -> None:
         """Report, if nothing was reported on this line of text yet; `span` counts from the start of the file."""
-        last = self._complained_at
-        if last >= 0 and self._same_line(last, span.start):
+        self.report(Diagnostic(rule, span, message, (), notes, fixes))
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Report, if nothing was reported on this line of text yet."""
+        at = diagnostic.span.start
+        if self._silent_from <= at <= self._silent_to:
             return
-        self._complained_at = span.start
-        for problem in reversed(self.lexer.problems):
-            if problem.span.end < self.starts[0]:
-                break
-            if problem.rule in _SAID and self._same_line(problem.span.end, span.start):
-                return  # the lexer has said what is wrong here
-        self.problems.append(Diagnostic(rule, span, message, (), notes, fixes))
+        lower = self._silent_to if 0 <= self._silent_to < at else min(self.starts[0], at)
+        self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
+        if not self._lexer_complained(at):
+            self.problems.append(diagnostic)
+
+    def _lexer_complained(self, at: int) -> bool:
+        """Whether the lexer found a mistake on this line of text, or brackets that it has closed itself hold it."""
+        if self._said is None:
+            found = self.lexer.problems[self._known :]
+            self._said = sorted(problem.span.start for problem in found if problem.rule in _SAID)
+            unclosed = [problem.span.start for problem in found if problem.rule == "unclosed-bracket"]
+            self._unclosed = min(unclosed, default=len(self.text))
+        next_said = bisect_left(self._said, self._silent_from)
+        return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
 
     def recover(self) -> None:
         """To the next `key =` or the closing bracket of the group at hand; outside brackets to the end of the line."""
@@ -223,10 +265,9 @@ class Cursor:
                 return
             self.advance()
 
-    def _same_line(self, first: int, second: int) -> bool:
-        return self.text.find("\n", first, second) < 0 and self.text.find("\r", first, second) < 0
-
 
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
 # Mistakes that the lexer reports and that leave something missing for the parser.
-_SAID: Final = frozenset(("syntax-error", "unclosed-bracket", "unclosed-string", "misplaced-comment", "unknown-unit"))
+_SAID: Final = frozenset(
+    ("syntax-error", "unclosed-bracket", "unclosed-string", "unclosed-comment", "misplaced-comment", "unknown-unit")
+)

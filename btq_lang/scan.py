@@ -63,6 +63,11 @@ def line_end(text: str, start: int) -> int:
     return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
+def line_start(text: str, lower: int, position: int) -> int:
+    """Where the line of text begins, at least `lower`."""
+    return max(text.rfind("\n", lower, position) + 1, text.rfind("\r", lower, position) + 1, lower)
+
+
 def symbol_at(text: str, start: int) -> str:
     """The longest symbol that begins at `start`; empty where none does."""
     for symbol in _BY_FIRST.get(text[start], ()):
@@ -82,6 +87,12 @@ def string_end(text: str, start: int, quote: str) -> int:
         if start > end:
             end = text.find(quote, start)
     return -1
+
+
+def braced_end(text: str, start: int) -> int:
+    """Behind the BRACED that begins at `start`; `start` where none does."""
+    braced = _BRACED(text, start)
+    return braced.end() if braced else start
 
 
 def number_at(text: str, start: int) -> tuple[int, int]:
@@ -104,6 +115,11 @@ def number_at(text: str, start: int) -> tuple[int, int]:
         elif character == "°" or (unit == end and (character.isalpha() or character == "_")):
             return ERROR, end
     return NUMBER, end
+
+
+def number_end(text: str, start: int) -> int:
+    """Behind the number that begins at `start`, a digit or a `-` and a digit; its unit does not count."""
+    return _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
 
 
 def unit_at(text: str, start: int) -> int:
@@ -137,6 +153,7 @@ def unit_run(text: str, start: int) -> int:
 
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
+_BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
 _NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
 # A unit is a whole word: in `6 m-base` and `6 m!` there is none.
