@@ -79,6 +79,7 @@ class Lexer:
         position: where the next thing is read.
         level: how many blocks are open around the line.
         line_start: where the line begins, its blanks included.
+        blanks: the blanks it begins with.
         kinds, starts, raws: the tokens of the line after `scan`; the last one is always a NEWLINE.
         comments: start and end of every comment so far.
         problems: what was wrong so far.
@@ -90,6 +91,7 @@ class Lexer:
         self.position = 1 if text.startswith("\ufeff") else 0
         self.level = 0
         self.line_start = self.position
+        self.blanks = ""
         self.kinds: list[int] = []
         self.starts: list[int] = []
         self.raws: list[str] = []
@@ -126,7 +128,8 @@ class Lexer:
             else:
                 self.position = position
                 self.line_start = start
-                self._indent(text[start : blanks_end if blanks_end >= 0 else position])
+                self.blanks = text[start : blanks_end if blanks_end >= 0 else position]
+                self._indent(self.blanks)
                 return True
         self.position = position
         self.level = 0
@@ -265,7 +268,7 @@ class Lexer:
             return self._quote_this(start)
         if text[start : start + 2] in _TWO or character in ":.<>+-*/%^":
             return self._operator(start)
-        if self._brackets and character not in _INSTEAD and self._in_value(start):
+        if self._brackets and character not in _INSTEAD and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
         end = start + 1
         while end < self.size and text[end] == character:

@@ -10,6 +10,7 @@ from typing import Final
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import replace_fix
+from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -25,14 +26,9 @@ from btq_lang.syntax import (
     Word,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CLOSE, NAME, NEWLINE, OPEN, OPERATOR, STRING, SYMBOL
+from btq_lang.tokens import CATEGORIES, CLOSE, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, OPERATOR, STRING, SYMBOL
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
-
-CATEGORIES: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
-NODE_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags"))
-_ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
-DIRECTIONS: Final = frozenset(("input", "output", "inout"))
 
 
 class NodeParser(ClauseParser):
@@ -40,53 +36,61 @@ class NodeParser(ClauseParser):
 
     def tree_block(self, level: int) -> tuple[tuple[Port, ...], tuple[NodeClause, ...], tuple[Node | Verbatim, ...]]:
         """INDENT { Port } { ClauseLine } { Node } DEDENT"""
+        lexer = self.lexer
         ports: list[Port] = []
-        clauses: list[NodeClause] = []
-        top: list[Node | Verbatim] = []
-        open_nodes: list[_Open] = []
+        block = _Block(level, None)
+        blocks = [block]
         told_too_deep = False
         while self.deeper(level):
-            inner = self.lexer.level
-            while open_nodes and open_nodes[-1].level >= inner:
-                node = open_nodes.pop().close()
-                siblings = open_nodes[-1].children if open_nodes else top
-                siblings.append(node)
-            self.scan()
-            parent = open_nodes[-1] if open_nodes else None
-            children = parent.children if parent is not None else top
-            word = self.raw if self.kind == NAME else ""
-            if word in NODE_CLAUSES:
-                if children:
-                    self.complain(
-                        "clause-after-children",
-                        self.here(),
-                        "clauses stand before children",
-                        (f'a node of this name is written in quotes: "{word}"',),
-                    )
-                (parent.clauses if parent is not None else clauses).extend(self.clause_line(inner))
-            elif word == "xml" and self.kinds[1] == STRING:
-                children.append(self.verbatim())
-                self.no_block(inner)
-            elif word in DIRECTIONS and parent is None and not top:
-                ports.append(self.port())
+            inner = lexer.level
+            while block.level >= inner:
+                blocks.pop().close()
+                block = blocks[-1]
+            node: Node | None = None
+            if len(blocks) <= MAX_DEPTH and (plain := plain_node(self.text, lexer.position, lexer.blanks, self.base)):
+                node, lexer.position = plain
+                self.more = lexer.open_line()
+            elif not block.children and (line := plain_clauses(self.text, lexer.position, self.base)):
+                clauses, lexer.position = line
+                block.clauses += clauses
+                self.more = lexer.open_line()
                 self.no_block(inner)
             else:
-                if len(open_nodes) >= MAX_DEPTH:
-                    if not told_too_deep:
-                        told_too_deep = True
-                        self.complain("nested-too-deep", self.here(), f"more than {MAX_DEPTH} levels of nodes")
-                    children = open_nodes[-2].children
-                    children.append(open_nodes.pop().close())
-                node_open = self.node(inner)
-                if node_open is not None:
-                    open_nodes.append(node_open)
-        while open_nodes:
-            node = open_nodes.pop().close()
-            siblings = open_nodes[-1].children if open_nodes else top
-            siblings.append(node)
-        return tuple(ports), tuple(clauses), tuple(top)
+                self.scan()
+                word = self.raw if self.kind == NAME else ""
+                if word in NODE_CLAUSES:
+                    if block.children:
+                        self.complain(
+                            "clause-after-children",
+                            self.here(),
+                            "clauses stand before children",
+                            (f'a node of this name is written in quotes: "{word}"',),
+                        )
+                    block.clauses += self.clause_line(inner)
+                elif word == "xml" and self.kinds[1] == STRING:
+                    block.children.append(self.verbatim())
+                    self.no_block(inner)
+                elif word in DIRECTIONS and len(blocks) == 1 and not block.children:
+                    ports.append(self.port())
+                    self.no_block(inner)
+                else:
+                    if len(blocks) > MAX_DEPTH:
+                        if not told_too_deep:
+                            told_too_deep = True
+                            self.complain("nested-too-deep", self.here(), f"more than {MAX_DEPTH} levels of nodes")
+                        blocks.pop().close()
+                        block = blocks[-1]
+                    node = self.node(inner)
+            if node is not None:
+                block.children.append(node)
+                if self.deeper(inner):
+                    block = _Block(inner, node)
+                    blocks.append(block)
+        for open_block in blocks:
+            open_block.close()
+        return tuple(ports), tuple(blocks[0].clauses), tuple(blocks[0].children)
 
-    def node(self, level: int) -> _Open | None:
+    def node(self, level: int) -> Node | None:
         """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
         start = self.start()
         category: Word | None = None
@@ -110,7 +114,7 @@ class NodeParser(ClauseParser):
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             clauses.append(self.node_clause())
         end = self.end_line()
-        return _Open(level, start, end, category, kind, label, attributes, clauses)
+        return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
 
     def at_label(self) -> bool:
         return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
@@ -346,40 +350,19 @@ class NodeParser(ClauseParser):
         self.skip_block(level)
 
 
-class _Open:
-    """A node whose block may still go on."""
+class _Block:
+    """The open block of a node, or of the tree itself: what was read of it so far."""
 
-    __slots__ = ("attributes", "category", "children", "clauses", "end", "kind", "label", "level", "start")
+    __slots__ = ("children", "clauses", "level", "node")
 
-    def __init__(
-        self,
-        level: int,
-        start: int,
-        end: int,
-        category: Word | None,
-        kind: Word | None,
-        label: Word | None,
-        attributes: tuple[Pair, ...],
-        clauses: list[NodeClause],
-    ) -> None:
-        self.level: Final = level
-        self.start: Final = start
-        self.end: Final = end
-        self.category: Final = category
-        self.kind: Final = kind
-        self.label: Final = label
-        self.attributes: Final = attributes
-        self.clauses: Final = clauses
-        self.children: Final[list[Node | Verbatim]] = []
+    def __init__(self, level: int, node: Node | None) -> None:
+        self.level: Final = level  # of the line that opened it
+        self.node: Final = node
+        self.clauses: list[NodeClause] = []
+        self.children: list[Node | Verbatim] = []
 
-    def close(self) -> Node:
-        return Node(
-            self.start,
-            self.end,
-            self.category,
-            self.kind,
-            self.label,
-            self.attributes,
-            tuple(self.clauses),
-            tuple(self.children),
-        )
+    def close(self) -> None:
+        if self.node is not None:
+            self.node.children = tuple(self.children)
+            if self.clauses:
+                self.node.clauses += tuple(self.clauses)

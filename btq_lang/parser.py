@@ -10,11 +10,12 @@ from __future__ import annotations
 import gc
 from typing import Final
 
+from btq_lang.clauses import HEADS, VERBS
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
 from btq_lang.lexer import tokens
 from btq_lang.near import near
-from btq_lang.nodes import CATEGORIES, DIRECTIONS, NodeParser
-from btq_lang.scan import name_end
+from btq_lang.nodes import NodeParser
+from btq_lang.scan import name_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -35,8 +36,23 @@ from btq_lang.syntax import (
     Skipped,
     Tree,
     Verbatim,
+    Word,
+    quote,
+    unquote,
 )
-from btq_lang.tokens import BRACED, NAME, NEWLINE, OPEN, STRING, SYMBOL, Token
+from btq_lang.text import Span
+from btq_lang.tokens import (
+    BRACED,
+    CATEGORIES,
+    DIRECTIONS,
+    NAME,
+    NEWLINE,
+    NODE_CLAUSES,
+    OPEN,
+    STRING,
+    SYMBOL,
+    Token,
+)
 
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 
@@ -155,7 +171,8 @@ class Parser(NodeParser):
             item = self.verbatim()
         else:
             item = self.skipped(found_at)
-        self.no_block(found_at)
+        if not self.begins_item():
+            self.no_block(found_at)
         self.entry(item, in_root)
 
     def item_word(self) -> str:
@@ -165,20 +182,20 @@ class Parser(NodeParser):
         if self.raw in ITEM_WORDS:
             return self.raw
         likely = near(self.raw, ITEM_WORDS, limit=1)
-        if not likely or self.kinds[self.index + 1] not in (NAME, STRING):
+        following = self.kinds[self.index + 1]
+        if not likely or not (following in (NAME, STRING) or (likely[0] in _ALONE and following in (NEWLINE, OPEN))):
             return ""
         fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
-        self.complain("syntax-error", self.here(), f"`{self.raw}` begins no item: `{likely[0]}`?", (), (fix,))
+        message = f"`{self.raw}` begins no item: did you mean `{likely[0]}`?"
+        self.complain("syntax-error", self.here(), message, (), (fix,))
         return likely[0]
 
-    def no_block(self, level: int) -> None:
-        """As below a node, but a line that begins an item is read as one."""
-        if not (self.deeper(level) and self.begins_item()):
-            super().no_block(level)
-
     def begins_item(self) -> bool:
-        end = name_end(self.text, self.lexer.position)
-        return self.text[self.lexer.position : end] in ITEM_WORDS
+        """Whether the open line looks like an item, wherever it stands; a node may look like a model."""
+        if not self.more:
+            return False
+        word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
+        return word in ITEM_WORDS and word not in CATEGORIES and word != "xml"
 
     def entry(self, item: Item, in_root: bool) -> None:
         """File the item with the problems found before the line now open; they count from the item's start."""
@@ -197,9 +214,17 @@ class Parser(NodeParser):
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
         start = self.take().start
-        path = self.take() if self.kind == STRING else self.missing_word("a file in quotes")
+        path = self.take() if self.kind == STRING else self.unquoted_path()
         attributes = self.pairs_only()
         return Include(start, self.end_line(), path, attributes)
+
+    def unquoted_path(self) -> Word | None:
+        """Complain of `include stations.btq`; there is no path."""
+        start = self.starts[self.index]
+        end = path_end(self.text, start)
+        fix = replace_fix("Put quotes around it", Span(start, end), quote(self.text[start:end]))
+        self.expected("a file in quotes", (), (fix,) if end > start else ())
+        return None
 
     def qualities(self) -> Qualities:
         """ "qualities" NAME NL"""
@@ -230,6 +255,7 @@ class Parser(NodeParser):
             else:
                 self.expected("a node model: Action, Condition, Control, Decorator or SubTree and its ID")
                 self.end_line()
+                self.skip_block(inner)
             self.no_block(inner)
         return Models(start, end, tuple(models))
 
@@ -253,6 +279,7 @@ class Parser(NodeParser):
             else:
                 self.expected("a port (input, output or inout), metadata or xml")
                 self.end_line()
+                self.skip_block(inner)
             self.no_block(inner)
         return Model(category.start, end, category, name, attributes, text, tuple(body))
 
@@ -268,7 +295,7 @@ class Parser(NodeParser):
         """ "signal" NAME ":" UNIT [ "from" BRACED ] [ "level" | … ] [ "fresh" … ] [ "initially" … ] NL"""
         start = self.take().start
         name = self.plain_name("the signal's name")
-        unit = self.unit() if self.expect(":") else None
+        unit = self.unit() if self.expect(":", " and the signal's unit") else None
         source = behaviour = fresh = initially = None
         if self.accept_word("from"):
             source = self.take() if self.kind == BRACED else self.missing_word("a blackboard entry: {key}")
@@ -279,13 +306,14 @@ class Parser(NodeParser):
             fresh = self.quantity("a duration: 5 s")
         if self.accept_word("initially"):
             initially = self.amount(strings=True)
-        return Signal(start, self.end_line(), name, unit, source, behaviour, fresh, initially)
+        end = self.end_line((_SIGNAL_ORDER,))
+        return Signal(start, end, name, unit, source, behaviour, fresh, initially)
 
     def context(self) -> Context:
         """ "context" NAME ":" Cond NL"""
         start = self.take().start
         name = self.plain_name("the context's name")
-        condition = self.cond() if self.expect(":") else None
+        condition = self.cond() if self.expect(":", " and a condition") else None
         return Context(start, self.end_line(), name, condition)
 
     def req_item(self, level: int) -> Requirement:
@@ -298,7 +326,7 @@ class Parser(NodeParser):
         """ "apply" ReqRef { "," ReqRef } "to" Selector { "," Selector } [ "except" Selector { "," Selector } ] NL"""
         start = self.take().start
         uses: list[ReqRef] = []
-        while name := self.name("a requirement"):
+        while name := self.missing_word("a requirement") if self.at_word("to") else self.name("a requirement"):
             uses.append(self.req_ref(name))
             if not self.accept(","):
                 break
@@ -337,8 +365,9 @@ class Parser(NodeParser):
         bracketed = self.kind == OPEN
         attributes = self.pairs_only()
         if self.has_root:
-            where = "inside a Root" if in_root else "in this file"
-            self.complain("second-root", word.span.shifted(self.base), f"a second Root {where}: there is one")
+            where = "a Root inside another" if in_root else "a second Root in this file"
+            note = "a mission begins in one place: keep the Root that names its main tree, or move one to another file"
+            self.complain("second-root", word.span.shifted(self.base), where, (note,))
         self.has_root = True
         end = self.end_line()
         item = Root(word.start, end, name, attributes, bracketed)
@@ -364,7 +393,15 @@ class Parser(NodeParser):
         """A line that begins no item: it and its block are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        if self.kind == SYMBOL or (self.kind != NEWLINE and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
+        if self.kind == NAME and self.raw in NODE_CLAUSES:
+            notes = ("it stands at a node, or in the block of a node or BehaviorTree, indented",)
+        elif self.kind == NAME and (self.raw in VERBS or self.raw in HEADS):
+            notes = ("a clause stands in the block of a QualityReq, indented",)
+        elif self.kind == NAME and self.raw in DIRECTIONS:
+            notes = ("a port stands in the block of a model or BehaviorTree, indented",)
+        elif self.kind == STRING and unquote(self.raw) in ITEM_WORDS:
+            notes = ("a word in quotes is a name and begins no item",)
+        elif self.kind == SYMBOL or (self.kind != NEWLINE and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
         self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
         end = self.end_line()
@@ -377,6 +414,8 @@ class Parser(NodeParser):
         return Skipped(start, end)
 
 
+_ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
+_SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
 ITEM_WORDS: Final = (
     *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),
     *("quality", "qualities", "xml"),

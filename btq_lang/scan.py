@@ -68,6 +68,11 @@ def line_start(text: str, lower: int, position: int) -> int:
     return max(text.rfind("\n", lower, position) + 1, text.rfind("\r", lower, position) + 1, lower)
 
 
+def path_end(text: str, start: int) -> int:
+    """Behind what somebody probably wrote as a path: up to a blank, a bracket or a quote."""
+    return _PATH(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+
+
 def symbol_at(text: str, start: int) -> str:
     """The longest symbol that begins at `start`; empty where none does."""
     for symbol in _BY_FIRST.get(text[start], ()):
@@ -155,6 +160,7 @@ _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
+_PATH: Final = re.compile(r"[^\s()\"']*").match
 _NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
 # A unit is a whole word: in `6 m-base` and `6 m!` there is none.
 _FACTOR: Final = re.compile(r"([^\W\d_]+(?!-\w|[?!](?!=))|[%1])(?:\^-?\d+)?(?![\w^])").match

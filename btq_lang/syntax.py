@@ -121,8 +121,8 @@ class Node:
         self.kind: Final = kind
         self.label: Final = label
         self.attributes: Final = attributes
-        self.clauses: Final = clauses
-        self.children: Final = children
+        self.clauses = clauses  # this and the next: set once more, by the parser, when the node's block ends
+        self.children = children
 
     @property
     def span(self) -> Span:

@@ -35,6 +35,11 @@ NAMES: Final = (
 
 SYMBOLS: Final = ("->", "?", "||", "All||", "R->", "R?", "M->", "A->", "A?", "→", "⇉", "R→", "M→", "A→", "All⇉")
 
+# Words that the grammar of a tree knows by their place.
+CATEGORIES: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
+NODE_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags"))
+DIRECTIONS: Final = frozenset(("input", "output", "inout"))
+
 
 @record
 class Token:

@@ -1,0 +1,376 @@
+"""Plain lines of a tree, read straight from the text: a short cut past the tokens, for nearly all lines are plain.
+
+One invariant: what is read here is what the full path, `NodeParser`, makes of it, with nothing to complain of.  As
+soon as a line has anything unusual, a mistake above all, the answer is None and the full path reads the line from its
+start.  So nothing here knows of mistakes, of the clauses of a requirement, or of blocks; and a text that ends within a
+line is unusual as well, which shows as an IndexError.
+
+`blanks` are those of the line that opened the brackets: a line with fewer may end them (language.md §2, Brackets).
+None in their place: no further line may begin, as it may not outside brackets.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from btq_lang.scan import braced_end, line_end, name_end, number_at, symbol_at
+from btq_lang.syntax import (
+    Node,
+    NodeClause,
+    Pair,
+    Quality,
+    QualityPath,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Word,
+)
+from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, STRING, SYMBOL
+
+
+def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int] | None:
+    """Kind [ Label ] [ Attributes ] { NodeClause } NL
+
+    Args:
+        start: where the line's first word begins.
+        blanks: what stands before it.
+        base: where the item begins; offsets in the tree count from there.
+
+    Returns:
+        The node without what its block adds, and where the next line begins.
+    """
+    try:
+        category: Word | None = None
+        kind: Word | None = None
+        if symbol := symbol_at(text, start):
+            kind = Word(SYMBOL, start - base, symbol)
+            end = start + len(symbol)
+        else:
+            kind = _name(text, start, base)
+            if kind.raw in _PERHAPS_NO_NODE:
+                return None
+            end = start + len(kind.raw)
+            if kind.raw in CATEGORIES:
+                category = kind
+                at = _behind_word(text, end)
+                kind = _label(text, at, base)
+                if kind is not None:
+                    end = at + len(kind.raw)
+        at = _behind_word(text, end)
+        label = _label(text, at, base)
+        if label is not None:
+            end = at + len(label.raw)
+            at = _behind_word(text, end)
+        pairs: list[Pair] = []
+        clauses: list[NodeClause] = []
+        if text[at] == "(":
+            at = end = _attributes(text, at + 1, blanks, base, pairs, clauses)
+        if text[at] == "\n":
+            at += 1
+        else:
+            known = len(clauses)
+            at = _line_clauses(text, at, base, clauses)
+            if len(clauses) > known:
+                end = clauses[-1].end + base
+        return Node(start - base, end - base, category, kind, label, tuple(pairs), tuple(clauses), ()), at
+    except (_Unusual, IndexError):
+        return None
+
+
+def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], int] | None:
+    """NodeClause { NodeClause } NL: a line of its own in the block of a node; arguments and result as of a node."""
+    clauses: list[NodeClause] = []
+    try:
+        return clauses, _line_clauses(text, start, base, clauses)
+    except (_Unusual, IndexError):
+        return None
+
+
+class _Unusual(Exception):
+    """The full path has to read this line."""
+
+
+# ---- words ----------------------------------------------------------------------------------------------------------
+
+
+def _name(text: str, start: int, base: int) -> Word:
+    """NAME | STRING"""
+    character = text[start]
+    if character.isalpha() or character == "_":
+        raw = text[start : name_end(text, start)]
+        if raw in _NO_NAMES:
+            raise _Unusual
+        return Word(NAME, start - base, raw)
+    if character == '"' or character == "'":
+        return Word(STRING, start - base, _string(text, start))
+    raise _Unusual
+
+
+def _label(text: str, start: int, base: int) -> Word | None:
+    """[ Name ]"""
+    if text[start] in "(\r\n#/":
+        return None
+    word = _name(text, start, base)
+    return None if word.raw in NODE_CLAUSES else word
+
+
+def _behind_word(text: str, end: int) -> int:
+    """Behind the blanks that follow a word outside brackets; nothing else but a bracket or the line's end may."""
+    character = text[end]
+    if character not in " \t(\r\n":
+        raise _Unusual
+    while character == " " or character == "\t":
+        end += 1
+        character = text[end]
+    return end
+
+
+def _value(text: str, start: int, base: int) -> Word:
+    """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
+    character = text[start]
+    if character == '"' or character == "'":
+        word = Word(STRING, start - base, _string(text, start))
+    elif character.isalpha() or character == "_":
+        raw = text[start : name_end(text, start)]
+        if raw in _NO_NAMES:
+            raise _Unusual
+        word = Word(NAME, start - base, raw)
+    elif character == "{":
+        word = Word(BRACED, start - base, text[start : braced_end(text, start)])
+    elif "0" <= character <= "9" or (character == "-" and "0" <= text[start + 1] <= "9"):
+        kind, end = number_at(text, start)
+        word = Word(kind, start - base, text[start:end])
+        if kind == ERROR:
+            raise _Unusual
+    else:
+        raise _Unusual
+    if text[start + len(word.raw)] not in " ,)\r\n\t":
+        raise _Unusual
+    return word
+
+
+def _string(text: str, start: int) -> str:
+    """STRING without a backslash, none of whose lines may be the start of an item"""
+    raw = text[start : text.find(text[start], start + 1) + 1]
+    if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+        raise _Unusual
+    return raw
+
+
+# ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
+
+
+def _attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]) -> int:
+    """{ Attribute [ "," ] } ")", from behind the `(`"""
+    while True:
+        character = text[at]
+        if character in " \t\r\n#/":
+            at = _gap(text, at, blanks)
+            character = text[at]
+        if character.isalpha() or character == "_":
+            end = name_end(text, at)
+            key = text[at:end]
+            start = end + 3 if text.startswith(" = ", end) else _behind_equals(text, end)
+            if start < 0:
+                at = _clause(text, at, key, blanks, base, clauses)
+            elif key in _NO_NAMES:
+                raise _Unusual
+            else:
+                value = _value(text, start, base)
+                pairs.append(Pair(Word(NAME, at - base, key), value))
+                at = start + len(value.raw)
+            if text[at] == ",":
+                at += 1
+        elif character == ")":
+            return at + 1
+        else:
+            raise _Unusual
+
+
+def _behind_equals(text: str, at: int) -> int:
+    """Behind a `=` on this line and the blanks around it; -1 where none stands."""
+    while text[at] == " " or text[at] == "\t":
+        at += 1
+    if text[at] != "=" or text[at + 1] == "=":
+        return -1
+    at += 1
+    while text[at] == " " or text[at] == "\t":
+        at += 1
+    return at
+
+
+def _gap(text: str, at: int, blanks: str | None) -> int:
+    """Behind blanks and, in brackets, over line ends and comments"""
+    line = -1
+    while True:
+        character = text[at]
+        if character == " " or character == "\t":
+            at += 1
+        elif blanks is None:
+            return at
+        elif character == "\n" or character == "\r":
+            at = line = at + 1
+        elif character == "#" or text.startswith("//", at):
+            at = _comment_end(text, at)
+        else:
+            break
+    if line >= 0 and not text.startswith(blanks, line):
+        raise _Unusual
+    return at
+
+
+def _comment_end(text: str, at: int) -> int:
+    if text[at - 1] not in " \t\r\n(),":
+        raise _Unusual
+    return line_end(text, at)
+
+
+# ---- qualities and requirements -------------------------------------------------------------------------------------
+
+
+def _line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
+    """{ NodeClause } NL, outside brackets; returns where the next line begins"""
+    at = _gap(text, at, None)
+    while (character := text[at]).isalpha():
+        word = text[at : name_end(text, at)]
+        at = _clause(text, at, word, None, base, clauses)
+    if character == "#" or character == "/":
+        if character == "/" and text[at + 1] != "/":
+            raise _Unusual
+        at = _comment_end(text, at)
+        character = text[at]
+    if character == "\n" or (character == "\r" and text[at + 1] != "\n"):
+        return at + 1
+    if character == "\r":
+        return at + 2
+    raise _Unusual
+
+
+def _clause(text: str, start: int, word: str, blanks: str | None, base: int, clauses: list[NodeClause]) -> int:
+    """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
+    if word not in NODE_CLAUSES:
+        raise _Unusual
+    qualities: list[Quality] = []
+    uses: list[Requirement | ReqRef] = []
+    tags: list[Word] = []
+    end = behind = start + len(word)
+    at = _gap(text, end, blanks)
+    while at >= 0:
+        if word == "satisfices":
+            quality, end = _quality(text, at, blanks, base)
+            qualities.append(quality)
+        elif word == "satisfies" and text.startswith("QualityReq", at):
+            if blanks is None:
+                raise _Unusual  # clauses may follow, here or in a block
+            requirement, end = _requirement(text, at, blanks, base)
+            uses.append(requirement)
+        else:
+            name = _element(text, at, base)
+            end = at + len(name.raw)
+            if word == "tags":
+                tags.append(name)
+            else:
+                uses.append(ReqRef(name))
+        behind = _gap(text, end, blanks)
+        at = _next_element(text, behind, word, blanks)
+    if word == "satisfices":
+        clauses.append(Satisfices(start - base, end - base, tuple(qualities)))
+    elif word == "satisfies":
+        clauses.append(Satisfies(start - base, end - base, tuple(uses)))
+    else:
+        clauses.append(Tags(start - base, end - base, tuple(tags)))
+    return behind
+
+
+def _next_element(text: str, at: int, word: str, blanks: str | None) -> int:
+    """Where the list goes on, behind a comma or, as classic files are written, without one; -1 where it ends"""
+    comma = text[at] == ","
+    if comma:
+        at = _gap(text, at + 1, blanks)
+    character = text[at]
+    name = text[at : name_end(text, at)] if character.isalpha() or character == "_" else ""
+    if name == ("Quality" if word == "satisfices" else "QualityReq") and word != "tags":
+        return at
+    if not comma:
+        return -1
+    if blanks is not None and (
+        character == ")" or name in NODE_CLAUSES or name == "parameters" or _behind_equals(text, at + len(name)) >= 0
+    ):
+        return -1
+    return at
+
+
+def _element(text: str, at: int, base: int) -> Word:
+    """Name, and behind it what may follow in a list"""
+    name = _name(text, at, base)
+    if text[at + len(name.raw)] not in " ,)\r\n\t":
+        raise _Unusual
+    return name
+
+
+def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality, int]:
+    """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
+    classic = text.startswith("Quality", at)
+    if classic:
+        at = _behind_equals(text, at + len("Quality"))
+        if at < 0:
+            raise _Unusual
+    name = _name(text, at, base)
+    names = [name]
+    end = at + len(name.raw)
+    while text[end] == ".":
+        name = _name(text, end + 1, base)
+        names.append(name)
+        end += 1 + len(name.raw)
+    if text[end] not in " ,()\r\n\t":
+        raise _Unusual
+    requirements: list[Requirement] = []
+    if classic and text[bracket := _gap(text, end, blanks)] == "(":
+        inner = _blanks_before(text, bracket)
+        at = _gap(text, bracket + 1, inner)
+        while text[at] != ")":
+            requirement, end = _requirement(text, at, inner, base)
+            requirements.append(requirement)
+            at = _gap(text, end, inner)
+            if text[at] == ",":
+                at = _gap(text, at + 1, inner)
+        end = at + 1
+    return Quality(QualityPath(tuple(names)), tuple(requirements)), end
+
+
+def _blanks_before(text: str, at: int) -> str | None:
+    """The blanks of the line that begins there; None where no line does"""
+    start = at
+    while text[start - 1] == " " or text[start - 1] == "\t":
+        start -= 1
+    return text[start:at] if text[start - 1] in "\r\n" else None
+
+
+def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[Requirement, int]:
+    """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ]"""
+    end = start + len("QualityReq")
+    at = _gap(text, end, blanks)
+    if at == end or not (text.startswith("QualityReq", start) and text.startswith("ID", at)):
+        raise _Unusual
+    at = _behind_equals(text, at + len("ID"))
+    if at < 0:
+        raise _Unusual
+    name = _element(text, at, base)
+    end = at + len(name.raw)
+    at = _gap(text, end, blanks)
+    if text[at] == ",":
+        at = _gap(text, at + 1, blanks)
+    description: Word | None = None
+    if text.startswith("description", at) and (at := _behind_equals(text, at + len("description"))) >= 0:
+        description = _element(text, at, base)
+        end = at + len(description.raw)
+    return Requirement(start - base, end - base, name, True, (), None, description, ()), end
+
+
+_PERHAPS_NO_NODE: Final = NODE_CLAUSES | DIRECTIONS | {"xml"}
+# NAMEs that are none: two are symbols, and a line that begins with one of the others ends all brackets.
+_NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))
+_OUTER_LINE: Final = re.compile(r"[\r\n][^ \t\r\n]").search
