@@ -55,7 +55,9 @@ def _check(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
     texts = {path: file.text for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
     _print(report, options, mended)
-    watched = tuple(path for group in groups for path in (*group.workspace.files, *group.absent))
+    watched = tuple(
+        path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
+    )
     if problems:
         return 2, watched
     return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
@@ -98,7 +100,7 @@ def _fix(
                 workspace = workspace.with_file(path, text)
         for path in writable:
             text = workspace.files[path].text
-            if files.stdin and path == files.stdin[0]:
+            if path == files.stdin:
                 sys.stdout.write(text)
             elif text != group.workspace.files[path].text:
                 try:

@@ -23,23 +23,27 @@ class Group:
         given: the paths that were asked for, those of `workspace` that could be read.
         damaged: the paths that are no UTF-8: never written back.
         absent: where included files would be that are not there.
+        project_file: where the project was read from, if it was.
     """
 
     workspace: Workspace
     given: tuple[str, ...]
     damaged: tuple[str, ...]
     absent: tuple[str, ...]
+    project_file: str | None
 
 
 class Files:
     """What was read so far; asked again, it parses only what changed.
 
     Attributes:
-        stdin: the path that standard input goes by, and its text, once it was read.
+        overlay: texts that count instead of the files on the disk, by path: standard input, an editor's buffers.
+        stdin: the path that standard input goes by, once it was read.
     """
 
     def __init__(self) -> None:
-        self.stdin: tuple[str, str] | None = None
+        self.overlay: dict[str, str] = {}
+        self.stdin: str | None = None
         self._known: dict[str, File] = {}
 
     def groups(
@@ -62,42 +66,43 @@ class Files:
                     problems.extend(projects[folder].problems)
             return projects[folder]
 
-        for path in paths:
-            if path == STDIN:
-                name = self._read_stdin(stdin_filename)
-                members.setdefault(project_of(name).path or "", {})[name] = None
+        for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
+            if path in self.overlay:
+                members.setdefault(project_of(path).path or "", {})[path] = None
                 continue
-            found, unreachable = collect([path], project_of(absolute(path)).project)
+            found, unreachable = collect([path], project_of(path).project)
             problems += unreachable
             for file in found:
                 home = project_of(file)
-                if file == absolute(path) or not excluder(home.project)(file):
+                if file == path or not excluder(home.project)(file):
                     members.setdefault(home.path or "", {})[file] = None
         by_path = {found.path or "": found.project for found in projects.values()}
         groups = []
         for key, files in members.items():
-            group, found_problems = self._load(tuple(files), by_path[key])
+            group, found_problems = self._load(tuple(files), by_path[key], key or None)
             groups.append(group)
             problems += found_problems
         return tuple(groups), tuple(problems)
 
     def _read_stdin(self, filename: str | None) -> str:
         if self.stdin is None:
-            text = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
-            self.stdin = absolute(filename or "<stdin>"), text
-        return self.stdin[0]
+            self.stdin = absolute(filename or "<stdin>")
+            self.overlay[self.stdin] = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
+        return self.stdin
 
-    def _load(self, paths: tuple[str, ...], project: Project) -> tuple[Group, tuple[LoadProblem, ...]]:
+    def _load(
+        self, paths: tuple[str, ...], project: Project, project_file: str | None
+    ) -> tuple[Group, tuple[LoadProblem, ...]]:
         def includes_of(path: str, text: str) -> Iterator[str]:
             for include in self._file(path, text).includes:
                 if include.path is not None:
                     yield include.path.text
 
-        known = dict([self.stdin]) if self.stdin and self.stdin[0] in paths else {}
+        known = {path: self.overlay[path] for path in paths if path in self.overlay}
         loaded = load((path for path in paths if path not in known), project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
-        return Group(Workspace(files, project), given, loaded.damaged, loaded.absent), loaded.problems
+        return Group(Workspace(files, project), given, loaded.damaged, loaded.absent, project_file), loaded.problems
 
     def _file(self, path: str, text: str) -> File:
         known = self._known.get(path)

@@ -1,0 +1,76 @@
+"""`btq format`: settle the layout of files."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+
+from btq_lang.commands.files import Files
+from btq_lang.formatter import format_text
+from btq_lang.loader import LoadProblem, shown, write_whole
+from btq_lang.render.colour import painter, wants_colour
+from btq_lang.text import LineIndex
+
+
+def run(options: Namespace) -> int:
+    """Format, or with `--check` and `--diff` only say what would change."""
+    files = Files()
+    groups, problems = files.groups(options.paths, options.stdin_filename)
+    trouble = list(problems)
+    only_tell = options.check or options.diff
+    changed = count = refused = 0
+    for group in groups:
+        for path in group.given:
+            text = group.workspace.files[path].text
+            done = format_text(text)
+            from_stdin = path == files.stdin
+            count += 1
+            if done.refused is not None:
+                refused += 1
+                line, column = LineIndex(text).position(done.refused.span.start)
+                place = f"{shown(path)}:{line + 1}:{column + 1}"
+                print(f"{place}: not formatted: {done.refused.message}", file=sys.stderr)
+            elif done.text != text:
+                changed += 1
+                if options.diff:
+                    _show_diff(shown(path), text, done.text, options)
+                elif options.check:
+                    print(f"would format {shown(path)}")
+                elif path in group.damaged:
+                    continue  # told as trouble already; writing it back would lose something
+                elif not from_stdin:
+                    try:
+                        write_whole(path, done.text)
+                    except OSError as error:
+                        trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+            if from_stdin and not only_tell:
+                sys.stdout.write(done.text)
+    for problem in trouble:
+        print(f"btq: {problem}", file=sys.stderr)
+    _sum_up(count, changed, refused, only_tell)
+    if trouble:
+        return 2
+    return int(refused > 0 or (only_tell and changed > 0))
+
+
+def _show_diff(path: str, old: str, new: str, options: Namespace) -> None:
+    from difflib import unified_diff
+
+    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    paint = painter(colour)
+    for line in unified_diff(old.splitlines(), new.splitlines(), path, f"{path} (formatted)", lineterm=""):
+        print(paint(line[:1], line) if line[:1] in "+-" else line)
+
+
+def _sum_up(count: int, changed: int, refused: int, only_tell: bool) -> None:
+    def files(number: int) -> str:
+        return f"{number} file{'' if number == 1 else 's'}"
+
+    verb = "would be formatted" if only_tell else "formatted"
+    parts = [f"{files(changed)} {verb}"] if changed else []
+    if refused:
+        parts.append(f"{files(refused)} with syntax errors left alone")
+    if count - changed - refused or not parts:
+        parts.append(f"{files(count - changed - refused)} left as {'they are' if count != 1 else 'it is'}")
+    print(", ".join(parts), file=sys.stderr)

@@ -1,0 +1,280 @@
+"""The commands as a person runs them: a process, its output, its exit code, and the files it leaves."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from btq_lang import __version__
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = ROOT / "examples"
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def btq(tmp_path: Path) -> Run:
+    """Run `btq` in an empty folder."""
+
+    def run(*arguments: str, stdin: str | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "btq_lang", *arguments],
+            cwd=tmp_path,
+            input=stdin,
+            capture_output=True,
+            encoding="utf-8",
+            env={**os.environ, "NO_COLOR": "1", "PYTHONUTF8": "1", **environment},
+            timeout=60,
+        )
+
+    return run
+
+
+WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n        Timeout (msec = -5)\n            Dock\n"
+
+
+def test_version(btq: Run) -> None:
+    assert btq("--version").stdout == f"btq {__version__}\n"
+    assert btq("-V").returncode == 0
+
+
+def test_help_says_what_there_is(btq: Run) -> None:
+    done = btq("--help")
+    assert done.returncode == 0
+    for command in ("check", "format", "explain", "init", "completion"):
+        assert f"  {command} " in done.stdout
+    assert "exit codes: 0 clean, 1 findings, 2 usage or I/O" in done.stdout
+
+
+def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
+    assert btq().returncode == 2
+    assert btq("chekc").returncode == 2
+    assert btq("check", "--output-format", "yaml").returncode == 2
+    done = btq("check", "--select", "unknown-nod")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "unknown-node" in done.stderr
+
+
+def test_check_a_clean_folder(btq: Run) -> None:
+    done = btq("check", str(EXAMPLES / "laboratory"))
+    assert (done.returncode, done.stdout, done.stderr) == (0, "No problems found in 1 file\n", "")
+
+
+def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    done = btq("check")
+    assert done.returncode == 1
+    assert done.stdout.startswith("warning[unknown-node]: unknown node `Sequnce`\n --> main.btq:3:9\n")
+    assert "  = help: Replace `Sequnce` by `Sequence`\n" in done.stdout
+    assert done.stdout.endswith("Found 1 error, 1 warning\n")
+
+
+def test_check_concise_and_json_agree(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    lines = btq("check", "--output-format", "concise").stdout.splitlines()
+    assert lines[0] == "main.btq:3:9: warning[unknown-node] unknown node `Sequnce`"
+    assert lines[1].startswith("main.btq:5:25: error[invalid-literal] `-5` ")
+    found = json.loads(btq("check", "--output-format", "json").stdout)
+    assert [each["rule"] for each in found["diagnostics"]] == ["unknown-node", "invalid-literal"]
+
+
+@pytest.mark.parametrize("form", ["sarif", "github", "junit"])
+def test_check_for_machines(btq: Run, tmp_path: Path, form: str) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    done = btq("check", "--output-format", form)
+    assert done.returncode == 1
+    assert "unknown-node" in done.stdout
+    assert "Sequnce" in done.stdout
+
+
+def test_select_ignore_and_severity(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    concise = ("check", "--output-format", "concise")
+    assert btq(*concise, "--select", "invalid-literal").stdout.count("[") == 1
+    assert btq(*concise, "--ignore", "invalid-literal,unknown-node").returncode == 0
+    done = btq(*concise, "--severity", "error")
+    assert [line.split(": ")[1][:5] for line in done.stdout.splitlines()[:-1]] == ["error"]
+
+
+def test_hints_alone_are_clean(btq: Run) -> None:
+    done = btq("check", str(EXAMPLES / "classic"))
+    assert done.returncode == 0
+    assert "hint[" in done.stdout
+
+
+def test_standard_input(btq: Run) -> None:
+    done = btq("check", "--output-format", "concise", "-", stdin="BehaviorTree Main\n    Sequnce\n        Dock\n")
+    assert done.returncode == 1
+    assert done.stdout.startswith("<stdin>:2:5: warning[unknown-node]")
+
+
+def test_standard_input_with_a_name_finds_its_includes(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "skills.btq").write_text("Action Dock\n")
+    text = 'include "skills.btq"\nBehaviorTree Main\n    Dock (x = 1)\n'
+    done = btq("check", "--output-format", "concise", "--stdin-filename", "lib/main.btq", "-", stdin=text)
+    assert done.stdout.splitlines()[0] == "lib/main.btq:3:11: error[unknown-port] `Dock` has no port `x`"
+
+
+def test_fix_mends_what_is_certain_and_reports_the_rest(btq: Run, tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_text(
+        "BehaviorTree Main\n    ->\n        SequenceStar\n            Dock\n        Sequnce\n            Dock\n"
+    )
+    done = btq("check", "--fix")
+    assert file.read_text() == (
+        "BehaviorTree Main\n    ->\n        SequenceWithMemory\n            Dock\n        Sequnce\n            Dock\n"
+    )
+    assert done.returncode == 1
+    assert done.stdout.endswith("Found 1 warning\n") or "Fixed 1 problem\n" in done.stdout
+    assert "SequenceStar" not in done.stdout
+
+
+def test_fix_of_standard_input_prints_the_new_text(btq: Run) -> None:
+    done = btq("check", "--fix", "-", stdin="BehaviorTree Main\n    SequenceStar\n        Dock\n")
+    assert done.stdout == "BehaviorTree Main\n    SequenceWithMemory\n        Dock\n"
+
+
+def test_a_missing_file_is_trouble_and_the_others_are_checked(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    done = btq("check", "main.btq", "nowhere.btq")
+    assert done.returncode == 2
+    assert done.stderr == "btq: nowhere.btq: cannot be read: No such file or directory\n"
+    assert "unknown-node" in done.stdout
+
+
+def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_bytes(b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n")
+    done = btq("check", "--fix")
+    assert done.returncode == 2
+    assert done.stderr == "btq: main.btq:3:19: this is no UTF-8: byte 0xe9\n"
+    assert file.read_bytes() == b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n"
+
+
+def test_the_project_file_counts(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "btq.toml").write_text('[rules]\nunknown-node = "off"\ninvalid-literal = "hint"\n')
+    (tmp_path / "main.btq").write_text(WRONG)
+    done = btq("check", "--output-format", "concise")
+    assert done.returncode == 0
+    assert [line.split()[1] for line in done.stdout.splitlines()[:-1]] == ["hint[invalid-literal]"]
+
+
+def test_a_broken_project_file_is_trouble(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "btq.toml").write_text('engin = "4.10"\n')
+    done = btq("check")
+    assert done.returncode == 2
+    assert done.stderr.startswith("btq: btq.toml:1:1: ")
+
+
+def test_many_files_on_several_processors_give_the_same_report(btq: Run, tmp_path: Path) -> None:
+    for number in range(30):
+        (tmp_path / f"m{number}.btq").write_text(WRONG.replace("Main", f"Main{number}"))
+    one, two = btq("check", "--jobs", "1"), btq("check", "--jobs", "2")
+    assert one.stdout == two.stdout
+    assert one.stdout.count("unknown-node") == 30
+    assert (one.returncode, two.returncode, two.stderr) == (1, 1, "")
+
+
+def test_watch_checks_again_after_a_change(tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_text(WRONG)
+    command = [sys.executable, "-u", "-m", "btq_lang", "check", "--watch", "--output-format", "concise"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        assert process.stdout is not None
+        seen: list[str] = []
+
+        def until(ending: str) -> None:
+            for line in process.stdout or ():
+                seen.append(line)
+                if ending in line:
+                    return
+            raise AssertionError(f"no {ending!r} in {seen}")
+
+        until("Watching for changes")
+        assert any("unknown-node" in line for line in seen)
+        stamp = time.time() + 2  # a file system may count whole seconds only
+        file.write_text("BehaviorTree Main\n    Dock\n")
+        os.utime(file, (stamp, stamp))
+        until("main.btq changed")
+        until("No problems found in 1 file")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 1
+
+
+def test_format_writes_checks_and_shows(btq: Run, tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_text("BehaviorTree Main\n  Retry(num_attempts=3)   # again\n    Dock\n")
+    tidy = "BehaviorTree Main\n    Retry (num_attempts = 3)  # again\n        Dock\n"
+    done = btq("format", "--check")
+    assert (done.returncode, done.stdout) == (1, "would format main.btq\n")
+    done = btq("format", "--diff")
+    assert done.returncode == 1
+    assert "+    Retry (num_attempts = 3)  # again" in done.stdout.splitlines()
+    assert file.read_text() != tidy
+    assert btq("format").returncode == 0
+    assert file.read_text() == tidy
+    done = btq("format", "--check")
+    assert (done.returncode, done.stdout) == (0, "")
+
+
+def test_format_leaves_a_file_with_syntax_errors_alone(btq: Run, tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_text("BehaviorTree Main\n  Retry (num_attempts 3)\n    Dock\n")
+    done = btq("format")
+    assert done.returncode == 1
+    assert done.stderr.startswith("main.btq:2:")
+    assert file.read_text() == "BehaviorTree Main\n  Retry (num_attempts 3)\n    Dock\n"
+
+
+def test_format_of_standard_input(btq: Run) -> None:
+    done = btq("format", "-", stdin="BehaviorTree Main\n  Dock\n")
+    assert (done.returncode, done.stdout) == (0, "BehaviorTree Main\n    Dock\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "first_line"),
+    [
+        ("unknown-node", "# unknown-node"),
+        ("->", "# Sequence (Control)"),
+        ("Retry", "# RetryUntilSuccessful (Decorator)"),
+        ("time-behaviour", "# performance-efficiency.time-behaviour"),
+        ("ManualSelector", "# ManualSelector"),
+    ],
+)
+def test_explain(btq: Run, name: str, first_line: str) -> None:
+    done = btq("explain", name)
+    assert (done.returncode, done.stdout.splitlines()[0]) == (0, first_line)
+
+
+def test_explain_of_something_unknown(btq: Run) -> None:
+    done = btq("explain", "unknown-nod")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "btq explain: `unknown-nod` is no rule, node or quality; did you mean unknown-node?\n"
+
+
+def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:
+    assert btq("init", "robot").returncode == 0
+    assert sorted(path.name for path in (tmp_path / "robot").iterdir()) == ["btq.toml", "mission.btq", "skills.btq"]
+    assert btq("check", "robot").stdout == "No problems found in 2 files\n"
+    assert btq("format", "--check", "robot").returncode == 0
+    again = btq("init", "robot")
+    assert (again.returncode, "nothing written" in again.stderr) == (2, True)
+
+
+def test_a_closed_pipe_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG * 200)
+    command = f"{sys.executable} -m btq_lang check main.btq | head -1"
+    done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stderr == ""
