@@ -1,9 +1,9 @@
 """How long the command line takes, over an interpreter that does nothing.
 
 One invariant: commands take turns, one run each, and what counts is their distance from `python -c pass` of the same
-run; and a command is only measured after it has shown that it works, for a crash is fast, and Python's exit code for
-it is that of a check with findings.  The interpreter is called by its own path (`sys.executable`), since shims in front
-of it cost more than btq may.
+run.  A command is only measured after it has shown that it works, and each run must end as that one did: a crash is
+fast, and its exit code is that of a check with findings.  The interpreter is called by its own path
+(`sys.executable`), since shims in front of it cost more than btq may.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ import missions
 
 FILES, NODES_A_FILE = 1_000, 50
 
+# An installed btq has its bytecode beside it; where writing it is switched off, every start would compile all modules.
+_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
 
 @dataclass
 class Command:
@@ -42,6 +45,7 @@ class Command:
     wall: list[float] = field(default_factory=list)
     cpu: list[float] = field(default_factory=list)
     failure: str = ""
+    exit_code: int = 0
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,8 @@ def _blindness(folder: Path, btq: tuple[str, ...]) -> str:
     file = folder / "broken" / "broken.btq"
     file.write_text('BehaviorTree broken\n    -> (name = "x"\n', encoding="utf-8")
     argv = (*btq, "check", str(file))
-    if failure := _failure(argv):
+    _, failure = _first_run(argv)
+    if failure:
         return failure
     done = subprocess.run(argv, capture_output=True, text=True, check=False)
     return "" if done.returncode == 1 and "broken.btq" in done.stdout + done.stderr else "it finds no missing bracket"
@@ -103,32 +108,38 @@ def _blindness(folder: Path, btq: tuple[str, ...]) -> str:
 def run(measured: Sequence[Command], rounds: int, many_rounds: int) -> None:
     """Fill in the times, after a first run of each that shows it works and writes the .pyc files."""
     for command in measured:
-        command.failure = command.failure or _failure(command.argv)
+        command.exit_code, failure = _first_run(command.argv)
+        command.failure = command.failure or failure
     for turn in range(rounds):
         for command in measured:
             if command.failure or (command.many and turn >= many_rounds):
                 continue
-            wall, cpu = _spawn(command.argv)
+            wall, cpu, exit_code = _spawn(command.argv)
+            if exit_code != command.exit_code:
+                raise SystemExit(
+                    f"{command.name} ended with {exit_code}, before with {command.exit_code}: was it edited?"
+                )
             command.wall.append(wall)
             command.cpu.append(cpu)
 
 
-def _failure(argv: Sequence[str]) -> str:
-    """Why a command does not work, or nothing.  0 is a clean check, 1 one with findings, but 1 is also a crash."""
-    done = subprocess.run(argv, capture_output=True, text=True, check=False)
+def _first_run(argv: Sequence[str]) -> tuple[int, str]:
+    """The exit code, and why the command does not work, or nothing: 1 is a check with findings, and also a crash."""
+    done = subprocess.run(argv, capture_output=True, text=True, check=False, env=_ENVIRONMENT)
     if "Traceback" in done.stderr or done.returncode not in (0, 1):
         last = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
-        return last[0]
-    return ""
+        return done.returncode, last[0]
+    return done.returncode, ""
 
 
-def _spawn(argv: tuple[str, ...]) -> tuple[float, float]:
-    """Run a command, its output thrown away: seconds by the clock, seconds of processor."""
+def _spawn(argv: tuple[str, ...]) -> tuple[float, float, int]:
+    """Run a command, its output thrown away: seconds by the clock, seconds of processor, exit code."""
     silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_RDWR, 0) for number in (0, 1, 2)]
     start = time.perf_counter()
-    process = os.posix_spawn(argv[0], argv, os.environ, file_actions=silent)
-    _, _, usage = os.wait4(process, 0)
-    return time.perf_counter() - start, usage.ru_utime + usage.ru_stime
+    process = os.posix_spawn(argv[0], argv, _ENVIRONMENT, file_actions=silent)
+    _, status, usage = os.wait4(process, 0)
+    wall = time.perf_counter() - start
+    return wall, usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
 
 
 def _write_missions(folder: Path, spelling: missions.Spelling) -> None:
