@@ -1,0 +1,209 @@
+"""The formatter: a text to the same text, laid out in the one way of the project.
+
+One invariant: what a file says stays what it says.  The formatted text has the tree of the original, up to offsets and
+the order of clauses in the blocks of requirements, and every comment at the element where it was; to format it again
+changes nothing.  Spelling is the author's: the formatter does not know what words mean, only where they stand.
+
+A text with a syntax error is refused as a whole and comes back as it was.  Indentation is structure here, and brackets
+join lines: what the lines around a mistake belong to is a guess of the parser's recovery, and to lay them out would
+write that guess into the file.
+
+The style:
+
+* four blanks a level; in brackets four more than the line that opens them, and `)` below that line's start;
+* brackets stay on their line if they are on one and it fits 100 columns; else each attribute has a line of its own, and
+  one that is still too long is broken before the description and the clauses of its requirements;
+* inside an attribute or a condition the author's line ends stay, save where they tear apart what is one: round `=`,
+  before `,` and so on;
+* one blank between words, none inside brackets, paths and units, one between a number and its unit, two before a
+  comment behind code;
+* each clause in the block of a requirement has a line of its own, in one order: what is demanded, `while` and `when`,
+  odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses behind the requirement's head stay
+  there if they fit the line;
+* at most one blank line anywhere, none at the start of the file or of a block; one before and behind every item that
+  has a block; no blanks at a line's end, and `\\n` for every line end, those in strings and comments too, which mean
+  that anyway (language.md §2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator, Sequence
+from itertools import pairwise
+
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.formatter.clauses import sections
+from btq_lang.formatter.layout import FormatOptions, laid_out
+from btq_lang.formatter.lines import Line, Remark, logical_lines
+from btq_lang.formatter.marks import Marks, marks_of
+from btq_lang.parser import Parsed, parse
+from btq_lang.record import record
+from btq_lang.rules import Severity
+from btq_lang.text import Edit, Span
+
+__all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
+
+DEFAULTS = FormatOptions()
+
+
+@record
+class Formatted:
+    """A text, formatted.
+
+    Attributes:
+        text: the new text; the old one where it was refused.
+        edits: what makes it of the old one: in order, not overlapping, none where nothing changes.
+        refused: the first syntax error of a text that was left as it is; its span counts from the start of the text.
+    """
+
+    text: str
+    edits: tuple[Edit, ...] = ()
+    refused: Diagnostic | None = None
+
+
+def format_text(text: str, options: FormatOptions = DEFAULTS) -> Formatted:
+    """Format a file.
+
+    Args:
+        text: any string at all.
+    """
+    parsed = parse(text)
+    if error := _first_error(parsed):
+        return Formatted(text, refused=error)
+    stretches = _stretches(parsed, options)
+    return Formatted("".join(stretch.text for stretch in stretches), _edits(text, stretches))
+
+
+def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAULTS) -> tuple[Edit, ...]:
+    """The edits that format the lines between two offsets; none where the text has a syntax error.
+
+    Where another line of the same top-level block is not indented as it would be, the whole block is formatted: one
+    half of a block in new columns and one in old ones would be another tree.
+    """
+    parsed = parse(text)
+    if _first_error(parsed):
+        return ()
+    start = min(start, len(text) - 1)  # the end of the text belongs to its last line
+    chosen: list[_Stretch] = []
+    for block in _blocks(_stretches(parsed, options)):
+        inside = [stretch for stretch in block if stretch.start < max(end, start + 1) and start < stretch.end]
+        moved_inside = sum(stretch.is_moved for stretch in inside)
+        moved = sum(stretch.is_moved for stretch in block)
+        chosen += block if inside and moved > moved_inside else inside
+    return _edits(text, chosen)
+
+
+def _first_error(parsed: Parsed) -> Diagnostic | None:
+    errors = (problem for problem in parsed.diagnostics if problem.effective_severity is Severity.ERROR)
+    return min(errors, key=lambda problem: problem.span, default=None)
+
+
+# ---- the whole file -------------------------------------------------------------------------------------------------
+
+
+@record
+class _Stretch:
+    """What becomes of the text between two offsets; `is_moved`: one of its lines gets another indentation."""
+
+    start: int
+    end: int
+    level: int
+    is_moved: bool
+    text: str
+
+
+def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
+    """The whole file, stretch by stretch."""
+    marks = marks_of(parsed)
+    lines = logical_lines(parsed.text, parsed.tokens, marks.atoms)
+    _part_items(lines, {entry.start + entry.item.start for entry in parsed.entries})
+    found: list[_Stretch] = []
+    above = -1  # the level of the row above
+    for section in sections(lines, marks, options):
+        moved = False
+        text: list[str] = []
+        for row in (row for line in section.lines for row in _rows(line, marks, options)):
+            if row.blank and row.level <= above:
+                text.append("\n")
+            text += (row.text, "\n")
+            moved = moved or row.is_moved
+            above = row.level
+        found.append(_Stretch(*section.span, section.lines[0].level, moved, "".join(text)))
+    return found
+
+
+def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
+    """A blank line before and behind each item with a block, above the comments that stand above the item."""
+    previous: Line | None = None
+    was_block = False
+    for line, below in pairwise(lines):
+        if line.words[0].start not in items:
+            continue
+        is_block = below.level > line.level
+        if previous is not None and (
+            line.level < previous.level or (line.level == previous.level and (is_block or was_block))
+        ):
+            gaps: list[Remark | Line] = [*line.lead, line]
+            gaps[0].blank = gaps[0].blank or not any(gap.blank for gap in gaps)
+        previous, was_block = line, is_block
+
+
+@record
+class _Row:
+    """A logical line or a comment line, as text; `blank`: a blank line stands above, unless it opens a block."""
+
+    level: int
+    blank: bool
+    is_moved: bool
+    text: str
+
+
+def _rows(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Row]:
+    """A line with the comment lines above and below it."""
+    for remark in line.lead:
+        yield _remark_row(remark, options)
+    if line.pieces:
+        moved = line.blanks != " " * (line.level * options.indent)
+        yield _Row(line.level, line.blank, moved, laid_out(line.pieces, line.level, marks, options))
+    for remark in line.tail:
+        yield _remark_row(remark, options)
+
+
+def _remark_row(remark: Remark, options: FormatOptions) -> _Row:
+    indent = " " * (remark.depth * options.indent)
+    return _Row(remark.depth, remark.blank, remark.blanks != indent, indent + remark.text)
+
+
+# ---- edits ----------------------------------------------------------------------------------------------------------
+
+
+def _blocks(stretches: Iterable[_Stretch]) -> Iterator[list[_Stretch]]:
+    """The stretches by the line at the top level that they stand below."""
+    block: list[_Stretch] = []
+    for stretch in stretches:
+        if stretch.level == 0 and block:
+            yield block
+            block = []
+        block.append(stretch)
+    yield block
+
+
+def _edits(text: str, stretches: Iterable[_Stretch]) -> tuple[Edit, ...]:
+    """For each stretch that changes, an edit of what is between its unchanged beginning and its unchanged end."""
+    edits: list[Edit] = []
+    for stretch in stretches:
+        old, new = text[stretch.start : stretch.end], stretch.text
+        if old == new:
+            continue
+        same = _same(old, new)
+        same -= old[same - 1 : same + 1] == "\r\n"  # an editor has no place between these two
+        same_behind = _same(old[same:][::-1], new[same:][::-1])
+        end = len(old) - same_behind
+        end += old[end - 1 : end + 1] == "\r\n"
+        edits.append(Edit(Span(stretch.start + same, stretch.start + end), new[same : len(new) - len(old) + end]))
+    return tuple(edits)
+
+
+def _same(first: str, second: str) -> int:
+    """How many characters two texts begin with that are the same."""
+    pairs = enumerate(zip(first, second, strict=False))
+    return next((index for index, (one, other) in pairs if one != other), min(len(first), len(second)))

@@ -1,0 +1,104 @@
+"""The blocks of requirements: one clause a line, in one order.
+
+One invariant: a clause keeps its words and takes its comments along, those above it, behind it and below it.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+
+from btq_lang.formatter.layout import FormatOptions, fits
+from btq_lang.formatter.lines import Line
+from btq_lang.formatter.marks import Clauses, Marks
+from btq_lang.record import record
+from btq_lang.text import Span
+from btq_lang.tokens import NAME
+
+
+@record
+class Section:
+    """Lines that are written together, and the span of the file that they come from."""
+
+    span: Span
+    lines: tuple[Line, ...]
+
+
+def sections(lines: Sequence[Line], marks: Marks, options: FormatOptions) -> Iterator[Section]:
+    """The lines in order: each is a section of its own, but the block of a requirement is one section.
+
+    The clauses of a block are sorted if the requirement has no more than one claim: with two of them, a reader may
+    take what follows a claim as said of that claim.  Clauses behind a head that is too long go into the block.
+    """
+    starts = [line.pieces[0].start for line in lines[:-1]]
+    # Of several requirements in one line, the last is the one that may have a block.
+    found = {bisect_right(starts, clauses.start) - 1: clauses for clauses in sorted(marks.clauses, key=_start)}
+    index = 0
+    while index < len(lines):
+        head = lines[index]
+        clauses = found.get(index)
+        index += 1
+        block: list[Line] = []
+        if clauses is not None and max(clauses.ranks) >= head.end:
+            while lines[index].level > head.level:
+                block.append(lines[index])
+                index += 1
+        start, middle, end = head.start, head.end, block[-1].end if block else head.end
+        if clauses is not None and _is_too_long(head, clauses, marks, options):
+            head, behind = _parted(head, clauses)
+            yield Section(Span(start, end), (head, *_arranged([behind, *block], clauses)))
+        else:
+            yield Section(Span(start, middle), (head,))
+            if clauses is not None and block:
+                yield Section(Span(middle, end), _arranged(block, clauses))
+
+
+def _start(clauses: Clauses) -> int:
+    return clauses.start
+
+
+def _is_too_long(head: Line, clauses: Clauses, marks: Marks, options: FormatOptions) -> bool:
+    """Whether a line ends in clauses that do not fit it, of a requirement to which a block below it would belong."""
+    words = head.words
+    first, last = words[0], words[-1]
+    return (
+        (first.start == clauses.start or (first.kind == NAME and first.text == "satisfies"))
+        and any(start <= last.start < end for start, end in clauses.spans)
+        and not fits(words, head.level * options.indent, marks, options)
+    )
+
+
+def _parted(head: Line, clauses: Clauses) -> tuple[Line, Line]:
+    """A head without the clauses behind it, and those as a line of its block; a comment behind it all stays there."""
+    pieces = head.pieces
+    begin = next(index for index, piece in enumerate(pieces) if piece.start in clauses.ranks)
+    end = pieces.index(head.words[-1]) + 1
+    short = Line(head.level, head.blanks, head.blank, [*pieces[:begin], *pieces[end:]])
+    short.lead = head.lead
+    behind = Line(head.level + 1, head.blanks, False, pieces[begin:end])
+    behind.tail = head.tail
+    return short, behind
+
+
+def _arranged(block: Sequence[Line], clauses: Clauses) -> tuple[Line, ...]:
+    """A line for each clause of a block, in order."""
+    lines = [part for line in block for part in _cut(line, clauses)]
+    last = lines[-1]
+    kept = max((index + 1 for index, remark in enumerate(last.tail) if remark.depth > last.level), default=0)
+    below = last.tail[kept:]  # comments at the end of the block stay there
+    last.tail = last.tail[:kept]
+    if clauses.claims <= 1:
+        lines.sort(key=lambda line: clauses.ranks[next(p.start for p in line.pieces if p.start in clauses.ranks)])
+    lines[-1].tail += below
+    return tuple(lines)
+
+
+def _cut(line: Line, clauses: Clauses) -> list[Line]:
+    """A line for each clause of a line."""
+    begins = [index for index, piece in enumerate(line.pieces) if piece.start in clauses.ranks]
+    begins[0] = 0  # a comment before the first clause is the clause's
+    pieces = [line.pieces[begin:end] for begin, end in zip(begins, [*begins[1:], None], strict=True)]
+    parts = [Line(line.level, line.blanks, line.blank, pieces[0])]
+    parts += [Line(line.level, line.blanks, False, others) for others in pieces[1:]]
+    parts[0].lead, parts[-1].tail = line.lead, line.tail
+    return parts

@@ -1,0 +1,219 @@
+"""One logical line as text: the gaps between its words, and the lines of text that its brackets run over.
+
+One invariant: the lexer cuts the new text as it cut the old one.  It reads `6` at a line's end and `s` on the next as
+two words, and `-` differently behind a line end; so a line end inside an attribute stays where it is, save in places
+where the words on both sides are the same either way, and a new one stands only before a name or a string.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from btq_lang.formatter.lines import Piece
+from btq_lang.formatter.marks import Marks
+from btq_lang.record import record
+from btq_lang.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
+
+
+@record
+class FormatOptions:
+    """How wide lines may become, and how many blanks a level has (at least one)."""
+
+    columns: int = 100
+    indent: int = 4
+
+
+def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> str:
+    """The text of a logical line, its indentation included, without the line end."""
+    writer = _Writer(pieces, level * options.indent, marks, options)
+    for index in range(len(pieces)):
+        writer.write(index)
+    return writer.written()
+
+
+def fits(pieces: Iterable[Piece], column: int, marks: Marks, options: FormatOptions) -> bool:
+    """Whether pieces, written on one line from a column on, keep within the columns; comments do not count."""
+    before: Piece | None = None
+    for piece in pieces:
+        if piece.kind != COMMENT:
+            first, *others = (_gap(before, piece, marks) + piece.text).split("\n")
+            column += len(first)
+            for line in others:  # of a string
+                if column > options.columns:
+                    return False
+                column = len(line)
+            if column > options.columns:
+                return False
+            before = piece
+    return True
+
+
+class _Group:
+    """Brackets that are open.
+
+    Attributes:
+        spread: each of their elements has a line of its own.
+        indent: the indentation of the line that opens them.
+        loose: the element at hand is broken, because it is too long for one line.
+    """
+
+    __slots__ = ("indent", "loose", "spread")
+
+    def __init__(self, spread: bool, indent: int) -> None:
+        self.spread: Final = spread
+        self.indent: Final = indent
+        self.loose = False
+
+
+class _Writer:
+    """A logical line, written up to some piece."""
+
+    def __init__(self, pieces: Sequence[Piece], indent: int, marks: Marks, options: FormatOptions) -> None:
+        self.pieces: Final = pieces
+        self.marks: Final = marks
+        self.options: Final = options
+        self.closing: Final = _closing(pieces)
+        self.groups: Final[list[_Group]] = []
+        self.out: Final = [" " * indent]
+        self.indent = indent  # of the line of text at hand
+        self.column = indent
+        self.next_word = -1  # a piece that is no comment, behind comments at hand
+        self.remark = -1  # the gap in `out` behind the code of this line, if only comments follow it
+
+    def write(self, index: int) -> None:
+        piece = self.pieces[index]
+        before = self.pieces[index - 1] if index else None
+        indent = None if before is None else self.new_line(index, before)
+        if indent is not None:
+            self.end_line(indent, piece.blank and before is not None and before.kind != OPEN and piece.kind != CLOSE)
+        elif piece.kind != COMMENT:
+            self.remark = -1
+        elif before is not None and before.kind != COMMENT:
+            self.remark = len(self.out)
+        self.put("" if indent is not None else _gap(before, piece, self.marks))
+        self.put(piece.text)
+        if piece.kind == OPEN:
+            self.groups.append(_Group(self.spreads(index), self.indent))
+        elif piece.kind == CLOSE:
+            self.groups.pop()
+        elif indent is not None and piece.start in self.marks.elements:
+            self.groups[-1].loose = not self.fits(self.rest_of_element(index), indent)
+
+    def written(self) -> str:
+        if self.remark >= 0:
+            self.out[self.remark] = "  "
+        return "".join(self.out)
+
+    def put(self, text: str) -> None:
+        self.out.append(text)
+        last = text.rfind("\n")
+        self.column = len(text) - last - 1 if last >= 0 else self.column + len(text)
+
+    def end_line(self, indent: int, blank: bool) -> None:
+        if self.remark >= 0:
+            self.out[self.remark] = "  "
+            self.remark = -1
+        self.put("\n\n" if blank else "\n")
+        self.put(" " * indent)
+        self.indent = indent
+
+    # ---- line ends ----
+
+    def new_line(self, index: int, before: Piece) -> int | None:
+        """The indentation of the line that begins with this piece; None where it begins none."""
+        piece = self.pieces[index]
+        if not self.groups:
+            return None
+        group = self.groups[-1]
+        if piece.kind == CLOSE:
+            return group.indent if group.spread or before.is_line_comment else None
+        inner = group.indent + self.options.indent
+        if not group.spread:
+            return inner if before.is_line_comment or self.stays_broken(before, piece) else None
+        if self.begins_element(index):
+            return inner
+        if (
+            before.is_line_comment
+            or (group.loose and piece.start in self.marks.breaks)
+            or self.stays_broken(before, piece)
+        ):
+            return inner + self.options.indent
+        return None
+
+    def begins_element(self, index: int) -> bool:
+        """Whether an element begins here, or a comment with lines of its own before one or behind the last."""
+        piece = self.pieces[index]
+        if piece.kind == COMMENT and not piece.broken:
+            return False
+        if self.next_word < index:
+            self.next_word = next(at for at in range(index, len(self.pieces)) if self.pieces[at].kind != COMMENT)
+        word = self.pieces[self.next_word]
+        return word.start in self.marks.elements or (piece.kind == COMMENT and word.kind == CLOSE)
+
+    def stays_broken(self, before: Piece, piece: Piece) -> bool:
+        """Whether the author's line end before a piece stays: not where both words belong together anyway."""
+        return (
+            piece.broken
+            and _gap(before, piece, self.marks) != ""
+            and not _is(piece, OPERATOR, "=")
+            and not _is(before, OPERATOR, "=")
+            and not _is(before, NAME, "QualityReq")
+            and piece.start not in self.marks.attributes
+        )
+
+    def spreads(self, index: int) -> bool:
+        """Whether the elements of the brackets that open here have lines of their own."""
+        start, close = self.pieces[index].start, self.closing[index]
+        if close == index + 1 or (start not in self.marks.attributes and start not in self.marks.arguments):
+            return False
+        if any(piece.broken for piece in self.pieces[index + 1 : close + 1]):
+            return True
+        if start not in self.marks.attributes:
+            return False
+        column = self.column - 1  # of the bracket, which is written
+        if not self.fits(self.pieces[index : close + 1], column):
+            return True
+        return not self.fits(self.rest_of_element(index), column) and self.fits(
+            self.rest_of_element(close), self.indent
+        )
+
+    def rest_of_element(self, index: int) -> Iterator[Piece]:
+        """The pieces from this one to the end of the element, or of the line where it stands in no brackets."""
+        yield self.pieces[index]
+        depth = int(self.pieces[index].kind == OPEN)
+        for at in range(index + 1, len(self.pieces)):
+            piece = self.pieces[at]
+            if piece.kind == OPEN:
+                depth += 1
+            elif depth == 0 and (piece.kind == CLOSE or (self.groups and piece.start in self.marks.elements)):
+                return
+            elif piece.kind == CLOSE:
+                depth -= 1
+            yield piece
+
+    def fits(self, pieces: Iterable[Piece], column: int) -> bool:
+        return fits(pieces, column, self.marks, self.options)
+
+
+def _gap(before: Piece | None, piece: Piece, marks: Marks) -> str:
+    """What stands between two pieces on one line."""
+    if before is None or before.kind == OPEN or piece.kind == CLOSE or _is(piece, OPERATOR, ","):
+        return ""
+    return "" if piece.start in marks.tight and before.kind != COMMENT else " "
+
+
+def _is(piece: Piece, kind: int, text: str) -> bool:
+    return piece.kind == kind and piece.text == text
+
+
+def _closing(pieces: Sequence[Piece]) -> dict[int, int]:
+    """Where the brackets close that open at an index."""
+    found: dict[int, int] = {}
+    open_at: list[int] = []
+    for index, piece in enumerate(pieces):
+        if piece.kind == OPEN:
+            open_at.append(index)
+        elif piece.kind == CLOSE:
+            found[open_at.pop()] = index
+    return found

@@ -1,0 +1,198 @@
+"""The logical lines of a file with the comments between them, each with the level it belongs to.
+
+One invariant: every token and every comment of the file is in exactly one line, in order, and the lines' spans follow
+each other from the start of the file to its end.  It knows where comments belong (language.md §6), and no grammar.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from btq_lang.text import LINE_END
+from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
+
+
+class Piece:
+    """A word, a sign or a comment of a line.
+
+    Attributes:
+        kind: its token kind.
+        start: where it begins in the file.
+        text: as it will be written: a quantity with one blank, line ends as `\\n`, no blanks behind a comment.
+        broken: the author began a line with it, inside brackets or behind a comment over lines.
+        blank: the author left a blank line before that.
+    """
+
+    __slots__ = ("blank", "broken", "kind", "start", "text")
+
+    def __init__(self, kind: int, start: int, text: str, line_ends: int) -> None:
+        self.kind: Final = kind
+        self.start: Final = start
+        self.text: Final = text
+        self.broken: Final = line_ends > 0
+        self.blank: Final = line_ends > 1
+
+    @property
+    def is_line_comment(self) -> bool:
+        return self.kind == COMMENT and not self.text.startswith("/*")
+
+
+class Remark:
+    """Comments that have a line of text to themselves.
+
+    Attributes:
+        blanks: what stands before them on that line.
+        blank: whether a blank line stands above.
+        depth: the level they belong to.
+        end: where they end in the file.
+    """
+
+    __slots__ = ("blank", "blanks", "depth", "end", "pieces")
+
+    def __init__(self, blanks: str, blank: bool) -> None:
+        self.blanks: Final = blanks
+        self.blank = blank
+        self.depth = 0
+        self.end = 0
+        self.pieces: list[Piece] = []
+
+    @property
+    def text(self) -> str:
+        return " ".join(piece.text for piece in self.pieces)
+
+
+class Line:
+    """A logical line: what brackets join is one.
+
+    Attributes:
+        level: how many blocks are open around it.
+        blanks: what stands before it on its line of text.
+        blank: whether a blank line stands above it.
+        lead: the comment lines above it, at its own level.
+        pieces: its words and the comments between and behind them; none: the end of the file.
+        tail: the comment lines below it that belong to it, or to a line above it, rather than to the line that follows.
+        start, end: its span, with comment lines and with the blank lines above.
+    """
+
+    __slots__ = ("blank", "blanks", "end", "lead", "level", "pieces", "start", "tail")
+
+    def __init__(self, level: int, blanks: str, blank: bool, pieces: list[Piece], start: int = 0) -> None:
+        self.level: Final = level
+        self.blanks: Final = blanks
+        self.blank = blank
+        self.pieces = pieces
+        self.lead: list[Remark] = []
+        self.tail: list[Remark] = []
+        self.start = start
+        self.end = start
+
+    @property
+    def words(self) -> list[Piece]:
+        """The pieces that are no comments."""
+        return [piece for piece in self.pieces if piece.kind != COMMENT]
+
+
+def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> list[Line]:
+    """The lines of a file; the last one is its end.
+
+    Args:
+        tokens: all tokens of the text.
+        atoms: start and end of what is written as it stands, though it is several tokens: units and types.
+    """
+    lines: list[Line] = []
+    open_lines: list[Line] = []  # the line above and those whose blocks it stands in
+    level = 0
+    for remarks, line in _gathered(text, tokens, atoms):
+        level = line.level
+        for remark in remarks:
+            remark.depth = _depth(remark.blanks, open_lines, level)
+        below = max((index + 1 for index, remark in enumerate(remarks) if remark.depth > level), default=0)
+        line.lead = remarks[below:]
+        line.start = lines[-1].end if lines else 0
+        if below:
+            lines[-1].tail = remarks[:below]
+            line.start = lines[-1].end = _line_end(text, remarks[below - 1].end)
+        while open_lines and open_lines[-1].level >= level:
+            open_lines.pop()
+        open_lines.append(line)
+        lines.append(line)
+    return lines
+
+
+def _gathered(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) -> Iterator[tuple[list[Remark], Line]]:
+    """Each line with the comment lines above it."""
+    remarks: list[Remark] = []
+    line: Line | None = None
+    level = line_ends = written = 0
+    blanks = ""
+    for token in tokens:
+        kind = token.kind
+        if kind == BLANK:
+            *above, last = LINE_END.split(token.text)
+            line_ends += len(above)
+            blanks = last if above else blanks + last.lstrip("\ufeff")
+            continue
+        if kind in (INDENT, DEDENT):
+            level += 1 if kind == INDENT else -1
+            continue
+        if kind == NEWLINE:
+            if line is not None:
+                line.end = token.end
+                yield remarks, line
+            remarks, line, blanks, line_ends = [], None, "", 1
+            continue
+        if token.start < written:
+            continue  # inside an atom
+        written = atoms.get(token.start, token.end)
+        piece = Piece(kind, token.start, _written(kind, text[token.start : written]), line_ends)
+        if line is not None:
+            line.pieces.append(piece)
+        elif kind == COMMENT:
+            if line_ends or not remarks:
+                remarks.append(Remark(blanks, line_ends > 1))
+            remarks[-1].pieces.append(piece)
+            remarks[-1].end = token.end
+        elif remarks and not line_ends:  # behind a comment: that is where the line begins
+            before = remarks.pop()
+            line = Line(level, before.blanks, before.blank, [*before.pieces, piece])
+        else:
+            line = Line(level, blanks, line_ends > 1, [piece])
+        line_ends = 0
+    end = Line(0, "", line_ends > 1, [])
+    end.end = len(text)
+    yield remarks, end
+
+
+def _written(kind: int, raw: str) -> str:
+    if kind == QUANTITY and (parts := _QUANTITY.fullmatch(raw)):
+        return f"{parts[1]} {parts[2]}"
+    if kind == COMMENT and not raw.startswith("/*"):
+        return raw.rstrip(" \t")
+    return LINE_END.sub("\n", raw) if "\r" in raw else raw
+
+
+def _depth(blanks: str, open_lines: list[Line], level: int) -> int:
+    """The level of a comment line: one more than that of the last line above it that stands further left, but not less
+    than that of the line below it."""
+    for line in reversed(open_lines):
+        if _further_left(line.blanks, blanks):
+            return max(line.level + 1, level)
+    return level
+
+
+def _further_left(first: str, second: str) -> bool:
+    """Whether the first indentation is less than the second; where tabs and blanks do not compare, a tab goes to the
+    next multiple of four columns, as in the editor that the classic files were written in."""
+    if second.startswith(first) or first.startswith(second):
+        return len(first) < len(second)
+    return len(first.expandtabs(4)) < len(second.expandtabs(4))
+
+
+def _line_end(text: str, at: int) -> int:
+    found = LINE_END.search(text, at)
+    return found.end() if found else len(text)
+
+
+_QUANTITY: Final = re.compile(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(.+)")
