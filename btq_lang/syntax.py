@@ -832,3 +832,17 @@ def shape(part: object) -> object:
         return part
     fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every class of this module has them
     return type(part).__name__, *(shape(getattr(part, field)) for field in fields if field not in ("start", "end"))
+
+
+def walk(part: object) -> Iterator[object]:
+    """A part of the tree and all that is in it, in document order."""
+    stack = [part]
+    while stack:
+        part = stack.pop()
+        if isinstance(part, tuple):
+            stack += reversed(part)
+        elif part is not None and not isinstance(part, str | int):
+            yield part
+            if not isinstance(part, Word):
+                fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # as in `shape`
+                stack += [getattr(part, field) for field in reversed(fields)]

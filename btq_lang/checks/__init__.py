@@ -9,7 +9,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
-from btq_lang.checks import children, includes, kinds, literals, names, ports, qualities, requirements, trees
+from btq_lang.checks import (
+    children,
+    conditions,
+    includes,
+    kinds,
+    literals,
+    names,
+    ports,
+    qualities,
+    requirements,
+    trees,
+)
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -55,6 +66,7 @@ CHECKS: tuple[Check, ...] = (
     qualities.unknown_quality,
     qualities.old_quality_name,
     qualities.ambiguous_quality,
+    conditions.subtraction_without_blanks,
 )
 
 

@@ -1,0 +1,51 @@
+"""Conditions of requirements and contexts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Context, Entry, Operand, Requirement, Tree, walk
+from btq_lang.tokens import NAME
+
+
+def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`full-empty`, one name, where only `full` and `empty` are known: a subtraction needs blanks."""
+    for operand in _operands(entry):
+        word = operand.word
+        if word.kind != NAME or "-" not in word.text or _is_known(view, entry, word.text):
+            continue
+        for at, character in enumerate(word.text):
+            left, right = word.text[:at], word.text[at + 1 :]
+            if character == "-" and _is_known(view, entry, left) and _is_known(view, entry, right):
+                yield Diagnostic(
+                    "subtraction-without-blanks",
+                    word.span,
+                    f"`{word.text}` is one name, and nothing is called so",
+                    notes=("`-` is part of a name; a subtraction has blanks on both sides",),
+                    fixes=(replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),),
+                )
+                break
+
+
+def _operands(entry: Entry) -> Iterator[Operand]:
+    item = entry.item
+    if isinstance(item, Tree):
+        roots: tuple[object, ...] = (item.clauses, *(node.clauses for node in item.walk() if node.clauses))
+    elif isinstance(item, Requirement | Context):
+        roots = (item,)
+    else:
+        return
+    for root in roots:
+        for part in walk(root):
+            if isinstance(part, Operand):
+                yield part
+
+
+def _is_known(view: View, entry: Entry, name: str) -> bool:
+    if any(view.scope.find(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT)):
+        return True
+    item = entry.item
+    return isinstance(item, Requirement) and any(parameter.name.text == name for parameter in item.parameters)
