@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.checks import check
+from btq_lang.formatter import format_text
 from btq_lang.loader import find_project, load
 from btq_lang.parser import parse
 from btq_lang.rules import Severity
@@ -18,16 +19,17 @@ from btq_lang.workspace import File, Workspace
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))
-PAGES = sorted([*(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*.md"), ROOT / "README.md"])
+PAGES = sorted([*(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*.md")])
+README = ROOT / "README.md"
 FOLDERS = sorted(path for path in (ROOT / "examples").iterdir() if path.is_dir())
 
 _BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
-def blocks() -> list[tuple[str, str]]:
-    """Every ```btq block: where it begins, and its text."""
+def blocks(pages: list[Path]) -> list[tuple[str, str]]:
+    """Every ```btq block of pages: where it begins, and its text."""
     found = []
-    for page in PAGES:
+    for page in pages:
         text = page.read_text("utf-8")
         for match in _BLOCK.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
@@ -37,7 +39,7 @@ def blocks() -> list[tuple[str, str]]:
 
 def files_and_blocks() -> list[object]:
     files = [(str(path.relative_to(ROOT)), path.read_text("utf-8")) for path in EXAMPLES]
-    return [pytest.param(text, id=place) for place, text in [*files, *blocks()]]
+    return [pytest.param(text, id=place) for place, text in [*files, *blocks([*PAGES, README])]]
 
 
 def test_examples_are_found() -> None:
@@ -66,7 +68,7 @@ def test_checks_clean(folder: Path) -> None:
         f"{path}: {diagnostic.rule}: {diagnostic.message}"
         for path in loaded.given
         for diagnostic in check(workspace, path)
-        if diagnostic.severity not in allowed
+        if diagnostic.effective_severity not in allowed
     ] == []
 
 
@@ -74,10 +76,21 @@ def includes(path: str, text: str) -> list[str]:
     return [include.path.text for include in File(path, text).includes if include.path]
 
 
-@pytest.mark.parametrize("text", [pytest.param(text, id=place) for place, text in blocks()])
+@pytest.mark.parametrize("text", [pytest.param(text, id=place) for place, text in blocks([*PAGES, README])])
 def test_block_checks_clean(text: str) -> None:
     workspace = Workspace.of({"block.btq": text})
     assert [f"{diagnostic.rule}: {diagnostic.message}" for diagnostic in check(workspace, "block.btq")] == []
+
+
+@pytest.mark.parametrize("path", [path for path in EXAMPLES if path.suffix == ".btq"], ids=lambda path: path.name)
+def test_is_formatted(path: Path) -> None:
+    text = path.read_text("utf-8")
+    assert format_text(text).text == text
+
+
+@pytest.mark.parametrize("text", [pytest.param(text, id=place) for place, text in blocks(PAGES)])
+def test_block_is_formatted(text: str) -> None:
+    assert format_text(text).text == text
 
 
 def test_no_suppressions() -> None:
