@@ -61,10 +61,12 @@ class Cursor:
         self.raw = self.raws[0]
         self._said = None
 
-    def end_line(self, notes: tuple[str, ...] = ()) -> int:
+    def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
         if self.kind != NEWLINE:
-            self.expected("the end of the line", notes)
+            if not notes and self.at_name() and self.is_behind_name():
+                notes = (_QUOTES,)
+            self.expected("the end of the line", notes, fixes)
         last = len(self.kinds) - 2
         end = self.starts[last] + len(self.raws[last]) if last >= 0 else self.starts[0]
         self.more = self.lexer.open_line()
@@ -100,6 +102,14 @@ class Cursor:
         word = Word(self.kind, self.starts[self.index] - self.base, self.raw)
         self.advance()
         return word
+
+    def at_key(self) -> bool:
+        """Whether `key =` is at hand."""
+        return (self.kind == NAME or self.kind == STRING) and self.is_operator(self.index + 1, "=")
+
+    def is_behind_name(self) -> bool:
+        """Whether the token before the one at hand is a NAME."""
+        return self.index > 0 and self.kinds[self.index - 1] == NAME
 
     def at(self, operator: str) -> bool:
         return self.kind == OPERATOR and self.raw == operator
@@ -266,6 +276,7 @@ class Cursor:
             self.advance()
 
 
+_QUOTES: Final = "a name of several words stands in quotes"
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
 # Mistakes that the lexer reports and that leave something missing for the parser.
 _SAID: Final = frozenset(

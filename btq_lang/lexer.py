@@ -15,7 +15,7 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.scan import blanks_end, line_end, name_end, number_at, string_end, symbol_at, unit_run
+from btq_lang.scan import blanks_end, line_end, line_opening, name_end, number_at, string_end, symbol_at, unit_run
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import Span
 from btq_lang.tokens import (
@@ -99,7 +99,9 @@ class Lexer:
         self.problems: list[Diagnostic] = []
         self._indents: list[str] = [""]  # the blanks of each open block
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
+        self._adopted = False  # there is such a one
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
+        self._ended_early = 0  # how many of them ended before a line further left, and no other has opened since
         self._strange = False  # a character that begins nothing was reported on this line
         self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
         self._root_level = -1  # the level of an open Root block's items
@@ -110,38 +112,34 @@ class Lexer:
 
     def open_line(self) -> bool:
         """Go to the next line that says something and find its level; False at the end of the text."""
-        text, size, position = self.text, self.size, self.position
-        start = position
-        blanks_end = -1
-        while position < size:
-            character = text[position]
-            if character == " " or character == "\t":
-                position += 1
-            elif character == "\n" or character == "\r":
-                position += 1
-                start = position
-                blanks_end = -1
-            elif (character == "#" or character == "/") and (end := self._comment(position)) > position:
-                if blanks_end < 0:
-                    blanks_end = position
-                position = end
-            else:
-                self.position = position
-                self.line_start = start
-                self.blanks = text[start : blanks_end if blanks_end >= 0 else position]
-                self._indent(self.blanks)
-                return True
+        text, size = self.text, self.size
+        start, position = line_opening(text, self.position)
+        blanks = text[start:position]
+        while position < size and (text[position] == "#" or text[position] == "/"):
+            end = self._comment(position)
+            if end == position:
+                break
+            start_behind, position = line_opening(text, end)
+            if start_behind > end:
+                start = start_behind
+                blanks = text[start:position]
         self.position = position
-        self.level = 0
-        self.line_start = size
-        return False
+        if position == size:
+            self.level = 0
+            self.line_start = size
+            return False
+        self.line_start = start
+        self.blanks = blanks
+        if blanks != self._indents[-1]:
+            self._indent(blanks)
+        return True
 
     def _indent(self, blanks: str) -> None:
         """Open a block, close blocks, or adopt a column that no open block has."""
         indents, aliases = self._indents, self._aliases
-        if blanks == indents[-1]:
-            return
         level = len(indents) - 1
+        if not self._adopted and len(blanks) > len(indents[level]):
+            level = -1  # as below, for no column is longer
         while level >= 0 and blanks != indents[level] and blanks not in aliases[level]:
             level -= 1
         if level < 0:
@@ -151,6 +149,7 @@ class Lexer:
                 level = len(indents) - 1
             else:
                 level = self._adopting_level(blanks)
+                self._adopted = True
                 self._report_indentation(blanks, indents[level])
                 if level == 0:
                     aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
@@ -198,6 +197,7 @@ class Lexer:
                 position = self._operator(position)
             elif character == "(":
                 self._brackets.append((position, self._blanks()))
+                self._ended_early = 0
                 position = self._add(OPEN, position, position + 1)
             elif character == ")":
                 position = self._close(position)
@@ -441,7 +441,10 @@ class Lexer:
 
     def _close(self, position: int) -> int:
         if not self._brackets:
-            self._report("syntax-error", position, position + 1, "this `)` closes nothing")
+            if self._ended_early:  # it is the one that was missed
+                self._ended_early -= 1
+            else:
+                self._report("syntax-error", position, position + 1, "this `)` closes nothing")
             return position + 1
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
@@ -498,6 +501,7 @@ class Lexer:
             end = line_end(self.text, because)
             related = (Related(Place(Span(because, end)), "the brackets end before this line"),)
         del self._brackets[-count:]
+        self._ended_early = count
         end = self.starts[-1] + len(self.raws[-1])
         for _ in range(count):
             self._add(CLOSE, end, end)
@@ -544,7 +548,9 @@ def _has_line_end(text: str, start: int, end: int) -> bool:
 
 
 def _extends(blanks: str, outer: str, aliases: tuple[str, ...]) -> bool:
-    return any(len(blanks) > len(column) and blanks.startswith(column) for column in (outer, *aliases))
+    if len(blanks) > len(outer) and blanks.startswith(outer):
+        return True
+    return any(len(blanks) > len(column) and blanks.startswith(column) for column in aliases)
 
 
 def _shown(blanks: str) -> str:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.clauses import ClauseParser
+from btq_lang.clauses import HEADS, VERBS, ClauseParser
 from btq_lang.cursor import VALUES
-from btq_lang.diagnostics import replace_fix
+from btq_lang.diagnostics import Change, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node
+from btq_lang.scan import line_start, path_end
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -24,9 +25,23 @@ from btq_lang.syntax import (
     Tags,
     Verbatim,
     Word,
+    quote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CATEGORIES, CLOSE, DIRECTIONS, NAME, NEWLINE, NODE_CLAUSES, OPEN, OPERATOR, STRING, SYMBOL
+from btq_lang.tokens import (
+    CATEGORIES,
+    CLOSE,
+    DIRECTIONS,
+    NAME,
+    NEWLINE,
+    NODE_CLAUSES,
+    NUMBER,
+    OPEN,
+    OPERATOR,
+    QUANTITY,
+    STRING,
+    SYMBOL,
+)
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
 
@@ -41,7 +56,7 @@ class NodeParser(ClauseParser):
         block = _Block(level, None)
         blocks = [block]
         told_too_deep = False
-        while self.deeper(level):
+        while self.more and lexer.level > level:
             inner = lexer.level
             while block.level >= inner:
                 blocks.pop().close()
@@ -59,31 +74,31 @@ class NodeParser(ClauseParser):
                 self.scan()
                 word = self.raw if self.kind == NAME else ""
                 if word in NODE_CLAUSES:
-                    if block.children:
-                        self.complain(
-                            "clause-after-children",
-                            self.here(),
-                            "clauses stand before children",
-                            (f'a node of this name is written in quotes: "{word}"',),
-                        )
-                    block.clauses += self.clause_line(inner)
-                elif word == "xml" and self.kinds[1] == STRING:
+                    if len(blocks) > 1 or block.has_nodes():
+                        block.clauses += self.clause_line_behind(inner, block.children)
+                    else:  # the tree's own: XML may stand before it, as it may among ports
+                        block.clauses += self.clause_line(inner)
+                elif word == "QualityReq" and self.is_requirement():
+                    block.clauses.append(self.requirement_line(inner))
+                elif word == "xml":
                     block.children.append(self.verbatim())
                     self.no_block(inner)
-                elif word in DIRECTIONS and len(blocks) == 1 and not block.children:
+                elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
+                    if block.clauses:
+                        self.complain("syntax-error", self.here(), "ports stand before satisfices, satisfies and tags")
                     ports.append(self.port())
                     self.no_block(inner)
                 else:
                     if len(blocks) > MAX_DEPTH:
                         if not told_too_deep:
                             told_too_deep = True
-                            self.complain("nested-too-deep", self.here(), f"more than {MAX_DEPTH} levels of nodes")
+                            self.complain("nested-too-deep", self.here(), _TOO_DEEP, (_OF_ITS_OWN,))
                         blocks.pop().close()
                         block = blocks[-1]
                     node = self.node(inner)
             if node is not None:
                 block.children.append(node)
-                if self.deeper(inner):
+                if self.more and lexer.level > inner:
                     block = _Block(inner, node)
                     blocks.append(block)
         for open_block in blocks:
@@ -102,7 +117,7 @@ class NodeParser(ClauseParser):
         elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
             kind = self.take()
         else:
-            self.expected("a node")
+            self.expected("a node: its kind, or a symbol: -> ? || …")
             self.end_line()
             self.skip_block(level)
             return None
@@ -113,8 +128,32 @@ class NodeParser(ClauseParser):
             attributes = self.attributes(clauses)
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             clauses.append(self.node_clause())
+        if self.kind != NEWLINE:
+            self.leftover(kind, clauses)
         end = self.end_line()
         return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
+
+    def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
+        """Complain of what is left of a node's line."""
+        if kind is not None and kind.kind == NAME and (kind.raw in VERBS or kind.raw in HEADS):
+            message = f"`{kind.raw}` begins a clause, and clauses stand in a requirement"
+            note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line"
+            self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
+        elif self.at("=") and self.index > 0:
+            start, end = self.starts[self.index - 1], self.starts[-2] + len(self.raws[-2])
+            changes = (Change(Place(Span(start, start)), "("), Change(Place(Span(end, end)), ")"))
+            rest = range(self.index, len(self.kinds))
+            plain = not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
+            fixes = (Fix("Put brackets around them", changes),) if plain else ()
+            message = "attributes stand in brackets: `( key = value )`"
+            self.complain("syntax-error", Span(start, end), message, (), fixes)
+        elif clauses and self.at_name():
+            self.expected("`,` or the end of the line")
+        elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
+            self.complain("syntax-error", self.here(), "all attributes of a node stand in one pair of brackets")
+        else:
+            return
+        self.go_to(len(self.kinds) - 1)
 
     def at_label(self) -> bool:
         return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
@@ -131,6 +170,46 @@ class NodeParser(ClauseParser):
             found[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
         self.no_block(level)
         return found
+
+    def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
+        """A clause line in the block of a node; behind children, where it should not stand, it is reported."""
+        start = self.lexer.line_start
+        at = self.here()
+        word = self.raw
+        found = self.clause_line(level)
+        if children:
+            end = self.starts[-1] + len(self.raws[-1])
+            moved = self.text[start:end]
+            first = children[0].start + self.base
+            first = line_start(self.text, min(self.base, first), first)
+            changes = (
+                Change(Place(Span(first, first)), moved if self.raws[-1] else f"{moved}\n"),
+                Change(Place(Span(start, end)), ""),
+            )
+            fix = Fix("Move it before the children", changes, safe=True)
+            note = f'a node of this name is written in quotes: "{word}"'
+            self.complain("clause-after-children", at, "clauses stand before children", (note,), (fix,))
+        return found
+
+    def is_requirement(self) -> bool:
+        """Whether the line cannot be a node called QualityReq."""
+        following = self.index + 1
+        if self.kinds[following] not in (NAME, STRING) or self.raws[following] in NODE_CLAUSES:
+            return False
+        behind = self.kinds[following + 1]
+        return not (behind in (NEWLINE, OPEN) or self.raws[following + 1] in NODE_CLAUSES)
+
+    def requirement_line(self, level: int) -> Satisfies:
+        """A requirement in the block of a node: `satisfies` is missing."""
+        at = self.here()
+        fix = replace_fix("Write `satisfies QualityReq`", at, "satisfies QualityReq")
+        note = "one that several nodes share stands outside the tree"
+        self.complain("syntax-error", at, "a requirement at a node begins with `satisfies`", (note,), (fix,))
+        requirement = self.requirement()
+        self.end_line()
+        requirement = self.clause_block(requirement, level)
+        self.no_block(level)
+        return Satisfies(requirement.start, requirement.end, (requirement,))
 
     def clause_block(self, requirement: Requirement, level: int) -> Requirement:
         """[ INDENT { Clause { Clause } NL } DEDENT ]"""
@@ -158,7 +237,11 @@ class NodeParser(ClauseParser):
     def verbatim(self) -> Verbatim:
         """ "xml" STRING NL"""
         start = self.take().start
-        text = self.take() if self.kind == STRING else self.missing_word("one XML element in quotes")
+        text = None
+        if self.kind == STRING:
+            text = self.take()
+        else:
+            self.expected("one XML element in quotes", ('a node of this name is written in quotes: "xml"',))
         return Verbatim(start, self.end_line(), text)
 
     def port(self) -> Port:
@@ -173,10 +256,23 @@ class NodeParser(ClauseParser):
                 last = self.name("the rest of the type")
                 if last is not None:
                     type_ = Word(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
+            if type_ is not None and self.at("<") and self.adjacent(self.index):
+                type_ = self.unquoted_type(type_)
         default = self.value() if self.accept("=") else None
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
         return Port(direction.start, self.end_line(), direction, name, type_, default, attributes, text)
+
+    def unquoted_type(self, type_: Word) -> Word:
+        """`std::vector<int>`: take all of it for one type, and say that it needs quotes."""
+        start = type_.start + self.base
+        span = Span(start, start + len(self.text[start : path_end(self.text, start)].partition("=")[0]))
+        raw = self.text[span.start : span.end]
+        fix = replace_fix("Put quotes around it", span, quote(raw), safe=True)
+        self.complain("syntax-error", span, "this type needs quotes", (), (fix,))
+        while self.kind != NEWLINE and self.starts[self.index] < span.end:
+            self.advance()
+        return Word(NAME, type_.start, raw)
 
     # ---- attributes ----
 
@@ -206,6 +302,8 @@ class NodeParser(ClauseParser):
                     clauses.append(self.node_clause())
                 elif self.kind == NAME and self.raw == "parameters":
                     self.advance()
+                    if not self.at_key():
+                        self.expected("`key = value` behind `parameters`")
                     continue
                 else:
                     self.not_an_attribute()
@@ -219,7 +317,10 @@ class NodeParser(ClauseParser):
 
     def not_an_attribute(self) -> None:
         at = self.index
-        self.expected("an attribute: key = value")
+        notes: tuple[str, ...] = ()
+        if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
+            notes = ("a value or name of several words stands in quotes",)
+        self.expected("an attribute: key = value", notes)
         if self.index == at:
             self.advance()
 
@@ -231,25 +332,34 @@ class NodeParser(ClauseParser):
 
     def value(self) -> Word | None:
         """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-        if self.kind not in VALUES:
+        if self.kind not in VALUES and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
             self.expected("a value: a string, a name, a number, a quantity or {key}")
             return None
+        whole = self.kind in VALUES
         word = self.take()
-        if self.kind != NEWLINE and self.kind != CLOSE and self.raw != "," and self.adjacent(self.index):
-            return self.needs_quotes(word)
-        return word
+        if whole and (self.at_key() or not self.joins()):
+            return word
+        return self.needs_quotes(word)
+
+    def joins(self) -> bool:
+        """Whether the token at hand makes one value with the one before it: there is no blank between."""
+        if self.kind in (NEWLINE, OPEN, CLOSE) or self.raw == "," or self.raw == "=":
+            return False
+        return self.adjacent(self.index)
 
     def needs_quotes(self, word: Word) -> Word:
-        """`map/frame`, `1;2`: take what is written without a blank as one value, and say that it needs quotes."""
-        if self.kind == OPEN or self.raw == "=":
-            return word
-        while self.kind not in (NEWLINE, CLOSE, OPEN) and self.raw != "," and self.adjacent(self.index):
+        """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
+        wrong_unit = self.wrong_unit()
+        while self.joins():
             self.advance()
         start = word.start + self.base
         end = self.last_end() + self.base
         raw = self.text[start:end]
-        fix = replace_fix("Put quotes around it", Span(start, end), f'"{raw}"', safe='"' not in raw)
-        self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
+        fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=True)
+        if wrong_unit is not None:
+            self.report(wrong_unit)
+        else:
+            self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
         return Word(NAME, word.start, raw)
 
     # ---- qualities and requirements on nodes ----
@@ -292,6 +402,10 @@ class NodeParser(ClauseParser):
         if classic:
             self.advance()
             self.advance()
+        elif self.at_word("Quality") and self.kinds[self.index + 1] in (NAME, STRING):
+            self.advance()
+            self.expected("`=` behind `Quality`")
+            return None
         path = self.quality_path()
         if path is None:
             return None
@@ -346,8 +460,13 @@ class NodeParser(ClauseParser):
             return
         at = self.lexer.position
         message = "this line is indented, but the line above it opens no block"
-        self.complain("syntax-error", Span(at, self.lexer.line_end()), message)
+        self.complain("syntax-error", Span(at, self.lexer.line_end()), message, (_MEANINGFUL,))
         self.skip_block(level)
+
+
+_TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
+_OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
+_MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"
 
 
 class _Block:
@@ -360,6 +479,9 @@ class _Block:
         self.node: Final = node
         self.clauses: list[NodeClause] = []
         self.children: list[Node | Verbatim] = []
+
+    def has_nodes(self) -> bool:
+        return any(isinstance(child, Node) for child in self.children)
 
     def close(self) -> None:
         if self.node is not None:

@@ -58,6 +58,23 @@ def blanks_end(text: str, start: int, size: int) -> int:
     return start
 
 
+def line_opening(text: str, start: int) -> tuple[int, int]:
+    """Over blank lines: where the line begins whose first word or comment comes next (`start`, if it is the same
+    line), and where its blanks end."""
+    if not COMPILED:
+        return _OPENING(text, start).span(1)  # type: ignore[union-attr]  # it matches nothing at least
+    size = len(text)
+    at = start
+    while at < size:
+        character = text[at]
+        if character == "\n" or character == "\r":
+            start = at + 1
+        elif character != " " and character != "\t":
+            break
+        at += 1
+    return start, at
+
+
 def line_end(text: str, start: int) -> int:
     """Where the line of text ends."""
     return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
@@ -159,6 +176,7 @@ def unit_run(text: str, start: int) -> int:
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
+_OPENING: Final = re.compile(r"(?:[ \t\r\n]*[\r\n])?([ \t]*)").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
 _PATH: Final = re.compile(r"[^\s()\"']*").match
 _NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match

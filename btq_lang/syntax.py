@@ -132,11 +132,12 @@ class Node:
     @property
     def block_end(self) -> int:
         """Where the last line of its block ends."""
-        last = self
-        while last.children and isinstance(child := last.children[-1], Node):
-            last = child
-        ends = [last.end, *(clause.end for clause in last.clauses), *(child.end for child in last.children)]
-        return max(ends)
+        end = 0
+        last: Node | Verbatim | None = self
+        while isinstance(last, Node):
+            end = max(end, last.end, *(clause.end for clause in last.clauses))
+            last = last.children[-1] if last.children else None
+        return end if last is None else max(end, last.end)
 
     @property
     def nodes(self) -> tuple[Node, ...]:
