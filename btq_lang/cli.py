@@ -7,13 +7,14 @@ called, their answer printed.  A command imports what it needs when it runs, for
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from btq_lang import __version__
 
 TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 9 ms
 if TYPE_CHECKING:
     from argparse import ArgumentParser
+    from typing import Any
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
@@ -25,6 +26,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given in (["--version"], ["-V"]):
         print(f"btq {__version__}")
         return CLEAN
+    if given[:1] == ["check"] and not any(word.startswith("-") for word in given[1:]):
+        from btq_lang.commands.check import run
+        from btq_lang.commands.options import CheckOptions
+
+        return _finish(run, CheckOptions(given[1:]))
     if given[:1] == ["explain"]:  # `->` is a node, not an option
         given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
     options = build_parser().parse_args(given)
@@ -33,8 +39,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except AttributeError:
         build_parser().print_help()
         return TROUBLE
+    return _finish(run, options)
+
+
+def _finish(run: Callable[[Any], int], options: object) -> int:
     try:
-        code: int = run(options)
+        code = run(options)
         sys.stdout.flush()
     except KeyboardInterrupt:
         return 130
@@ -48,7 +58,7 @@ def build_parser() -> ArgumentParser:
     """The commands and their options; shell completion and the documentation are made from it."""
     from argparse import ArgumentParser, RawDescriptionHelpFormatter
 
-    from btq_lang.commands import add_commands
+    from btq_lang.commands.arguments import add_commands
 
     parser = ArgumentParser(
         prog="btq",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group
+from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.fixes import fixed
 from btq_lang.loader import LoadProblem, shown, write_whole
@@ -24,7 +24,7 @@ _FAILS = (Severity.ERROR, Severity.WARNING)
 _ROUNDS = 10  # of fixing: a fix may make room for another
 
 
-def run(options: Namespace) -> int:
+def run(options: CheckOptions) -> int:
     """Check once, or again and again with `--watch`."""
     for rule in _rules(options.select) + _rules(options.ignore):
         if trouble := unknown_rule(rule):
@@ -37,7 +37,7 @@ def run(options: Namespace) -> int:
     return code
 
 
-def _check(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
+def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     """One run: its exit code, and the files that another run would depend on."""
     groups, problems = files.groups(options.paths, options.stdin_filename)
     groups = tuple(replace(group, workspace=_configured(group.workspace, options)) for group in groups)
@@ -81,7 +81,7 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 
 
 def _fix(
-    groups: tuple[Group, ...], options: Namespace, files: Files
+    groups: tuple[Group, ...], options: CheckOptions, files: Files
 ) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
     """Apply the safe fixes to the files that were asked for; the groups with the new texts, and how many fixes."""
     done: list[Group] = []
@@ -111,7 +111,7 @@ def _fix(
     return tuple(done), mended, tuple(trouble)
 
 
-def _print(report: Report, options: Namespace, mended: int) -> None:
+def _print(report: Report, options: CheckOptions, mended: int) -> None:
     # With --fix, standard input's new text is the output, so the report goes elsewhere.
     stream = sys.stderr if options.fix and STDIN in options.paths else sys.stdout
     colour = options.color == "always" or (options.color == "auto" and wants_colour(stream.isatty(), os.environ))
@@ -122,7 +122,7 @@ def _print(report: Report, options: Namespace, mended: int) -> None:
         print(f"Fixed {mended} problem{'s' if mended > 1 else ''}", file=stream)
 
 
-def _watch(options: Namespace, files: Files, watched: tuple[str, ...]) -> None:
+def _watch(options: CheckOptions, files: Files, watched: tuple[str, ...]) -> None:
     import time
 
     from btq_lang.loader import stamp
@@ -148,7 +148,7 @@ def _watch(options: Namespace, files: Files, watched: tuple[str, ...]) -> None:
         print(file=sys.stderr)
 
 
-def _configured(workspace: Workspace, options: Namespace) -> Workspace:
+def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:
     """The workspace with what the command line selects and ignores, on top of what the project file says."""
     project: Project = workspace.project
     select, ignore = _rules(options.select), _rules(options.ignore)
@@ -157,11 +157,11 @@ def _configured(workspace: Workspace, options: Namespace) -> Workspace:
     return workspace.with_project(replace(project, select=select or project.select, ignore=project.ignore + ignore))
 
 
-def _rules(given: list[str]) -> tuple[str, ...]:
+def _rules(given: Iterable[str]) -> tuple[str, ...]:
     return tuple(rule.strip() for words in given for rule in words.split(",") if rule.strip())
 
 
-def _is_wanted(diagnostic: Diagnostic, options: Namespace) -> bool:
+def _is_wanted(diagnostic: Diagnostic, options: CheckOptions) -> bool:
     return _ORDER.index(diagnostic.effective_severity) <= _ORDER.index(Severity(options.severity))
 
 

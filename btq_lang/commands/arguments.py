@@ -1,0 +1,114 @@
+"""The commands and their options, as argparse has them; each command's module is imported when it runs."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from typing import TYPE_CHECKING, Any
+
+from btq_lang.commands.options import CheckOptions
+from btq_lang.render import FORMATS
+
+if TYPE_CHECKING:
+    from argparse import _SubParsersAction
+
+SEVERITIES = ("error", "warning", "info", "hint")
+
+
+def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
+    """Add every command to the parser."""
+    _add_check(commands)
+    _add_format(commands)
+    _add_explain(commands)
+    _add_init(commands)
+    _add_completion(commands)
+
+
+def _command(commands: _SubParsersAction[ArgumentParser], name: str, help: str, **more: Any) -> ArgumentParser:
+    parser = commands.add_parser(
+        name,
+        help=help,
+        description=help[0].upper() + help[1:] + ".",
+        formatter_class=RawDescriptionHelpFormatter,
+        **more,
+    )
+    parser.set_defaults(run=lambda options: _run(name, options))
+    return parser
+
+
+def _run(name: str, options: Namespace) -> int:
+    from importlib import import_module
+
+    code: int = import_module(f"btq_lang.commands.{name}").run(options)
+    return code
+
+
+def _add_paths(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "paths", nargs="*", default=["."], metavar="PATH", help="files and folders, `-` for standard input; default: ."
+    )
+    parser.add_argument(
+        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
+    )
+
+
+def _add_check(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "check",
+        "find what is wrong with missions, before the robot does",
+        epilog="exit codes: 0 clean, or nothing worse than hints; 1 errors or warnings; 2 usage or I/O\n\n"
+        "examples:\n  btq check                          the project in this folder\n"
+        "  btq check --fix mission.btq        and mend what is certain\n"
+        "  btq check --output-format github   annotations in a pull request\n",
+    )
+    _add_paths(parser)
+    parser.add_argument("--output-format", choices=FORMATS, help="default: full")
+    parser.add_argument("--select", action="append", metavar="RULES", help="only these rules, with commas")
+    parser.add_argument("--ignore", action="append", metavar="RULES", help="all but these rules, with commas")
+    parser.add_argument("--severity", choices=SEVERITIES, help="report this and worse; default: hint")
+    parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
+    parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes; default: as many as it is worth")
+    _add_color(parser)
+    parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
+
+
+def _add_format(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(commands, "format", "settle indentation, blanks and the order of clauses")
+    _add_paths(parser)
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
+    parser.add_argument("--diff", action="store_true", help="write nothing, show the changes; exit 1 if there are any")
+    _add_color(parser)
+
+
+def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "explain",
+        "explain a rule, a node or a quality",
+        epilog="examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n",
+    )
+    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY", help="nothing: list them all")
+    _add_color(parser)
+
+
+def _add_init(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(commands, "init", "begin a project that checks clean")
+    parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
+
+
+def _add_completion(commands: _SubParsersAction[ArgumentParser]) -> None:
+    from btq_lang.shell import SHELLS
+
+    parser = _command(
+        commands,
+        "completion",
+        "print the completion script of a shell",
+        epilog='examples:\n  eval "$(btq completion bash)"\n'
+        "  btq completion fish > ~/.config/fish/completions/btq.fish\n",
+    )
+    parser.add_argument("shell", choices=SHELLS)
+
+
+def _add_color(parser: ArgumentParser) -> None:
+    parser.add_argument("--color", choices=("auto", "always", "never"), default="auto", help="default: auto")
