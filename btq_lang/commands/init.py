@@ -10,7 +10,7 @@ from btq_lang.loader import write_whole
 
 _PROJECT = """\
 # What holds for all missions of this project
-engine = ["4.6", "4.8", "4.10"]        # the versions of BehaviorTree.CPP that must load them
+engine = ["4.6", "4.8", "4.10"]  # the versions of BehaviorTree.CPP that must load them
 qualities = "iso25010-2023"
 include-paths = ["."]
 
@@ -48,7 +48,7 @@ BehaviorTree Mission
             MoveBase (station = "charger") satisfies in_time
             Charge
         MoveBase (station = "bench")
-            satisfices reliability                        # early design: a concern, not yet measured
+            satisfices reliability  # early design: a concern, not yet measured
             satisfies in_time, way_home
 """
 
