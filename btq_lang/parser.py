@@ -176,7 +176,8 @@ class Parser(NodeParser):
         self.entry(item, in_root)
 
     def item_word(self) -> str:
-        """The word that begins the item; a misspelt one is reported and read as the word that was meant."""
+        """The word that begins the item; a misspelt one is reported and read as the word that was meant, save that
+        of a model, which is part of the tree."""
         if self.kind != NAME:
             return ""
         if self.raw in ITEM_WORDS:
@@ -188,7 +189,7 @@ class Parser(NodeParser):
         fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
         message = f"`{self.raw}` begins no item: did you mean `{likely[0]}`?"
         self.complain("syntax-error", self.here(), message, (), (fix,))
-        return likely[0]
+        return likely[0] if likely[0] not in CATEGORIES else ""
 
     def begins_item(self) -> bool:
         """Whether the open line looks like an item, wherever it stands; a node may look like a model."""
@@ -401,7 +402,7 @@ class Parser(NodeParser):
             notes = ("a port stands in the block of a model or BehaviorTree, indented",)
         elif self.kind == STRING and unquote(self.raw) in ITEM_WORDS:
             notes = ("a word in quotes is a name and begins no item",)
-        elif self.kind == SYMBOL or (self.kind != NEWLINE and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
+        elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
         self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
         end = self.end_line()

@@ -810,7 +810,7 @@ def quote(text: str) -> str:
 
 def is_name(text: str) -> bool:
     """Whether a text can be written as a NAME, without quotes."""
-    return _NAME.fullmatch(text) is not None and text not in ("R?", "A?")
+    return _NAME.fullmatch(text) is not None and text not in ("R?", "A?") and (text[0].isalpha() or text[0] == "_")
 
 
 _NAME = re.compile(r"[^\W\d](?:\w|-(?=\w))*[?!]?")
