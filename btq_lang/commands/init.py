@@ -26,7 +26,7 @@ Action MoveBase "Drive the base to a named station"
 
 Action Charge "Charge until the battery is full"
 
-Condition BatteryLow "True below the level that a way home needs"
+Condition BatteryGood "True above the level that the way home needs"
 """
 
 _MISSION = """\
@@ -42,11 +42,12 @@ QualityReq way_home : performance-efficiency.resource-utilization "Arrive with s
     leaves battery >= 20 %
 
 BehaviorTree Mission
-    R?
-        -> Recharge
-            BatteryLow
-            MoveBase (station = "charger") satisfies in_time
-            Charge
+    ->
+        ?
+            BatteryGood
+            -> Recharge
+                MoveBase (station = "charger") satisfies in_time
+                Charge
         MoveBase (station = "bench")
             satisfices reliability  # early design: a concern, not yet measured
             satisfies in_time, way_home
