@@ -242,8 +242,8 @@ class Cursor:
     def report(self, diagnostic: Diagnostic) -> None:
         """Report, if nothing was reported on this line of text yet."""
         at = diagnostic.span.start
-        if self._silent_from <= at <= self._silent_to:
-            return
+        if self._silent_from <= at <= self._silent_to or self.kinds[0] == NEWLINE:
+            return  # of a line without any token the lexer has said what is wrong
         lower = self._silent_to if 0 <= self._silent_to < at else min(self.starts[0], at)
         self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
         if not self._lexer_complained(at):

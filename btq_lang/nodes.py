@@ -62,7 +62,10 @@ class NodeParser(ClauseParser):
                 blocks.pop().close()
                 block = blocks[-1]
             node: Node | None = None
-            if len(blocks) <= MAX_DEPTH and (plain := plain_node(self.text, lexer.position, lexer.blanks, self.base)):
+            plain = None
+            if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
+                plain = plain_node(self.text, lexer.position, lexer.blanks, self.base)
+            if plain is not None:
                 node, lexer.position = plain
                 self.more = lexer.open_line()
             elif not block.children and (line := plain_clauses(self.text, lexer.position, self.base)):
@@ -402,7 +405,7 @@ class NodeParser(ClauseParser):
         if classic:
             self.advance()
             self.advance()
-        elif self.at_word("Quality") and self.kinds[self.index + 1] in (NAME, STRING):
+        elif self.at_word("Quality") and self.is_behind_quality(self.index + 1):
             self.advance()
             self.expected("`=` behind `Quality`")
             return None
@@ -419,6 +422,12 @@ class NodeParser(ClauseParser):
             self.accept(",")
         self.close_group("QualityReq or `)`")
         return Quality(path, tuple(requirements))
+
+    def is_behind_quality(self, index: int) -> bool:
+        """Whether a name stands there, so that `Quality` before it lacks its `=`."""
+        if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
+            return False
+        return not self.is_operator(index + 1, "=")
 
     def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
         """ReqUse { "," ReqUse };  classic files leave the commas out"""
@@ -464,6 +473,7 @@ class NodeParser(ClauseParser):
         self.skip_block(level)
 
 
+_ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
 _OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"

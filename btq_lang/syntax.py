@@ -179,7 +179,21 @@ class Node:
             stack += [child for child in reversed(node.children) if isinstance(child, Node)]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Node) and all(getattr(self, slot) == getattr(other, slot) for slot in Node.__slots__)
+        """Equal in everything, compared without recursion: trees are deep."""
+        pairs: list[tuple[object, object]] = [(self, other)]
+        while pairs:
+            mine, others = pairs.pop()
+            if not isinstance(mine, Node) or not isinstance(others, Node):
+                if mine != others:
+                    return False
+            elif mine._own() != others._own() or len(mine.children) != len(others.children):
+                return False
+            else:
+                pairs += zip(mine.children, others.children, strict=True)
+        return True
+
+    def _own(self) -> tuple[object, ...]:
+        return self.start, self.end, self.category, self.kind, self.label, self.attributes, self.clauses
 
     def __hash__(self) -> int:
         return hash((self.start, self.end))
@@ -824,6 +838,8 @@ def _closes(raw: str) -> bool:
 
 def shape(part: object) -> object:
     """A part of the tree without its offsets: two parts with one shape say the same."""
+    if isinstance(part, Node):  # in document order, each with its number of children: no recursion, trees are deep
+        return "Node", *(_shape_of_one(node) for node in _in_order(part))
     if isinstance(part, Word):
         text = "".join(part.raw.split()) if part.kind == QUANTITY else part.text  # `30s` is `30 s`
         return part.kind == STRING, text
@@ -847,3 +863,19 @@ def walk(part: object) -> Iterator[object]:
             if not isinstance(part, Word):
                 fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # as in `shape`
                 stack += [getattr(part, field) for field in reversed(fields)]
+
+
+def _in_order(top: Node) -> Iterator[Node | Verbatim]:
+    stack: list[Node | Verbatim] = [top]
+    while stack:
+        part = stack.pop()
+        yield part
+        if isinstance(part, Node):
+            stack += reversed(part.children)
+
+
+def _shape_of_one(part: Node | Verbatim) -> object:
+    if isinstance(part, Verbatim):
+        return shape(part)
+    words = (part.category, part.kind, part.label)
+    return shape((*words, part.attributes, part.clauses)), len(part.children)

@@ -146,25 +146,28 @@ def assert_entries(parsed: Parsed) -> None:
     for entry, end in zip(parsed.entries, [*starts[1:], len(parsed.text)], strict=False):
         assert before <= entry.start <= end <= len(parsed.text)
         before = entry.start
-        assert_nested(entry.item, entry.start, entry.start, end, parsed.text)
+        assert_nested(entry.item, entry.start, end, parsed.text)
 
 
-def assert_nested(part: object, base: int, start: int, end: int, text: str) -> None:
-    """A part of the tree lies between two offsets, and so do its parts in it, those of a list in their order."""
-    if isinstance(part, Word):
-        assert start <= base + part.start <= base + part.end <= end
-        assert text[base + part.start : base + part.end] == part.raw
-    elif isinstance(part, tuple):
-        for element in part:
-            assert_nested(element, base, start, end, text)
-            if (bounds := extent(element)) is not None:
-                start = base + bounds[1]
-    elif hasattr(part, "__slots__"):
-        if (bounds := extent(part)) is not None:
-            assert start <= base + bounds[0] <= base + bounds[1] <= end
-            start, end = base + bounds[0], base + bounds[1]
-        for name in part.__slots__:
-            assert_nested(getattr(part, name), base, start, end, text)
+def assert_nested(item: Item, start: int, end: int, text: str) -> None:
+    """An item lies between two offsets, and every part in the one around it, those of a list in their order."""
+    base = start
+    left: list[tuple[object, int, int]] = [(item, start, end)]
+    while left:
+        part, start, end = left.pop()
+        if isinstance(part, Word):
+            assert start <= base + part.start <= base + part.end <= end
+            assert text[base + part.start : base + part.end] == part.raw
+        elif isinstance(part, tuple):
+            for element in part:
+                left.append((element, start, end))
+                if (bounds := extent(element)) is not None:
+                    start = base + bounds[1]
+        elif hasattr(part, "__slots__"):
+            if (bounds := extent(part)) is not None:
+                assert start <= base + bounds[0] <= base + bounds[1] <= end
+                start, end = base + bounds[0], base + bounds[1]
+            left += [(getattr(part, name), start, end) for name in part.__slots__]
 
 
 def extent(part: object) -> tuple[int, int] | None:
@@ -448,17 +451,18 @@ def show_clause(clause: Clause) -> str:
 
 @show_clause.register
 def _(clause: Claim) -> str:
-    parts = [
-        show_subject(clause.subject) if clause.subject else "",
-        show(clause.verb),
-        "every" if clause.every else "",
-        show_bound(clause.bound) if clause.bound else "",
-        show_condition(clause.condition) if clause.condition else "",
-        show_optional(clause.resource, "of "),
-        f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}" if clause.per else "",
-        "after" if clause.verb.raw in ("starts", "ends") else "",
-        show_event(clause.event) if clause.event else "",
-    ]
+    verb = clause.verb.raw
+    parts = [show_subject(clause.subject) if clause.subject else "", verb, "every" if clause.every else ""]
+    if clause.bound or verb not in ("needs", "keeps", "never", "leaves", "succeeds", "follows"):
+        parts.append(show_bound(clause.bound))
+    if clause.condition or verb in ("needs", "keeps", "never", "leaves"):
+        parts.append(show_condition(clause.condition))
+    if clause.resource or verb == "uses":
+        parts.append(f"of {show(clause.resource)}")
+    if clause.per or (verb == "runs" and not clause.every):
+        parts.append(f"per {show_path(clause.per) if isinstance(clause.per, Path) else show(clause.per)}")
+    if clause.event or verb in ("starts", "ends", "follows"):
+        parts += ["after" if verb != "follows" else "", show_event(clause.event)]
     return words(*parts)
 
 
@@ -529,7 +533,9 @@ def show_event(event: Event | None) -> str:
     return words(show_path(event.path) if event.path else "(mission)", event.happening)
 
 
-def show_bound(bound: Bound) -> str:
+def show_bound(bound: Bound | None) -> str:
+    if bound is None:
+        return MISSING
     if bound.relation == "between":
         return words("between", show_bounded(bound.value), show_amount(bound.upper))
     return words(bound.relation, show_bounded(bound.value))
