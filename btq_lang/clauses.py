@@ -52,7 +52,7 @@ from btq_lang.syntax import (
     unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
@@ -479,12 +479,12 @@ class ClauseParser(Cursor):
         """Cond = Conj { "or" Conj }"""
         if self._nesting == 0:
             self._operators = 0
-        if self._nesting >= MAX_NESTING:
+        if self._nesting > MAX_NESTING:
             self.too_deep(f"more than {MAX_NESTING} brackets in brackets")
             return None
         self._nesting += 1
         left = self.conj()
-        while left is not None and (self.accept_word("or") or self.accept_wrong_or()):
+        while left is not None and (self.accept_word("or") or self.accept_instead("||", "or")):
             right = self.conj()
             if right is None:
                 break
@@ -492,12 +492,13 @@ class ClauseParser(Cursor):
         self._nesting -= 1
         return left
 
-    def accept_wrong_or(self) -> bool:
-        """`||`, reported and read as `or`"""
-        if self.kind != SYMBOL or self.raw != "||":
+    def accept_instead(self, sign: str, word: str) -> bool:
+        """What other languages write, reported and read as the word that is meant"""
+        if self.kind not in (SYMBOL, ERROR) or self.raw != sign:
             return False
-        fix = replace_fix("Write `or`", self.here(), "or", safe=True)
-        self.complain("syntax-error", self.here(), "conditions are joined by `or`, not by `||`", (), (fix,))
+        written = word if word != "not" else "not "
+        fix = replace_fix(f"Write `{word}`", self.here(), written, safe=True)
+        self.complain("syntax-error", self.here(), f"in conditions `{sign}` is written `{word}`", (), (fix,))
         self.advance()
         return True
 
@@ -517,7 +518,7 @@ class ClauseParser(Cursor):
     def conj(self) -> Condition | None:
         """Conj = Neg { "and" Neg }"""
         left = self.neg()
-        while left is not None and self.accept_word("and"):
+        while left is not None and (self.accept_word("and") or self.accept_instead("&&", "and")):
             right = self.neg()
             if right is None:
                 break
@@ -526,9 +527,8 @@ class ClauseParser(Cursor):
 
     def neg(self) -> Condition | None:
         """Neg = [ "not" ] Atom"""
-        if self.at_word("not"):
-            start = self.start()
-            self.advance()
+        start = self.start()
+        if self.accept_word("not") or self.accept_instead("!", "not"):
             operand = self.atom()
             return Not(start, operand.end, operand) if operand else None
         return self.atom()

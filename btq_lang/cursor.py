@@ -26,6 +26,7 @@ class Cursor:
         kind, raw: the token at hand.
         index: its index in `kinds`, `starts` and `raws`, the lexer's lists for this line.
         problems: what is wrong, counted from the start of the file.
+        known: how many problems the lexer had before this logical line.
         group: how many brackets are open around the token at hand.
         more: a further line is open (the lexer stands at its first character), not yet scanned.
     """
@@ -44,8 +45,9 @@ class Cursor:
         self.group = 0
         self.problems: list[Diagnostic] = []
         self._silent_from = self._silent_to = -1  # the last line of text with a complaint
-        self._known = 0  # how many problems the lexer had before this logical line
+        self.known = 0
         self._said: list[int] | None = None  # where it found a mistake in it
+        self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
         self._unclosed = len(text)  # the first of its brackets that is not closed
 
     # ---- lines ----
@@ -53,13 +55,27 @@ class Cursor:
     def scan(self) -> None:
         """Cut the open line into tokens and stand on the first."""
         lexer = self.lexer
-        self._known = len(lexer.problems)
+        self.known = len(lexer.problems)
+        self._in_wake = self._makes_wake() and not self.text[self._line_end() : lexer.line_start].strip()
+        self._would_complain = False
         lexer.scan()
         self.kinds, self.starts, self.raws = lexer.kinds, lexer.starts, lexer.raws
         self.index = 0
         self.kind = self.kinds[0]
         self.raw = self.raws[0]
         self._said = None
+
+    def _makes_wake(self) -> bool:
+        """Whether the line just read ends its brackets early, or is itself what is left of such brackets.
+
+        What follows it is then probably the rest of the brackets, and that a `)` is missing has been said.
+        """
+        if self._in_wake:
+            return self._would_complain
+        return len(self.kinds) > 1 and self.kinds[-2] == CLOSE and not self.raws[-2]
+
+    def _line_end(self) -> int:
+        return self.starts[-1] + len(self.raws[-1])
 
     def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
@@ -242,8 +258,11 @@ class Cursor:
     def report(self, diagnostic: Diagnostic) -> None:
         """Report, if nothing was reported on this line of text yet."""
         at = diagnostic.span.start
-        if self._silent_from <= at <= self._silent_to or self.kinds[0] == NEWLINE:
+        if self.kinds[0] == NEWLINE:
             return  # of a line without any token the lexer has said what is wrong
+        self._would_complain = True
+        if self._in_wake or self._silent_from <= at <= self._silent_to:
+            return
         lower = self._silent_to if 0 <= self._silent_to < at else min(self.starts[0], at)
         self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
         if not self._lexer_complained(at):
@@ -252,12 +271,16 @@ class Cursor:
     def _lexer_complained(self, at: int) -> bool:
         """Whether the lexer found a mistake on this line of text, or brackets that it has closed itself hold it."""
         if self._said is None:
-            found = self.lexer.problems[self._known :]
+            found = self.lexer.problems[self.known :]
             self._said = sorted(problem.span.start for problem in found if problem.rule in _SAID)
             unclosed = [problem.span.start for problem in found if problem.rule == "unclosed-bracket"]
             self._unclosed = min(unclosed, default=len(self.text))
         next_said = bisect_left(self._said, self._silent_from)
         return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
+
+    def forget(self) -> None:
+        """What the lexer said of this line has changed."""
+        self._said = None
 
     def recover(self) -> None:
         """To the next `key =` or the closing bracket of the group at hand; outside brackets to the end of the line."""

@@ -83,6 +83,7 @@ class Lexer:
         kinds, starts, raws: the tokens of the line after `scan`; the last one is always a NEWLINE.
         comments: start and end of every comment so far.
         problems: what was wrong so far.
+        ended_early: how many brackets ended before a line further left, while no other has opened since.
     """
 
     def __init__(self, text: str) -> None:
@@ -97,11 +98,11 @@ class Lexer:
         self.raws: list[str] = []
         self.comments: list[tuple[int, int]] = []
         self.problems: list[Diagnostic] = []
+        self.ended_early = 0
         self._indents: list[str] = [""]  # the blanks of each open block
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
         self._adopted = False  # there is such a one
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
-        self._ended_early = 0  # how many of them ended before a line further left, and no other has opened since
         self._strange = False  # a character that begins nothing was reported on this line
         self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
         self._root_level = -1  # the level of an open Root block's items
@@ -197,7 +198,7 @@ class Lexer:
                 position = self._operator(position)
             elif character == "(":
                 self._brackets.append((position, self._blanks()))
-                self._ended_early = 0
+                self.ended_early = 0
                 position = self._add(OPEN, position, position + 1)
             elif character == ")":
                 position = self._close(position)
@@ -268,8 +269,13 @@ class Lexer:
             return self._quote_this(start)
         if text[start : start + 2] in _TWO or character in ":.<>+-*/%^":
             return self._operator(start)
+        if character == "!" or text.startswith("&&", start):  # the parser knows whether a condition is meant
+            return self._add(ERROR, start, start + (1 if character == "!" else 2))
         if self._brackets and character not in _INSTEAD and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
+        if character == "{" or character == "}":
+            self._half_braced(start, character)
+            return start + 1
         end = start + 1
         while end < self.size and text[end] == character:
             end += 1
@@ -279,6 +285,22 @@ class Lexer:
             shown = repr(character) if not character.isprintable() or character.isspace() else f"`{character}`"
             self._report("syntax-error", start, end, f"{shown} means nothing here", notes)
         return end
+
+    def _half_braced(self, start: int, character: str) -> None:
+        """A brace without the other one: `{key` or `key}`."""
+        if self._strange:
+            return
+        self._strange = True
+        other = "}" if character == "{" else "{"
+        word = _WHOLE_WORD.match(self.text, start + 1)
+        at = word.end() if character == "{" and word else start + 1
+        if character == "}":
+            at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
+        fix = replace_fix(f"Add `{other}`", Span(at, at), other)
+        message = f"this `{character}` has no `{other}`"
+        notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
+        span = Span(start, start + 1)
+        self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
 
     def _after_operand(self, position: int) -> bool:
         """Whether a `-` here subtracts: it does behind an operand on the same line (language.md §2, NUMBER)."""
@@ -441,8 +463,8 @@ class Lexer:
 
     def _close(self, position: int) -> int:
         if not self._brackets:
-            if self._ended_early:  # it is the one that was missed
-                self._ended_early -= 1
+            if self.ended_early:  # it is the one that was missed
+                self.ended_early -= 1
             else:
                 self._report("syntax-error", position, position + 1, "this `)` closes nothing")
             return position + 1
@@ -501,7 +523,7 @@ class Lexer:
             end = line_end(self.text, because)
             related = (Related(Place(Span(because, end)), "the brackets end before this line"),)
         del self._brackets[-count:]
-        self._ended_early = count
+        self.ended_early = count
         end = self.starts[-1] + len(self.raws[-1])
         for _ in range(count):
             self._add(CLOSE, end, end)
@@ -575,9 +597,7 @@ _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
-    "!": "write `not`",
     "[": "attributes stand in `( … )`",
-    "{": "a blackboard entry is written `{key}`, on one line and without quotes",
     "\xa0": "this is a no-break space: use an ordinary blank",
     "\ufeff": "a byte order mark belongs at the start of a file",
 }

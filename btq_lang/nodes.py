@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.clauses import HEADS, VERBS, ClauseParser
 from btq_lang.cursor import VALUES
-from btq_lang.diagnostics import Change, Fix, Place, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.scan import line_start, path_end
 from btq_lang.syntax import (
@@ -48,6 +48,10 @@ MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more 
 
 class NodeParser(ClauseParser):
     """A cursor that can read the block of a tree."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.bare_until = -1  # where the last line `key = value` without brackets ends
 
     def tree_block(self, level: int) -> tuple[tuple[Port, ...], tuple[NodeClause, ...], tuple[Node | Verbatim, ...]]:
         """INDENT { Port } { ClauseLine } { Node } DEDENT"""
@@ -143,13 +147,7 @@ class NodeParser(ClauseParser):
             note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
         elif self.at("=") and self.index > 0:
-            start, end = self.starts[self.index - 1], self.starts[-2] + len(self.raws[-2])
-            changes = (Change(Place(Span(start, start)), "("), Change(Place(Span(end, end)), ")"))
-            rest = range(self.index, len(self.kinds))
-            plain = not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
-            fixes = (Fix("Put brackets around them", changes),) if plain else ()
-            message = "attributes stand in brackets: `( key = value )`"
-            self.complain("syntax-error", Span(start, end), message, (), fixes)
+            self.bare_attributes()
         elif clauses and self.at_name():
             self.expected("`,` or the end of the line")
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
@@ -157,6 +155,30 @@ class NodeParser(ClauseParser):
         else:
             return
         self.go_to(len(self.kinds) - 1)
+
+    def bare_attributes(self) -> None:
+        """Complain of `MoveBase station = "charger"`, and once of several lines `key = value`."""
+        lexer = self.lexer
+        start, end = self.starts[self.index - 1], self.starts[-2] + len(self.raws[-2])
+        if self.index == 1:
+            is_next = self.bare_until >= 0 and not self.text[self.bare_until : lexer.line_start].strip()
+            self.bare_until = lexer.position
+            lexer.ended_early = 1  # the `)` that follows them is no mistake of its own
+            if is_next:
+                return
+        rest = range(self.index, len(self.kinds))
+        plain = not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
+        changes = (Change(Place(Span(start, start)), "("),)
+        if closing := [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]:
+            lexer.problems.remove(closing[-1])  # what is missing is the `(`
+            self.forget()
+        else:
+            changes += (Change(Place(Span(end, end)), ")"),)
+        fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
+        self.complain("syntax-error", Span(start, end), "attributes stand in brackets: `( key = value )`", (), fixes)
+
+    def is_stray_bracket(self, problem: Diagnostic) -> bool:
+        return problem.rule == "syntax-error" and self.text.startswith(")", problem.span.start)
 
     def at_label(self) -> bool:
         return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
@@ -342,7 +364,17 @@ class NodeParser(ClauseParser):
         word = self.take()
         if whole and (self.at_key() or not self.joins()):
             return word
+        if self.kind == STRING:
+            return self.half_quoted(word)
         return self.needs_quotes(word)
+
+    def half_quoted(self, word: Word) -> Word:
+        """`charger" …`: what follows is a string only because a quote is missing."""
+        span = word.span.shifted(self.base)
+        fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
+        self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
+        self.recover()
+        return word
 
     def joins(self) -> bool:
         """Whether the token at hand makes one value with the one before it: there is no blank between."""

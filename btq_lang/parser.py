@@ -391,7 +391,7 @@ class Parser(NodeParser):
         return Tree(start, end, name, attributes, ports, clauses, children)
 
     def skipped(self, level: int) -> Skipped:
-        """A line that begins no item: it and its block are passed over."""
+        """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
         if self.kind == NAME and self.raw in NODE_CLAUSES:
@@ -406,13 +406,20 @@ class Parser(NodeParser):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
         self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
         end = self.end_line()
-        while self.deeper(level) and not self.begins_item():
+        while self.more and not self.ends_skipping(level):
             known = len(self.lexer.problems)
             self.scan()
             del self.lexer.problems[known:]
             self.go_to(len(self.kinds) - 1)
             end = self.end_line()
         return Skipped(start, end)
+
+    def ends_skipping(self, level: int) -> bool:
+        """Whether the open line is an item again, or what is meant for one, or stands further left."""
+        if self.lexer.level > level:
+            return self.begins_item()
+        word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
+        return self.lexer.level < level or word in ITEM_WORDS or bool(near(word, ITEM_WORDS, limit=1))
 
 
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name

@@ -695,14 +695,16 @@ def test_blackboard_entries(braced: str) -> None:
     assert_value(braced, f"BRACED {braced}")
 
 
-@pytest.mark.parametrize("source", ["{a\nb}", "{a'b'}", '{"a"}', "{{a}}", "{a"])
+@pytest.mark.parametrize("source", ["{a\n      b}", "{a'b'}", '{"a"}', "{{a}}", "{a"])
 def test_what_is_no_blackboard_entry(source: str) -> None:
-    text = f"X (a = {source})"
-    lexer = Lexer(text)
-    lexer.open_line()
-    lexer.scan()
-    assert [problem.message for problem in lexer.problems][:1] == ["`{` means nothing here"]
-    assert lexer.problems[0].notes == ("a blackboard entry is written `{key}`, on one line and without quotes",)
+    (problem, *_) = parse(f"BehaviorTree t\n  X (a = {source})").diagnostics
+    assert (problem.span, problem.message) == ((24, 25), "this `{` has no `}`")
+    assert problem.notes == ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
+
+
+def test_a_brace_can_be_added() -> None:
+    assert_fix("BehaviorTree t\n  X (a = {b)", "Add `}`", "BehaviorTree t\n  X (a = {b})")
+    assert_fix("BehaviorTree t\n  X (a = b})", "Add `{`", "BehaviorTree t\n  X (a = {b})")
 
 
 # ---- comments -------------------------------------------------------------------------------------------------------
@@ -812,9 +814,7 @@ def test_comments_are_tokens_wherever_they_stand() -> None:
     [
         ("&", "write `and`"),
         ("|", "write `or`; `||` is the symbol of Parallel"),
-        ("!", "write `not`"),
         ("[", "attributes stand in `( … )`"),
-        ("{", "a blackboard entry is written `{key}`, on one line and without quotes"),
         ("\xa0", "this is a no-break space: use an ordinary blank"),
     ],
 )

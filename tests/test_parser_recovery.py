@@ -1,0 +1,246 @@
+"""One mistake gives exactly one diagnostic, and the rest of the file is understood as if nothing had happened."""
+
+from __future__ import annotations
+
+import pytest
+from syntax_asserts import assert_invariants, assert_parse, assert_safe_fixes, show_problems
+
+from btq_lang.parser import Parsed, parse
+from btq_lang.syntax import Skipped, shape
+
+MISSION = """\
+include "skills.btq"
+signal battery : % from {battery_level} fresh within 5 s
+context low : battery < 20 %
+
+QualityReq rq1 : time-behaviour "In time"
+    BatteryCheck/MoveBase takes at most 30 s
+    in at least 98 % of activations
+    on violation fail
+
+apply rq1 to every MoveBase except Home
+
+Action MoveBase "Drives"
+    input station : string = "charger"
+    output done : bool
+
+Root mainTree
+    BehaviorTree mainTree
+        R?
+            -> BatteryCheck
+                Condition BatteryLow
+                MoveBase (station = "charger" satisfices performance, tags a)
+                    satisfies rq1
+                Charge
+            Retry (
+                num_attempts = 6
+                name = "again"
+            )
+                SubTree PickPlace (pose = {pose})
+
+    BehaviorTree PickPlace
+        ->
+            Pick
+            Place
+
+signal speed : m/s
+"""
+
+
+def shapes(parsed: Parsed) -> list[object]:
+    return [shape(entry.item) for entry in parsed.entries]
+
+
+def check_one_mistake(old: str, new: str, damaged: int | None, problem: str) -> None:
+    """Replace something in the mission: one diagnostic, and no item but `damaged` is understood otherwise."""
+    assert MISSION.count(old) == 1, "a test that says where its mistake is"
+    text = MISSION.replace(old, new)
+    parsed = parse(text)
+    assert_invariants(parsed)
+    assert_safe_fixes(parsed)
+    assert show_problems(text, parsed.diagnostics) == problem
+    found, expected = shapes(parsed), shapes(parse(MISSION))
+    if damaged is not None:
+        assert found[damaged] != expected[damaged], "this item is not damaged"
+        found[damaged] = expected[damaged]
+    assert found == expected
+
+
+def test_the_mission_is_right() -> None:
+    assert_parse(MISSION, None)
+
+
+END = "found the end of the line"
+NO_BLOCK = "this line is indented, but the line above it opens no block"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "damaged", "problem"),
+    [
+        ('"skills.btq"', "skills.btq", 0, "1:9 syntax-error «skills» expected a file in quotes, found `skills`"),
+        ("battery : %", "battery %", 1, "2:16 syntax-error «%» expected `:` and the signal's unit, found `%`"),
+        ("within 5 s", "within 5sek", 1, "2:55 unknown-unit «sek» `sek` is no unit: did you mean `s`?"),
+        (
+            "battery < 20 %",
+            "battery <",
+            2,
+            f"3:24 syntax-error «» expected a condition: a signal, a context, a value, …, {END}",
+        ),
+        (
+            "context low",
+            "contxt low",
+            None,
+            "3:1 syntax-error «contxt» `contxt` begins no item: did you mean `context`?",
+        ),
+        ("QualityReq rq1 :", "QualityReq :", 3, "5:12 syntax-error «:» expected the requirement's ID, found `:`"),
+        (
+            "takes at most",
+            "takes most",
+            3,
+            "6:33 syntax-error «most» expected a bound: at most, at least, less than, more than or between, "
+            "found `most`",
+        ),
+        (
+            "takes at most",
+            "take at most",
+            3,
+            "6:27 syntax-error «take» `take` begins no clause: did you mean `takes`?",
+        ),
+        (
+            "    in at least",
+            "   in at least",
+            None,
+            "7:1 inconsistent-indentation «   » no open block is indented by 3 blanks",
+        ),
+        (
+            "    in at least",
+            "\tin at least",
+            None,
+            "7:1 inconsistent-indentation «\t» tabs and blanks are mixed: 1 tab cannot be compared with 4 blanks",
+        ),
+        ("    in at least", "        in at least", 3, f"7:9 syntax-error «in at least 98 % of activations» {NO_BLOCK}"),
+        ("on violation fail", "on violation", 3, f"8:17 syntax-error «» expected fail, halt, warn or log, {END}"),
+        ("apply rq1 to", "apply rq1", 4, "10:11 syntax-error «every» expected `to`, found `every`"),
+        ('"Drives"', "Drives", 5, "12:17 syntax-error «Drives» expected the end of the line, found `Drives`"),
+        (
+            "station : string",
+            "station string",
+            5,
+            "13:19 syntax-error «string» expected the end of the line, found `string`",
+        ),
+        (
+            "output done",
+            "outptu done",
+            5,
+            "14:5 syntax-error «outptu» expected a port (input, output or inout), metadata or xml, found `outptu`",
+        ),
+        ("Root mainTree", "Root main tree", 6, "16:11 syntax-error «tree» expected the end of the line, found `tree`"),
+        ("Root mainTree", "Root mainTree (", 6, "16:15 unclosed-bracket «(» this `(` has no `)`"),
+        (
+            "    BehaviorTree mainTree",
+            "    BehaviourTree mainTree",
+            None,
+            "17:5 syntax-error «BehaviourTree» `BehaviourTree` begins no item: did you mean `BehaviorTree`?",
+        ),
+        (
+            "-> BatteryCheck",
+            "-> Battery Check",
+            7,
+            "19:24 syntax-error «Check» expected the end of the line, found `Check`",
+        ),
+        ("tags a)", "tags a", 7, "21:26 unclosed-bracket «(» this `(` has no `)`"),
+        ("tags a)", "tags a))", None, "21:78 syntax-error «)» this `)` closes nothing"),
+        (
+            "MoveBase (station",
+            "MoveBase station",
+            7,
+            '21:26 syntax-error «station = "charger" satisfices performance, tags a» '
+            "attributes stand in brackets: `( key = value )`",
+        ),
+        (
+            "num_attempts = 6",
+            "num_attempts 6",
+            7,
+            "25:17 syntax-error «num_attempts» expected an attribute: key = value, found `num_attempts`",
+        ),
+        ("            )\n", "", 7, "24:19 unclosed-bracket «(» this `(` has no `)`"),
+        ("            )\n", "        x = 1\n        )\n", 7, "24:19 unclosed-bracket «(» this `(` has no `)`"),
+        (
+            "Retry (\n",
+            "Retry\n",
+            7,
+            "25:17 syntax-error «num_attempts = 6» attributes stand in brackets: `( key = value )`",
+        ),
+        ("{pose})", "{pose)", 7, "28:43 syntax-error «{» this `{` has no `}`"),
+        ("{pose})", "pose})", 7, "28:47 syntax-error «}» this `}` has no `{`"),
+        ("{pose})", "/pose)", 7, "28:43 syntax-error «/pose» this value needs quotes"),
+        (
+            "            Place\n",
+            "            Place /* x\n",
+            None,
+            "33:19 unclosed-comment «/*» this comment has no closing */",
+        ),
+        (
+            "    BehaviorTree PickPlace\n",
+            "    BehaviorTree PickPlace#1\n",
+            8,
+            "30:18 misplaced-comment «PickPlace#1» `#` begins a comment only behind a blank: quote this",
+        ),
+        ("speed : m/s", "speed : m/sek", 9, "35:16 unknown-unit «m/sek» `m/sek` is no unit: did you mean `m/s`?"),
+    ],
+)
+def test_one_mistake(old: str, new: str, damaged: int | None, problem: str) -> None:
+    check_one_mistake(old, new, damaged, problem)
+
+
+def test_a_tree_without_its_first_line() -> None:
+    text = MISSION.replace("    BehaviorTree PickPlace\n", "").replace("Root mainTree\n", "Root mainTree\n    X\n")
+    parsed = parse(text)
+    assert_invariants(parsed)
+    assert show_problems(text, parsed.diagnostics) == (
+        "17:5 syntax-error «X» expected an item: BehaviorTree, QualityReq, include, signal, …, found `X`"
+    )
+
+
+def test_lines_that_are_no_items_are_one_mistake() -> None:
+    text = "signal a : m\n->\n    X\nY (b = 1)\n3\n    satisfies z\nBehaviorTree c\n    Z\nW\n"
+    tree = "signal a : m\nskipped\ntree c\n  Z\nskipped"
+    message = "expected an item: BehaviorTree, QualityReq, include, signal, …"
+    assert_parse(
+        text, tree, f"2:1 syntax-error «->» {message}, found `->`", f"9:1 syntax-error «W» {message}, found `W`"
+    )
+
+
+def test_what_forgotten_brackets_leave_behind_is_no_mistake_of_its_own() -> None:
+    text = """
+        BehaviorTree t
+            ->
+                X (
+                    a = 1
+            b = 2
+            c d = {e}
+            )
+            Y 3
+    """
+    tree = """
+        tree t
+          ->
+            X (a=1)
+          b
+          c as d
+          Y
+    """
+    parsed = assert_parse(text, tree, "3:11 unclosed-bracket «(» this `(` has no `)`",
+                          "8:7 syntax-error «3» expected the end of the line, found `3`")  # fmt: skip
+    assert not any(isinstance(entry.item, Skipped) for entry in parsed.entries)
+
+
+def test_a_quote_that_is_missing_is_said_first() -> None:
+    """Strings run to their closing quote (language.md §2), so what follows is read inside out."""
+    text = MISSION.replace('"In time"', '"In time')
+    (first, *_) = parse(text).diagnostics
+    assert (first.rule, text[first.span.start : first.span.end + 7]) == ("string-over-items", '"In time')
+    text = MISSION.replace('"charger" sat', 'charger" sat')
+    (first, *_) = parse(text).diagnostics
+    assert first.message == "a quote is missing at `charger`"
+    assert [fix.title for fix in first.fixes] == ['Put " before it']
