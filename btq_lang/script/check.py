@@ -1,0 +1,64 @@
+"""All problems of a script, for the versions of the engine that it must hold for.
+
+One invariant: what is reported depends on the script, the versions and whether a value is expected, and on nothing
+else; in particular no key is known here, so that a key that nobody writes is another rule's business.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.rules import Severity
+from btq_lang.script import mistakes
+from btq_lang.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
+from btq_lang.script.versions import version_problems
+from btq_lang.text import Span
+
+ALL_VERSIONS: Final = ("4.6", "4.8", "4.10")
+
+
+def check_script(
+    script: Script, *, versions: tuple[str, ...] = ALL_VERSIONS, expects_value: bool = False
+) -> tuple[Diagnostic, ...]:
+    """What is wrong with a script, in the order of the text; spans and fixes count from its start.
+
+    Args:
+        versions: the engines that it must hold for, such as `4.8` or `4.6.2`.  `script-version` says which of them
+            refuse the script or read it otherwise than 4.9 and later do; for those alone it has nothing to say.
+        expects_value: it stands where the engine wants a condition: `_skipIf`, the code of a ScriptCondition.
+
+    Raises:
+        ValueError: a version is not made of numbers and points.
+    """
+    found = [*script.problems]
+    if script.complete:
+        found += version_problems(script, versions)
+        if expects_value and script.statements:
+            found += _value_problems(script.statements[-1], script.text)
+    return tuple(sorted(found, key=lambda problem: problem.span))
+
+
+def _value_problems(node: Expression, text: str) -> list[Diagnostic]:
+    """The last statement gives the value, and the engine takes none for a condition but 0 and 1."""
+    node = ungrouped(node)
+    if isinstance(node, Ternary):
+        return _value_problems(node.then, text) + _value_problems(node.otherwise, text)
+    span = Span(node.start, node.end)
+    if isinstance(node, Text):
+        return [mistakes.error(span, "a condition must give 0 or 1: the engine fails when it meets a text")]
+    if isinstance(node, Number) and node.value not in (0, 1):
+        return [mistakes.error(span, f"a condition must give 0 or 1: the engine fails when it meets {node.raw}")]
+    if isinstance(node, Assign):
+        return [_assignment_as_condition(node, text)]
+    return []
+
+
+def _assignment_as_condition(node: Assign, text: str) -> Diagnostic:
+    start = text.index(node.operator, node.target.end)
+    span = Span(start, start + len(node.operator))
+    fixes: tuple[Fix, ...] = (replace_fix("Compare with `==`", span, "=="),) if node.operator == "=" else ()
+    message = f"a condition that ends in an assignment: `{node.operator}` changes the entry"
+    if node.operator == "=":
+        message += "; to compare, write `==`"
+    return Diagnostic("script-error", span, message, fixes=fixes, severity=Severity.WARNING)

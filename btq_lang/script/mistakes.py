@@ -1,0 +1,236 @@
+"""What is said about a script that the newest engine refuses, or that it loads only to fail at the first tick.
+
+One invariant: a fix marked safe leaves a script in which this mistake is mended and no other one is new.  Where a
+mistake is seen is the business of `tokens` and `parser`; here is what to tell, and what to write instead.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.text import Span
+
+# Spellings of other languages, of XML and of typeset text, and what they mean here.
+MEANT: Final = {
+    "=>": ">=",
+    "=<": "<=",
+    "<>": "!=",
+    "===": "==",
+    "!==": "!=",
+    "and": "&&",
+    "or": "||",
+    "not": "!",
+    "&lt;": "<",
+    "&gt;": ">",
+    "&lt;=": "<=",
+    "&gt;=": ">=",
+    "&amp;": "&",
+    "&amp;&amp;": "&&",
+    "≤": "<=",
+    "≥": ">=",
+    "≠": "!=",
+    "∧": "&&",
+    "∨": "||",
+    "¬": "!",
+    "×": "*",
+    "÷": "/",
+    "−": "-",
+}
+
+# What has no counterpart, and what to do.
+_NO_SUCH: Final = {
+    "**": "there is no power operator in scripts: multiply",
+    "//": "scripts have neither comments nor whole-number division: `/` divides",
+    "<<": "there are no shifts in scripts: multiply by a power of two",
+    ">>": "there are no shifts in scripts: divide by a power of two",
+    "%": "there is no remainder operator in scripts",
+    ",": "a comma means nothing in a script: statements are separated by `;`, and the decimal sign is `.`",
+    ".": "a `.` stands only inside a number, and `..` joins texts: the names of keys have none",
+    "[": "there are no lists in scripts",
+    "]": "there are no lists in scripts",
+    "{": "braces belong to ports: a script names a key without them",
+    "}": "braces belong to ports: a script names a key without them",
+    "$": "a script names a key without `$`",
+    "#": "there are no comments in scripts",
+    "@": "`@` must be followed at once by the name of a key of the root blackboard",
+    "'": "this text has no closing quote",
+    '"': "this text has no closing quote, and text stands in single quotes: '…'",
+    "not": "`not` is written `!` in a script, which binds more tightly: put what it denies in brackets, `!(a == b)`",
+    "\\": "there are no escapes in scripts: text may hold anything but a single quote",
+}
+
+_OPERATOR_CHARACTERS: Final = frozenset("=<>!&|*/+-:.")
+_POSTFIX: Final = {"+": "`x += 1`", "-": "`x -= 1`"}
+
+
+def error(span: Span, message: str, *fixes: Fix, notes: tuple[str, ...] = ()) -> Diagnostic:
+    return Diagnostic("script-error", span, message, notes=notes, fixes=fixes)
+
+
+def empty(text: str) -> Diagnostic:
+    message = "this script says nothing: the engine refuses it, or fails when it ticks the node"
+    return Diagnostic("empty-script", Span(0, len(text)), message)
+
+
+# ---- tokens ----
+
+
+def misspelt(text: str, span: Span) -> Diagnostic:
+    """A spelling of `MEANT`, or a `not` with the blanks behind it."""
+    raw = text[span.start : span.end].rstrip()
+    meant = MEANT[raw.lower()]
+    # A blank on the side of another operator, so that the two do not become one.
+    before = " " if text[span.start - 1 : span.start] in _OPERATOR_CHARACTERS else ""
+    behind = " " if text[span.end : span.end + 1] in _OPERATOR_CHARACTERS else ""
+    return error(span, f"`{raw}` is written `{meant}` in a script", _write(meant, span, before, behind))
+
+
+def wrong_quotes(span: Span, content: str) -> Diagnostic:
+    message = "text stands in single quotes in a script: '…'"
+    if "'" in content:
+        return error(span, f"{message}; a single quote inside it cannot be written")
+    return error(span, message, _write(f"'{content}'", span))
+
+
+def braced(text: str, span: Span, name: str) -> Diagnostic:
+    message = f"a script names a key without braces: `{name}`"
+    beside = text[span.start - 1 : span.start] + text[span.end : span.end + 1]
+    if any(
+        character.isalnum() or character in "_@{}." for character in beside
+    ):  # without braces they would be one word
+        return error(span, message)
+    return error(span, message, _write(name, span))
+
+
+def strange_blank(span: Span) -> Diagnostic:
+    return error(
+        span, "a blank that the engine does not read as one", replace_fix("Write a blank", span, " ", safe=True)
+    )
+
+
+def foreign_name(span: Span, name: str) -> Diagnostic:
+    return error(span, f"`{name}`: names in scripts hold only the letters A to Z, digits and `_`")
+
+
+def number(span: Span, raw: str, meant: str | None) -> Diagnostic:
+    """A number written as the engine does not read it."""
+    if meant is not None:
+        return error(span, f"the engine does not read `{raw}` as a number: write `{meant}`", _write(meant, span))
+    note = "There are no units in scripts, and no name begins with a digit."
+    return error(span, f"the engine does not read `{raw}` as a number", notes=(note,) if raw[-1].isalpha() else ())
+
+
+def unit(span: Span, name: str) -> Diagnostic:
+    note = "Write the number in the unit that the key is kept in."
+    return error(span, f"`{name}` behind a number: there are no units in scripts", notes=(note,))
+
+
+def too_large(span: Span, raw: str) -> Diagnostic:
+    hexadecimal = raw[:2] in ("0x", "0X")
+    if not hexadecimal and not raw.isdecimal():
+        return error(span, f"`{raw}` is beyond what a number can hold: the engine refuses it")
+    fixes = () if hexadecimal else (replace_fix(f"Write `{raw}.0`", span, f"{raw}.0"),)
+    message = f"`{raw}` is too large for a whole number: the newest engine reads it as 0, older ones refuse it"
+    return error(span, message, *fixes)
+
+
+def glued_hexadecimal(span: Span) -> Diagnostic:
+    fix = replace_fix("Put a blank between them", Span(span.end, span.end), " ", safe=True)
+    return error(span, "a hexadecimal number and the `..` behind it need a blank between them", fix)
+
+
+def no_such(text: str, span: Span) -> Diagnostic:
+    """A token that means nothing; an open quote reaches to the end of the text."""
+    raw = text[span.start : span.end]
+    message = _NO_SUCH.get(raw[0] if raw[0] in "'\"" else raw.lower())
+    return error(span, message or f"`{raw}` means nothing in a script")
+
+
+# ---- grammar ----
+
+
+def missing_operand(text: str, before: Span | None, at: Span) -> Diagnostic:
+    """No operand at `at`; `before` is the operator that waits for it, None at the start of a statement."""
+    here = text[at.start : at.end]
+    if before is None:
+        return error(at, f"`{here}` has nothing before it to work on")
+    operator = text[before.start : before.end]
+    if operator == "(" and here == ")":
+        return error(Span(before.start, at.end), "nothing stands between the brackets")
+    if operator in _POSTFIX and (here == operator or text.endswith(operator, 0, before.start)):
+        return error(before, f"`{operator}{operator}` does not count in scripts: write {_POSTFIX[operator]}")
+    return error(before, f"`{operator}` has nothing behind it to work on")
+
+
+def unary_plus(text: str, span: Span) -> Diagnostic:
+    message = "a number has no sign `+` in a script"
+    if text.endswith("=", 0, span.start):  # `x =+ 1` may have meant `x += 1`
+        return error(span, message)
+    return error(span, message, replace_fix("Remove the `+`", span, "", safe=True))
+
+
+def leading_semicolon(span: Span) -> Diagnostic:
+    message = "a script does not begin with `;`: it stands between statements"
+    return error(span, message, replace_fix("Remove it", span, "", safe=True))
+
+
+def unopened_bracket(span: Span) -> Diagnostic:
+    return error(span, "this `)` closes nothing")
+
+
+def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:
+    if at.start == len(text):
+        end = len(text.rstrip())
+        return error(bracket, "this `(` is never closed", replace_fix("Add the `)`", Span(end, end), ")"))
+    if text[at.start] == ";":
+        return error(at, "a `;` cannot stand inside brackets")
+    return error(bracket, f"this `(` is not closed before the `{text[at.start : at.end]}`")
+
+
+def ternary_without_colon(span: Span) -> Diagnostic:
+    return error(span, "a `?` needs both values: `condition ? this : that`")
+
+
+def colon_alone(span: Span) -> Diagnostic:
+    return error(span, "a `:` stands only behind a `?`; a value is assigned with `:=`")
+
+
+def assignment_behind_ternary(span: Span) -> Diagnostic:
+    return error(span, "an assignment in the last part of `? :` must stand in brackets: `c ? a : (b := 1)`")
+
+
+def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
+    """An assignment to something that is no key."""
+    message = "only a key can be assigned to: the engine loads this and fails at the tick"
+    if not is_equals:
+        return error(operator, message)
+    fix = replace_fix("Compare with `==`", operator, "==")
+    return error(operator, f"{message}; to compare, write `==`", fix)
+
+
+def too_deep(span: Span, limit: int) -> Diagnostic:
+    return error(span, f"more than {limit} operators within each other: use several statements")
+
+
+def prose(text: str, start: int) -> Diagnostic:
+    """Words; from `start` on there is no operator for a while."""
+    whole = Span(len(text) - len(text.lstrip()), len(text.rstrip()))
+    words = " ".join(text[start:].split()[:3])
+    note = "Since 4.9 the engine may load it and fail at the first tick, when it looks for variables of these names."
+    return error(whole, f"this is prose, not a script: `{words} …` has no operator", notes=(note,))
+
+
+def call(span: Span, name: str) -> Diagnostic:
+    return error(span, f"`{name}(…)`: there are no functions in scripts")
+
+
+def two_operands(text: str, left: Span, right: Span) -> Diagnostic:
+    place, word = Span(left.start, right.end), text[left.start : left.end]
+    if word == "if":
+        return error(place, "there is no `if` in scripts: write `condition ? this : that`")
+    return error(place, f"there is no operator between `{word}` and `{text[right.start : right.end]}`")
+
+
+def _write(meant: str, span: Span, before: str = "", behind: str = "") -> Fix:
+    return Fix(f"Write `{meant}`", (Change(Place(span), f"{before}{meant}{behind}"),), safe=True)

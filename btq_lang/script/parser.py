@@ -1,0 +1,303 @@
+"""Tokens to the tree of a script, by the grammar of the newest engine.
+
+One invariant: what this accepts without a problem the newest engine loads (BehaviorTree.CPP 4.10,
+src/script_parser.cpp), with the same tree; what it reports, the engine refuses or fails at when it ticks the node.
+The first error that no certain reading mends ends the reading, as it does in the engine.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NoReturn
+
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.script import mistakes
+from btq_lang.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
+from btq_lang.script.tree import (
+    ASSIGNMENT,
+    COMPARISON,
+    RANK,
+    TERNARY,
+    Assign,
+    Binary,
+    Bool,
+    Comparison,
+    Expression,
+    Group,
+    Name,
+    Number,
+    Script,
+    Ternary,
+    Text,
+    Unary,
+    ungrouped,
+    walk,
+)
+from btq_lang.text import Span
+
+# Operators within each other, needless brackets counted too.  The engine has no limit and a stack; the engines up to
+# 4.8 refuse more than 256 operators, and nobody reads a tenth of them.
+MAX_DEPTH: Final = 100
+
+
+def parse_script(text: str) -> Script:
+    """Read a script; never raises.  What is wrong for the newest engine is in `problems`, in the order of the text."""
+    if not text.replace(";", " ").strip():
+        return Script(text, (), (mistakes.empty(text),))
+    parser = _Parser(text)
+    statements: list[Expression] = []
+    try:
+        parser.script(statements)
+    except _Stop:
+        return Script(text, tuple(statements), _in_order(parser.problems), complete=False)
+    return Script(text, tuple(statements), _in_order(parser.problems))
+
+
+class _Stop(Exception):
+    """The reading cannot go on; why is among the problems."""
+
+
+class _Parser:
+    """A place in the tokens of a script.
+
+    Attributes:
+        at: the index of the next token.
+        depth: how many expressions are open.
+        height: how many operators are within each other in the expression read last.
+    """
+
+    def __init__(self, text: str) -> None:
+        tokens = tokenize(text)
+        self.text: Final = text
+        self.kinds: Final = tokens.kinds
+        self.starts: Final = tokens.starts
+        self.ends: Final = tokens.ends
+        self.meant: Final = tokens.meant
+        self.problems: list[Diagnostic] = tokens.problems
+        self.at = 0
+        self.depth = 0
+        self.height = 0
+
+    def script(self, statements: list[Expression]) -> None:
+        """`x := 1; y := 2`: statements, of which the newest engine does not ask to be separated."""
+        self.leading_semicolons()
+        while self.kinds[self.at] != END:
+            statement = self.expression(0)
+            statements.append(statement)
+            if self.kinds[self.at] == ";":
+                while self.kinds[self.at] == ";":
+                    self.at += 1
+            elif self.kinds[self.at] != END:
+                self.statement_boundary(statement)
+
+    def leading_semicolons(self) -> None:
+        while self.kinds[self.at] == ";":
+            self.at += 1
+        if self.at:
+            self.problems.append(mistakes.leading_semicolon(Span(self.starts[0], self.ends[self.at - 1])))
+
+    def statement_boundary(self, statement: Expression) -> None:
+        """Something follows a statement without `;`: another statement, or a slip?
+
+        The newest engine takes it for a statement.  Where the one before does nothing (it assigns nothing), or the
+        next is a mere number, text or unit, an operator is missing rather than a `;`.
+        """
+        kind = self.kinds[self.at]
+        if kind not in BEGINS:
+            self.unexpected(statement)
+        does_nothing = not any(isinstance(node, Assign) for node in walk((statement,)))
+        if does_nothing or kind in (NUMBER, TEXT) or self.is_unit() or self.is_call():
+            self.two_operands()
+
+    def expression(self, least: int) -> Expression:
+        """Operators that bind at least so tightly, and their operands: precedence climbing, as the engine does it."""
+        self.depth += 1
+        if self.depth > 2 * MAX_DEPTH + 1:
+            self.stop(mistakes.too_deep(self.span(self.at), MAX_DEPTH))
+        left = self.operand()
+        height = self.height
+        while True:
+            kind = self.kinds[self.at]
+            rank = RANK.get(kind, -1)
+            if rank < least:
+                break
+            if rank == COMPARISON:
+                left, height = self.comparison(left, height)
+            elif rank > TERNARY:
+                self.at += 1
+                right = self.expression(rank + 1)
+                left = Binary(kind, left, right, left.start, right.end)
+                height = max(height, self.height)
+            elif rank == TERNARY:
+                left, height = self.ternary(left, height)
+            else:
+                left, height = self.assignment(left, height)
+            height += 1
+            if height > MAX_DEPTH:
+                self.stop(mistakes.too_deep(Span(left.start, left.end), MAX_DEPTH))
+            if rank <= TERNARY:
+                break
+        self.depth -= 1
+        self.height = height
+        return left
+
+    def comparison(self, left: Expression, height: int) -> tuple[Expression, int]:
+        """`a < b <= c`"""
+        operators, operands = [], [left]
+        while RANK.get(self.kinds[self.at]) == COMPARISON:
+            operators.append(self.kinds[self.at])
+            self.at += 1
+            operands.append(self.expression(COMPARISON + 1))
+            height = max(height, self.height)
+        return Comparison(tuple(operators), tuple(operands), left.start, operands[-1].end), height
+
+    def ternary(self, condition: Expression, height: int) -> tuple[Expression, int]:
+        """`a ? b : c`"""
+        question = self.at
+        self.at += 1
+        then = self.expression(0)
+        height = max(height, self.height)
+        if self.kinds[self.at] != ":":
+            self.unclosed(mistakes.ternary_without_colon(self.span(question)))
+        self.at += 1
+        otherwise = self.expression(TERNARY)
+        return Ternary(condition, then, otherwise, condition.start, otherwise.end), max(height, self.height)
+
+    def assignment(self, target: Expression, height: int) -> tuple[Expression, int]:
+        """`x := a`, and `=`, `+=`, `-=`, `*=`, `/=`"""
+        operator = self.at
+        kind = self.kinds[operator]
+        if not isinstance(ungrouped(target), Name):
+            self.problems.append(mistakes.not_assignable(self.span(operator), kind == "="))
+        self.at += 1
+        value = self.expression(0)
+        return Assign(kind, target, value, target.start, value.end), max(height, self.height)
+
+    def operand(self) -> Expression:
+        """`x`, `30`, `'text'`, `true`, `(a + b)`, `-x`, `~x`, `!x`"""
+        at = self.at
+        kind = self.kinds[at]
+        start, end = self.starts[at], self.ends[at]
+        if kind in OPERANDS:
+            self.at += 1
+            self.height = 0
+            meant = self.meant.get(at)
+            if kind == NAME:
+                return Name(self.text[start:end] if meant is None else meant, start, end)
+            if kind == NUMBER:
+                return Number(self.text[start:end] if meant is None else meant, start, end)
+            if kind == TEXT:
+                return Text(self.text[start + 1 : end - 1] if meant is None else meant, start, end)
+            return Bool(self.text[start:end] == "true", start, end)
+        if kind == "(":
+            self.at += 1
+            inner = self.expression(0)
+            if self.kinds[self.at] != ")":
+                self.unclosed(mistakes.unclosed_bracket(self.text, Span(start, end), self.span(self.at)))
+            self.at += 1
+            # Brackets round an operator are free, or adding the needed ones could pass the limit.
+            self.height += not isinstance(inner, Unary | Binary | Comparison | Ternary | Assign)
+            if self.height > MAX_DEPTH:
+                self.stop(mistakes.too_deep(Span(start, end), MAX_DEPTH))
+            return Group(inner, start, self.ends[self.at - 1])
+        if kind == "-" or kind == "!" or kind == "~":
+            return self.prefixed()
+        if kind == "+" and (self.kinds[at + 1] in BEGINS or self.kinds[at + 1] in ("+", "-")):
+            self.problems.append(mistakes.unary_plus(self.text, Span(start, end)))
+            return self.prefixed()
+        self.no_operand()
+
+    def prefixed(self) -> Expression:
+        """`-x`, `~x`, `!x`; a `+` was reported and counts for nothing."""
+        at = self.at
+        self.depth += 1
+        if self.depth > 2 * MAX_DEPTH + 1:
+            self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
+        self.at += 1
+        operand = self.operand()
+        self.depth -= 1
+        if self.kinds[at] == "+":
+            return operand
+        self.height += 1
+        if self.height > MAX_DEPTH:
+            self.stop(mistakes.too_deep(self.span(at), MAX_DEPTH))
+        return Unary(self.kinds[at], operand, self.starts[at], operand.end)
+
+    # ---- what goes wrong ----
+
+    def no_operand(self) -> NoReturn:
+        """An operand must begin here, and none does."""
+        at = self.at
+        kind, before = self.kinds[at], self.kinds[at - 1] if at else ";"
+        if kind == ERROR:
+            self.unreadable()
+        waiting = None if before == ";" or before == ")" or before in OPERANDS else self.span(at - 1)
+        if waiting is None and kind == ")":
+            self.stop(mistakes.unopened_bracket(self.span(at)))
+        if waiting is None and kind == ":":
+            self.stop(mistakes.colon_alone(self.span(at)))
+        self.stop(mistakes.missing_operand(self.text, waiting, self.span(at)))
+
+    def unexpected(self, statement: Expression) -> NoReturn:
+        """A statement has ended, and what follows neither separates nor begins one."""
+        if RANK.get(self.kinds[self.at]) == ASSIGNMENT and isinstance(statement, Ternary):
+            self.stop(mistakes.assignment_behind_ternary(self.span(self.at)))
+        self.no_operand()
+
+    def unclosed(self, problem: Diagnostic) -> NoReturn:
+        """A `(` or a `?` waits for more, and something else follows."""
+        if self.kinds[self.at] in BEGINS:
+            self.two_operands()
+        if self.kinds[self.at] == ERROR:
+            self.unreadable()
+        self.stop(problem)
+
+    def two_operands(self) -> NoReturn:
+        """Two operands without an operator between them; three words in a row are prose, and nothing else matters."""
+        first, last = self.at - 1, self.at
+        while first and self.is_word(first) and self.is_word(first - 1):
+            first -= 1
+        while self.is_word(last) and self.is_word(last + 1):
+            last += 1
+        if last - first > 1:
+            self.prose(self.starts[first])
+        left, right = self.span(first), self.span(last)
+        if self.is_call():
+            self.stop(mistakes.call(Span(left.start, right.end), self.text[left.start : left.end]))
+        if self.is_unit():
+            self.stop(mistakes.unit(Span(left.start, right.end), self.text[right.start : right.end]))
+        self.stop(mistakes.two_operands(self.text, left, right))
+
+    def is_word(self, index: int) -> bool:
+        """Whether a token can stand in prose, the words that were read as operators among them."""
+        return self.kinds[index] in OPERANDS or self.text[self.starts[index] : self.ends[index]].isalpha()
+
+    def is_call(self) -> bool:
+        """`f(` without a blank"""
+        before = self.at - 1
+        return self.kinds[self.at] == "(" and self.kinds[before] == NAME and self.ends[before] == self.starts[self.at]
+
+    def is_unit(self) -> bool:
+        """`30 sec` and no operator behind it"""
+        kinds, at = self.kinds, self.at
+        return kinds[at] == NAME and kinds[at - 1] == NUMBER and kinds[at + 1] not in RANK
+
+    def unreadable(self) -> NoReturn:
+        span = self.span(self.at)
+        if self.text[span.start] in "'’" and self.text[span.start - 1 : span.start].isalpha():  # an apostrophe
+            self.prose(0)
+        self.stop(mistakes.no_such(self.text, span))
+
+    def prose(self, start: int) -> NoReturn:
+        self.problems.clear()
+        self.stop(mistakes.prose(self.text, start))
+
+    def stop(self, problem: Diagnostic) -> NoReturn:
+        self.problems.append(problem)
+        raise _Stop
+
+    def span(self, index: int) -> Span:
+        return Span(self.starts[index], self.ends[index])
+
+
+def _in_order(problems: list[Diagnostic]) -> tuple[Diagnostic, ...]:
+    return tuple(sorted(problems, key=lambda problem: problem.span)) if problems else ()

@@ -1,0 +1,284 @@
+"""What a script is: statements of nested expressions, and the way back to text.
+
+One invariant: `start` and `end` of a record are its place in the script's text, the brackets around it not included (a
+`Group` has them); a tree that was not read from a text has zeros there.  Nothing here knows versions of the engine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, TypeAlias
+
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.record import record
+from btq_lang.text import Span
+
+
+@record
+class Script:
+    """A script that was read.
+
+    Attributes:
+        text: the script as it was written; every offset counts in it.
+        statements: what was understood, in order.
+        problems: what the newest engine refuses, or would fail at: `script-error` and `empty-script`.
+        complete: False where the reading stopped at an error, so that the statements are those before it.
+    """
+
+    text: str
+    statements: tuple[Expression, ...]
+    problems: tuple[Diagnostic, ...] = ()
+    complete: bool = True
+
+
+@record
+class Number:
+    """`30`, `0x1F`, `2.5e-3`; `raw` is how it is written.  A sign is a `Unary` around it."""
+
+    raw: str
+    start: int = 0
+    end: int = 0
+
+    @property
+    def value(self) -> float:
+        """What it is worth; a whole number is an int."""
+        if self.raw[:2] in ("0x", "0X"):
+            return int(self.raw, 16)
+        # Python itself refuses to read whole numbers of thousands of digits; such a number is a problem anyway.
+        return int(self.raw) if self.raw.isdecimal() and len(self.raw) < 400 else float(self.raw)
+
+
+@record
+class Text:
+    """`'charger'`; `value` is what stands between the quotes, for there are no escapes."""
+
+    value: str
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Bool:
+    """`true` or `false`."""
+
+    value: bool
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Name:
+    """`battery`, or `@battery` for an entry of the root blackboard; an enumeration's names look alike."""
+
+    name: str
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Group:
+    """`( inner )`: kept, because older engines need more brackets than the newest one."""
+
+    inner: Expression
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Unary:
+    """`-x`, `~x`, `!x`."""
+
+    operator: str
+    operand: Expression
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Binary:
+    """`a + b`, and `-`, `*`, `/`, `..`, `&`, `|`, `^`, `&&`, `||`."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Comparison:
+    """`a < b <= c`: one more operand than operators, and true where every neighbouring pair is."""
+
+    operators: tuple[str, ...]
+    operands: tuple[Expression, ...]
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Ternary:
+    """`condition ? then : otherwise`."""
+
+    condition: Expression
+    then: Expression
+    otherwise: Expression
+    start: int = 0
+    end: int = 0
+
+
+@record
+class Assign:
+    """`target := value`, and `=`, `+=`, `-=`, `*=`, `/=`.  A target that is no `Name` is a problem of the script."""
+
+    operator: str
+    target: Expression
+    value: Expression
+    start: int = 0
+    end: int = 0
+
+
+Expression: TypeAlias = Number | Text | Bool | Name | Group | Unary | Binary | Comparison | Ternary | Assign
+
+# How tightly an operator binds in the newest engine; a prefix binds like UNARY, and nothing tighter than an ATOM.
+RANK: Final = {
+    **dict.fromkeys((":=", "=", "+=", "-=", "*=", "/="), 2),
+    "?": 4,
+    "||": 6,
+    "&&": 8,
+    **dict.fromkeys(("==", "!=", "<", ">", "<=", ">="), 10),
+    "|": 12,
+    "^": 12,
+    "&": 14,
+    "+": 16,
+    "-": 16,
+    "..": 16,
+    "*": 18,
+    "/": 18,
+}
+ASSIGNMENT: Final = RANK[":="]
+TERNARY: Final = RANK["?"]
+COMPARISON: Final = RANK["=="]
+UNARY: Final = 20
+ATOM: Final = 22
+
+
+@record
+class Variable:
+    """A name in a script, where it stands and what happens to it there.
+
+    Attributes:
+        name: as it is written, with the `@` of the root blackboard.
+        reads: its value is needed; `x += 1` reads and writes.
+        writes: it is given a value.
+        creates: the entry need not exist before: the operator is `:=`.
+    """
+
+    name: str
+    span: Span
+    reads: bool
+    writes: bool = False
+    creates: bool = False
+
+
+def variables(script: Script) -> tuple[Variable, ...]:
+    """The names of a script in the order of the text, each place for itself; of a broken script those before the error.
+
+    The names of an enumeration, which only the robot's own code can register, are among them.
+    """
+    found: list[Variable] = []
+    stack: list[Expression] = list(reversed(script.statements))
+    while stack:
+        node = stack.pop()
+        if isinstance(node, Name):
+            found.append(Variable(node.name, Span(node.start, node.end), reads=True))
+        elif isinstance(node, Assign) and isinstance(target := ungrouped(node.target), Name):
+            reads = node.operator not in (":=", "=")
+            creates = node.operator == ":="
+            found.append(Variable(target.name, Span(target.start, target.end), reads, True, creates))
+            stack.append(node.value)
+        else:
+            stack.extend(reversed(children(node)))
+    return tuple(found)
+
+
+def children(node: Expression) -> tuple[Expression, ...]:
+    """The expressions directly inside another, in the order of the text."""
+    if isinstance(node, Group):
+        return (node.inner,)
+    if isinstance(node, Unary):
+        return (node.operand,)
+    if isinstance(node, Binary):
+        return (node.left, node.right)
+    if isinstance(node, Comparison):
+        return node.operands
+    if isinstance(node, Ternary):
+        return (node.condition, node.then, node.otherwise)
+    if isinstance(node, Assign):
+        return (node.target, node.value)
+    return ()
+
+
+def walk(nodes: tuple[Expression, ...]) -> Iterator[Expression]:
+    """Every expression in these and below, in no promised order."""
+    stack = list(nodes)
+    while stack:
+        node = stack.pop()
+        yield node
+        stack.extend(children(node))
+
+
+def ungrouped(node: Expression) -> Expression:
+    """An expression without the brackets around it."""
+    while isinstance(node, Group):
+        node = node.inner
+    return node
+
+
+def unparse(tree: Script | Expression, *, fully_parenthesised: bool = True) -> str:
+    """A script or an expression as text: `; ` between statements, text in single quotes.
+
+    Args:
+        fully_parenthesised: brackets round every operator and its operands, the form that all versions of the engine
+            read alike; otherwise as few as the newest version needs.  Brackets of the source do not count.
+    """
+    statements = tree.statements if isinstance(tree, Script) else (tree,)
+    full = fully_parenthesised
+    return "; ".join(
+        _write(statement, ATOM if full and not isinstance(ungrouped(statement), Assign) else 0, full)
+        for statement in statements
+    )
+
+
+def _write(node: Expression, least: int, full: bool) -> str:
+    """`node`, in brackets where it binds less tightly than `least`."""
+
+    def inside(child: Expression, rank: int) -> str:
+        return _write(child, ATOM if full else rank, full)
+
+    node = ungrouped(node)
+    if isinstance(node, Number):
+        return node.raw
+    if isinstance(node, Name):
+        return node.name
+    if isinstance(node, Bool):
+        return "true" if node.value else "false"
+    if isinstance(node, Text):
+        # No escapes: text with a single quote in it cannot be said to the newest engine, but older ones read this.
+        return f"'{node.value}'" if "'" not in node.value else f'"{node.value}"'
+
+    if isinstance(node, Unary):
+        rank, text = UNARY, f"{node.operator}{inside(node.operand, UNARY)}"
+    elif isinstance(node, Binary):
+        rank = RANK[node.operator]
+        text = f"{inside(node.left, rank)} {node.operator} {inside(node.right, rank + 1)}"
+    elif isinstance(node, Comparison):
+        rank = COMPARISON
+        text = inside(node.operands[0], rank + 1)
+        for operator, operand in zip(node.operators, node.operands[1:], strict=True):
+            text += f" {operator} {inside(operand, rank + 1)}"
+    elif isinstance(node, Ternary):
+        rank = TERNARY
+        text = f"{inside(node.condition, rank + 1)} ? {inside(node.then, 0)} : {inside(node.otherwise, rank)}"
+    elif isinstance(node, Assign):
+        rank, text = ASSIGNMENT, f"{inside(node.target, ATOM)} {node.operator} {inside(node.value, 0)}"
+    return f"({text})" if rank < least else text

@@ -1,0 +1,268 @@
+"""What engines before 4.9 refuse, or read in another way than 4.9 and later do.
+
+One invariant: a script without problems here is read alike by all the given versions, and a fix adds brackets,
+blanks or `;` only, so that the newest engine reads the script as before.
+
+Source: BehaviorTree.CPP 4.6.2 and 4.8.4, include/behaviortree_cpp/scripting/operators.hpp, an operator grammar whose
+groups "cannot be mixed", and the accidents of its ranks, which were found by running it.  4.9.0 replaced it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations, pairwise, zip_longest
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
+from btq_lang.rules import Severity
+from btq_lang.script.tree import (
+    RANK,
+    Assign,
+    Binary,
+    Comparison,
+    Expression,
+    Group,
+    Name,
+    Number,
+    Script,
+    Ternary,
+    Text,
+    Unary,
+    children,
+)
+from btq_lang.text import Span
+
+if TYPE_CHECKING:
+    from typing import TypeGuard
+
+
+def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:
+    """What is not the same in `versions`, statement by statement."""
+    targets = _targets(versions)
+    if not targets.old:
+        return []
+    found: list[Diagnostic] = _separators(script, targets)
+    scopes: list[Expression] = list(reversed(script.statements))
+    while scopes:
+        members = _scope(scopes.pop(), scopes)
+        found += _mixed(members, script.text, targets)
+        for node, parent in members:
+            found += _node(node, parent, script.text, targets)
+    return found
+
+
+class _Targets(NamedTuple):
+    """The versions to hold for, by the grammar they have."""
+
+    early: tuple[str, ...]  # before 4.7
+    middle: tuple[str, ...]  # 4.7 and 4.8
+    old: tuple[str, ...]  # both
+    total: int  # how many there are, the newest too
+
+
+def _targets(versions: Iterable[str]) -> _Targets:
+    numbered = [(tuple(int(part) for part in version.split(".")[:2]), version) for version in versions]
+    early = tuple(version for number, version in numbered if number < (4, 7))
+    middle = tuple(version for number, version in numbered if (4, 7) <= number < (4, 9))
+    return _Targets(early, middle, early + middle, len(numbered))
+
+
+def _node(node: Expression, parent: Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+    """What is peculiar to one operator or name."""
+    if isinstance(node, Binary):
+        rank = RANK[node.operator]
+        if node.operator == "||" and isinstance(node.right, Binary) and node.right.operator == "&&":
+            yield _one_rank(node, node.right, text, targets)
+        elif rank >= RANK["+"] and not (_is_sum_or_product(parent, rank) and parent.left is node):
+            yield from _chain(node, text, targets)
+        if node.operator == "..":
+            yield from _glued_number(node, text, targets)
+    elif isinstance(node, Ternary) and isinstance(parent, Ternary):
+        yield _refused(
+            _brackets([node]), node, "a `?:` as the last part of another without brackets", targets.old, targets
+        )
+    elif isinstance(node, Assign) and isinstance(parent, Assign):
+        yield _refused(_brackets([node]), node, "two assignments in one without brackets", targets.old, targets)
+    elif isinstance(node, Name) and node.name.startswith(("true", "false")):
+        yield _refused(None, node, "a name that begins with `true` or `false`", targets.old, targets)
+    elif isinstance(node, Text) and not node.value.isascii():
+        yield _refused(None, node, "a text with characters outside ASCII", targets.old, targets)
+
+
+# ---- operators that older engines rank in another way ----
+
+
+def _one_rank(node: Binary, conjunction: Binary, text: str, targets: _Targets) -> Diagnostic:
+    """`a || b && c`: the two have one rank up to 4.8, and are read from left to right."""
+    first: Expression = conjunction
+    while isinstance(first, Binary) and first.operator == "&&":
+        first = first.left
+    other = f"({text[node.start : first.end]}){text[first.end : node.end]}"
+    return _misread(_brackets([conjunction]), node, other, targets.old, text)
+
+
+def _chain(top: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+    """`a - b + c`, read from the right by 4.7 and 4.8; `a .. b + c`, where `..` binds less tightly up to 4.6."""
+    chain = [top]
+    while _is_sum_or_product(left := chain[-1].left, RANK[top.operator]):
+        chain.append(left)
+    chain.reverse()
+    pairs = list(pairwise(chain))
+    # From the right a + b - c is the same number, and a - b + c is not.
+    from_right = [left for left, node in pairs if left.operator in ("-", "/") and node.operator != ".."]
+    if from_right and targets.middle:
+        starts = [node.right.start for node in chain[:-1]]
+        pieces = (text[start:end] for start, end in zip([top.start, *starts], [*starts, top.end], strict=True))
+        yield _misread(_brackets(from_right), top, "(".join(pieces) + ")" * len(starts), targets.middle, text)
+    loose = [(left, node) for left, node in pairs if left.operator == ".." and node.operator != ".."]
+    if loose and targets.early:
+        left, node = loose[0]
+        other = f"{text[left.start : left.right.start]}({text[left.right.start : node.end]})"
+        yield _misread(_brackets([left for left, _ in loose]), node, other, targets.early, text)
+
+
+def _is_sum_or_product(node: Expression | None, rank: int) -> TypeGuard[Binary]:
+    return isinstance(node, Binary) and RANK[node.operator] == rank
+
+
+# ---- operators that older engines do not mix ----
+
+_ARITHMETIC, _TEXT, _COMPARISON, _BITS = "arithmetic", "text", "comparison", "bits"
+_GROUP: Final = {
+    **dict.fromkeys(("+", "-", "*", "/"), _ARITHMETIC),
+    "..": _TEXT,
+    **dict.fromkeys(("&", "|", "^", "~", "!"), _BITS),
+}
+_Members = list[tuple[Expression, Expression | None]]
+
+
+def _scope(root: Expression, scopes: list[Expression]) -> _Members:
+    """The expressions that no brackets separate, each with what it stands in; what is separated goes to `scopes`.
+
+    The middle of `a ? b : c` is as separate as if it stood in brackets.
+    """
+    members: _Members = []
+    stack: _Members = [(root, None)]
+    while stack:
+        node, parent = stack.pop()
+        if isinstance(node, Group):
+            scopes.append(node.inner)
+            continue
+        members.append((node, parent))
+        for child in reversed(children(node)):
+            if isinstance(node, Ternary) and child is node.then:
+                scopes.append(child)
+            else:
+                stack.append((child, node))
+    return members
+
+
+def _mixed(members: _Members, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+    """`a + b == c`, `!a && b == c`: operators of two groups; only `&&`, `||`, `?:` and assignments go with all."""
+    firsts = {group: node for node, _ in reversed(members) if (group := _group(node))}
+    if len(firsts) < 2:
+        return
+    pairs = list(combinations(sorted(firsts, key=lambda group: _place(firsts[group])), 2))
+    early = [pair for pair in pairs if targets.early and set(pair) != {_ARITHMETIC, _TEXT}]
+    middle = [pair for pair in pairs if targets.middle and _COMPARISON not in pair]
+    if both := [pair for pair in early if pair in middle]:
+        refusals = [(both[0], targets.old)]
+    else:
+        refusals = [(early[0], targets.early)] if early else []
+        refusals += [(middle[0], targets.middle)] if middle else []
+    for pair, refusing in refusals:
+        first, second = (_symbol(firsts[group]) for group in pair)
+        what = f"`{first}` beside `{second}` without brackets"
+        yield _refused(_brackets(_to_separate(members)), members[0][0], what, refusing, targets)
+
+
+def _group(node: Expression | None) -> str | None:
+    if isinstance(node, Comparison):
+        return _COMPARISON
+    return _GROUP.get(node.operator) if isinstance(node, Unary | Binary) else None
+
+
+def _to_separate(members: _Members) -> list[Expression]:
+    """The operators to put in brackets so that one group is left: comparisons, if there are any."""
+    groups = [(node, group, _group(parent)) for node, parent in members if (group := _group(node))]
+    outermost = {group for _, group, above in groups if not above}
+    kept = outermost if len(outermost) == 1 else {_COMPARISON}
+    return [node for node, group, above in groups if (group != above if above else group not in kept)]
+
+
+def _symbol(node: Expression) -> str:
+    if isinstance(node, Comparison):
+        return node.operators[0]
+    return node.operator if isinstance(node, Unary | Binary) else ""
+
+
+def _place(node: Expression) -> int:
+    """Where its operator stands, more or less: behind its first operand."""
+    return node.start if isinstance(node, Unary) else children(node)[0].end
+
+
+# ---- between statements ----
+
+
+def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
+    """Up to 4.8 exactly one `;` stands between two statements and none behind the last; later any number."""
+    found: list[Diagnostic] = []
+    text, statements = script.text, script.statements
+    for before, behind in zip_longest(statements, statements[1:]):
+        end = len(text) if behind is None else behind.start
+        count = text.count(";", before.end, end)
+        if behind is not None and count == 0:
+            fix = Fix("Add the `;`", (Change(Place(Span(before.end, before.end)), ";"),), safe=True)
+            found.append(_refused(fix, behind, "a statement without a `;` before it", targets.old, targets))
+        elif count > (behind is not None):
+            first = text.index(";", before.end)
+            if behind is not None:
+                first = text.index(";", first + 1)
+            span = Span(first, text.rindex(";", first, end) + 1)
+            fix = Fix("Remove it", (Change(Place(span), ""),), safe=True)
+            what = "a `;` behind the last statement" if behind is None else "more than one `;` between statements"
+            found.append(_refused(fix, span, what, targets.old, targets))
+    return found
+
+
+def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagnostic]:
+    """`2..'x'`, which older engines take for a number that goes wrong."""
+    last = node.left
+    while not isinstance(last, Group) and (inside := children(last)):
+        last = inside[-1]
+    if isinstance(last, Number) and text.startswith("..", last.end) and last.raw[:2] not in ("0x", "0X"):
+        fix = Fix("Put a blank between them", (Change(Place(Span(last.end, last.end)), " "),), safe=True)
+        yield _refused(fix, last, "a number with `..` at its end", targets.old, targets)
+
+
+# ---- wording ----
+
+
+def _refused(
+    fix: Fix | None, place: Expression | Span, what: str, refusing: tuple[str, ...], targets: _Targets
+) -> Diagnostic:
+    severity = Severity.ERROR if len(refusing) == targets.total else None  # no engine that counts would load it
+    message = f"{_listed(refusing)} {'refuses' if len(refusing) == 1 else 'refuse'} {what}"
+    fixes = () if fix is None else (fix,)
+    return Diagnostic("script-version", Span(place.start, place.end), message, fixes=fixes, severity=severity)
+
+
+def _misread(fix: Fix, node: Expression, other: str, misreading: tuple[str, ...], text: str) -> Diagnostic:
+    verb = "reads" if len(misreading) == 1 else "read"
+    said = " ".join(text[node.start : node.end].split())
+    message = f"{_listed(misreading)} {verb} `{said}` as `{' '.join(other.split())}`"
+    return Diagnostic("script-version", Span(node.start, node.end), message, fixes=(fix,))
+
+
+def _brackets(nodes: Iterable[Expression]) -> Fix:
+    """Put each of these in brackets; they may lie within each other."""
+    inserted: dict[int, str] = {}
+    for node in nodes:
+        inserted[node.start] = inserted.get(node.start, "") + "("
+        inserted[node.end] = inserted.get(node.end, "") + ")"
+    changes = tuple(Change(Place(Span(at, at)), inserted[at]) for at in sorted(inserted))
+    return Fix("Add the brackets", changes, safe=True)
+
+
+def _listed(versions: tuple[str, ...]) -> str:
+    return versions[0] if len(versions) == 1 else f"{', '.join(versions[:-1])} and {versions[-1]}"
