@@ -397,6 +397,7 @@ def as_data(
                 "peak_bytes_per_node": result.peak,
                 "peak_measured_by": result.tool.memory,
                 "scaling": result.scaling(),
+                "growth": result.growth,
             }
             for result in results
         ],
