@@ -89,9 +89,14 @@ class File:
     def _starts(self) -> dict[int, int]:
         return {id(entry.item): entry.start for entry in self.parsed.entries}
 
-    @property
+    @cached_property
     def includes(self) -> tuple[Include, ...]:
+        if "include" not in self.text:  # most files have none, and need not be parsed to know what another one means
+            return ()
         return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
+
+    def __reduce__(self) -> tuple[type[File], tuple[str, str]]:
+        return File, (self.path, self.text)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, File) and (self.path, self.text) == (other.path, other.text)
@@ -155,6 +160,7 @@ class Workspace:
         self.project = project
         self._scopes: dict[str, Scope] = {}
         self._defined: dict[str, tuple[Definition, ...]] = {}
+        self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
     def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
@@ -265,18 +271,22 @@ class Workspace:
 
     def references(self, definition: Definition) -> tuple[Reference, ...]:
         """Every use, in every file, of the name that `definition` defines."""
-        return self._references.get((definition.path, definition.span), ())
+        return self._references_to(definition.path).get(definition.span, ())
 
-    @cached_property
-    def _references(self) -> dict[tuple[str, Span], tuple[Reference, ...]]:
-        found: dict[tuple[str, Span], list[Reference]] = {}
-        for path in self.files:
-            scope = self.scope(path)
-            for reference in self.uses_in(path):
-                definition = scope.find(reference.use.kind, reference.use.name)
-                if definition is not None:
-                    found.setdefault((definition.path, definition.span), []).append(reference)
-        return {key: tuple(references) for key, references in found.items()}
+    def _references_to(self, path: str) -> dict[Span, tuple[Reference, ...]]:
+        """The uses of what a file defines, by the place of the definition."""
+        if path not in self._referred:
+            found: dict[Span, list[Reference]] = {}
+            for user in self.files:
+                if path not in self.closure(user):
+                    continue
+                scope = self.scope(user)
+                for reference in self.uses_in(user):
+                    definition = scope.find(reference.use.kind, reference.use.name)
+                    if definition is not None and definition.path == path:
+                        found.setdefault(definition.span, []).append(reference)
+            self._referred[path] = {span: tuple(references) for span, references in found.items()}
+        return self._referred[path]
 
     # ---- missions ----
 

@@ -1,18 +1,18 @@
 """Checking many files on several processors.
 
-Each process has the whole workspace, so that a file's includes are there; it parses only what its own files need.
+Each process has the whole workspace, so that a file's includes are there, and parses only what its own files need.
 """
 
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace import File, Workspace
 
 _CHUNK = 20  # files sent to a process at a time
 
@@ -21,16 +21,15 @@ _workspace: Workspace | None = None
 
 def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Iterator[tuple[Diagnostic, ...]]:
     """The diagnostics of each path, in order."""
-    texts = {path: file.text for path, file in workspace.files.items()}
-    # A forked process has the texts already; elsewhere they are sent to each process once.
+    # A forked process has the files already; elsewhere their texts are sent to each process once.
     context = multiprocessing.get_context("fork" if "fork" in multiprocessing.get_all_start_methods() else None)
-    with ProcessPoolExecutor(workers, context, _begin, (texts, workspace.project)) as pool:
+    with ProcessPoolExecutor(workers, context, _begin, (workspace.files, workspace.project)) as pool:
         yield from pool.map(_check, paths, chunksize=_CHUNK)
 
 
-def _begin(texts: dict[str, str], project: Project) -> None:
+def _begin(files: Mapping[str, File], project: Project) -> None:
     global _workspace
-    _workspace = Workspace.of(texts, project)
+    _workspace = Workspace(files, project)
 
 
 def _check(path: str) -> tuple[Diagnostic, ...]:
