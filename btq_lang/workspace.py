@@ -277,9 +277,7 @@ class Workspace:
         """The uses of what a file defines, by the place of the definition."""
         if path not in self._referred:
             found: dict[Span, list[Reference]] = {}
-            for user in self.files:
-                if path not in self.closure(user):
-                    continue
+            for user in self._users[path]:
                 scope = self.scope(user)
                 for reference in self.uses_in(user):
                     definition = scope.find(reference.use.kind, reference.use.name)
@@ -287,6 +285,15 @@ class Workspace:
                         found.setdefault(definition.span, []).append(reference)
             self._referred[path] = {span: tuple(references) for span, references in found.items()}
         return self._referred[path]
+
+    @cached_property
+    def _users(self) -> dict[str, list[str]]:
+        """For each file, those that can use what it defines: itself, and all that include it."""
+        users: dict[str, list[str]] = {path: [] for path in self.files}
+        for path in self.files:
+            for used in self.closure(path):
+                users[used].append(path)
+        return users
 
     # ---- missions ----
 

@@ -6,6 +6,7 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final, Literal
 
 from btq_lang.record import record
@@ -98,5 +99,6 @@ def at_least(version: str, since: str) -> bool:
     return _numbers(version) >= _numbers(since)
 
 
+@cache
 def _numbers(version: str) -> tuple[int, ...]:
     return tuple(int(part) for part in version.split("."))
