@@ -151,12 +151,16 @@ def _names(item: Item) -> Iterator[Symbol | Use]:
     elif isinstance(item, Apply):
         for reference in item.uses:
             yield _uses(Kind.REQUIREMENT, reference.name, None)
-    elif isinstance(item, Root) and item.name is not None:
-        yield _uses(Kind.TREE, item.name, None)
+    elif isinstance(item, Root):
+        for name in (item.name, *(pair.value for pair in item.attributes if pair.key.text == "main_tree_to_execute")):
+            if name is not None:
+                yield _uses(Kind.TREE, name, None)
 
 
 def _node(node: Node) -> Iterator[Symbol | Use]:
-    if node.id is not None:
+    if node.kind is not None and node.kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
+        yield _uses(Kind.TREE, tree, node)  # version 3's word for SubTree
+    elif node.id is not None:
         is_subtree = node.category is not None and node.category.raw == "SubTree"
         yield _uses(Kind.TREE if is_subtree else Kind.MODEL, node.id, node)
     yield from _clauses(node.clauses, node)
@@ -173,12 +177,13 @@ def _clauses(clauses: tuple[NodeClause, ...], node: Node | None) -> Iterator[Sym
             if isinstance(requirement, ReqRef):
                 yield _uses(Kind.REQUIREMENT, requirement.name, node)
             else:
-                yield from _requirement(requirement, node)
+                yield from _requirement(requirement, node, attached=True)
 
 
-def _requirement(requirement: Requirement, node: Node | None) -> Iterator[Symbol | Use]:
+def _requirement(requirement: Requirement, node: Node | None, attached: bool = False) -> Iterator[Symbol | Use]:
+    """attached: it stands in a `satisfies` or `satisfices`, so without a text it refers to another place."""
     if requirement.name is not None:
-        if node is not None and requirement.is_reference:
+        if attached and requirement.is_reference:
             yield _uses(Kind.REQUIREMENT, requirement.name, node)
         else:
             yield _defines(Kind.REQUIREMENT, requirement.name, requirement)

@@ -6,6 +6,15 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# Without a deadline: how long one example takes on a busy machine says nothing about the code.
+settings.register_profile("usual", deadline=None)
+settings.register_profile("thorough", deadline=None, max_examples=2_000)
+settings.load_profile("usual")
+
+# So that what fails in them is shown as in a test.
+pytest.register_assert_rewrite("check_asserts", "syntax_asserts")
 
 
 @pytest.fixture(scope="session")

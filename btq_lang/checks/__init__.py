@@ -16,58 +16,109 @@ from btq_lang.checks import (
     kinds,
     literals,
     names,
+    placeholders,
     ports,
+    preconditions,
+    prose,
     qualities,
+    reactive,
     requirements,
+    scripts,
     trees,
+    unreachable,
 )
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
 from btq_lang.project import configured
 from btq_lang.record import replace
-from btq_lang.syntax import Entry
+from btq_lang.syntax import (
+    Apply,
+    Context,
+    Entry,
+    Include,
+    Model,
+    Models,
+    Qualities,
+    QualityDecl,
+    Requirement,
+    Root,
+    Signal,
+    Tree,
+)
 from btq_lang.text import Span
 from btq_lang.workspace import File, Workspace
 
 Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 
-CHECKS: tuple[Check, ...] = (
-    includes.missing_include,
-    includes.cyclic_include,
-    trees.unknown_tree,
-    trees.duplicate_tree,
-    trees.recursive_tree,
-    trees.unused_tree,
-    trees.unknown_main_tree,
-    trees.tree_root_count,
-    trees.tree_named_like_node,
-    kinds.unknown_node,
-    kinds.not_an_engine_node,
-    kinds.newer_engine_node,
-    kinds.category_mismatch,
-    kinds.clause_as_node,
-    kinds.duplicate_definition,
-    ports.unknown_port,
-    ports.missing_port,
-    ports.unknown_attribute,
-    ports.duplicate_attribute,
-    literals.invalid_literal,
-    literals.quantity_on_unitless_port,
-    children.child_count,
-    children.switch_cases,
-    children.parallel_threshold,
-    names.forbidden_name,
-    names.duplicate_instance_name,
-    requirements.unknown_requirement,
-    requirements.conflicting_requirement,
-    requirements.unused_requirement,
-    requirements.requirement_without_text,
-    qualities.unknown_quality,
-    qualities.old_quality_name,
-    qualities.ambiguous_quality,
-    conditions.subtraction_without_blanks,
-)
+# The checks of each kind of item: most items are small, and most checks have nothing to say of most of them.
+CHECKS: dict[type, tuple[Check, ...]] = {
+    Include: (includes.missing_include, includes.cyclic_include, ports.duplicate_attribute),
+    Root: (trees.unknown_tree, ports.duplicate_attribute),
+    Tree: (
+        trees.unknown_tree,
+        trees.duplicate_tree,
+        trees.recursive_tree,
+        trees.unused_tree,
+        trees.unknown_main_tree,
+        trees.tree_root_count,
+        trees.tree_named_like_node,
+        kinds.unknown_node,
+        kinds.not_an_engine_node,
+        kinds.newer_engine_node,
+        kinds.category_mismatch,
+        kinds.clause_as_node,
+        ports.unknown_port,
+        ports.missing_port,
+        ports.unknown_attribute,
+        ports.duplicate_attribute,
+        literals.invalid_literal,
+        literals.quantity_on_unitless_port,
+        children.child_count,
+        children.switch_cases,
+        children.parallel_threshold,
+        names.forbidden_name,
+        names.duplicate_instance_name,
+        placeholders.classic_placeholder,
+        placeholders.placeholder_clash,
+        scripts.script_error,
+        requirements.unknown_requirement,
+        requirements.conflicting_requirement,
+        requirements.requirement_without_text,
+        qualities.unknown_quality,
+        qualities.old_quality_name,
+        qualities.ambiguous_quality,
+        conditions.subtraction_without_blanks,
+        prose.prose_constraint,
+        reactive.reactive_multiple_async,
+        reactive.condition_without_recheck,
+        preconditions.one_shot_monitor,
+        preconditions.while_skip_is_success,
+        unreachable.unreachable_child,
+    ),
+    Model: (kinds.duplicate_definition, ports.duplicate_attribute, literals.invalid_literal, names.forbidden_name),
+    Models: (kinds.duplicate_definition, ports.duplicate_attribute, literals.invalid_literal, names.forbidden_name),
+    Signal: (kinds.duplicate_definition,),
+    Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks),
+    Requirement: (
+        requirements.conflicting_requirement,
+        requirements.unused_requirement,
+        requirements.requirement_without_text,
+        qualities.unknown_quality,
+        qualities.old_quality_name,
+        qualities.ambiguous_quality,
+        conditions.subtraction_without_blanks,
+        prose.prose_constraint,
+    ),
+    Apply: (requirements.unknown_requirement,),
+    Qualities: (qualities.unknown_quality,),
+    QualityDecl: (
+        kinds.duplicate_definition,
+        qualities.unknown_quality,
+        qualities.old_quality_name,
+        qualities.ambiguous_quality,
+    ),
+}
 
 
 def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
@@ -86,7 +137,10 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     view = View(workspace, path)
     found: list[Diagnostic] = []
     for entry in view.file.parsed.entries:
-        diagnostics = [*entry.diagnostics, *(diagnostic for check in CHECKS for diagnostic in check(view, entry))]
+        diagnostics = [
+            *entry.diagnostics,
+            *(diagnostic for check in CHECKS.get(type(entry.item), ()) for diagnostic in check(view, entry)),
+        ]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
     found = list(configured(workspace.project, found))
     if found and "btq:" in view.file.text:

@@ -40,19 +40,24 @@ class Calls:
             self._reached[name] = frozenset(seen)
         return self._reached[name]
 
-    def way(self, start: str, end: str) -> tuple[str, ...] | None:
-        """The shortest way from a tree to another, both included; None where there is none or no circle holds them."""
-        if start not in self._in_circles or end not in self._in_circles:
+    def circle(self, name: str) -> tuple[str, ...] | None:
+        """The shortest way from a tree back to itself, both ends included; None where there is none, and at all but
+        the first tree of those that reach each other: there it is told."""
+        knot = self._knots.get(name)
+        if knot is None:
             return None
-        ways: list[tuple[str, ...]] = [(start,)]
-        seen = {start}
-        for way in ways:
-            if way[-1] == end:
-                return way
-            for called in self.called_by(way[-1]):
-                if called not in seen:
-                    seen.add(called)
-                    ways.append((*way, called))
+        before: dict[str, str] = {}
+        waiting = [name]
+        for tree in waiting:
+            for called in self.called_by(tree):
+                if called == name:
+                    way = [name, tree]
+                    while way[-1] != name:
+                        way.append(before[way[-1]])
+                    return tuple(reversed(way))
+                if called in knot and called not in before:
+                    before[called] = tree
+                    waiting.append(called)
         return None
 
     @cached_property
@@ -69,30 +74,34 @@ class Calls:
         return {name: tuple(trees) for name, trees in callers.items()}
 
     @cached_property
-    def _in_circles(self) -> frozenset[str]:
-        """The trees in circles, and those on a way from one circle to another: what is left when trees that call
-        nothing, and trees that nothing calls, are taken away again and again."""
-        left = {name: {tree for tree in called if tree in self._called} for name, called in self._called.items()}
-        left = _without_ends(left)
-        turned: dict[str, set[str]] = {name: set() for name in left}
-        for name, called in left.items():
-            for tree in called:
-                turned[tree].add(name)
-        return frozenset(_without_ends(turned))
-
-
-def _without_ends(graph: dict[str, set[str]]) -> dict[str, set[str]]:
-    turned: dict[str, list[str]] = {}
-    for name, called in graph.items():
-        for tree in called:
-            turned.setdefault(tree, []).append(name)
-    left = {name: set(called) for name, called in graph.items()}
-    ends = [name for name, called in left.items() if not called]
-    while ends:
-        end = ends.pop()
-        del left[end]
-        for name in turned.get(end, ()):
-            left[name].discard(end)
-            if not left[name]:
-                ends.append(name)
-    return left
+    def _knots(self) -> dict[str, frozenset[str]]:
+        """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
+        finished: list[str] = []
+        seen: set[str] = set()
+        for start in self._called:
+            stack = [(start, iter(self.called_by(start)))] if start not in seen else []
+            seen.add(start)
+            while stack:
+                tree, left = stack[-1]
+                further = next((called for called in left if called in self._called and called not in seen), None)
+                if further is not None:
+                    seen.add(further)
+                    stack.append((further, iter(self.called_by(further))))
+                else:
+                    finished.append(tree)
+                    stack.pop()
+        knots: dict[str, frozenset[str]] = {}
+        place = {name: number for number, name in enumerate(self._called)}
+        left_over = set(finished)
+        for start in reversed(finished):
+            knot: set[str] = set()
+            waiting = [start] if start in left_over else []
+            while waiting:
+                tree = waiting.pop()
+                if tree in left_over:
+                    left_over.remove(tree)
+                    knot.add(tree)
+                    waiting += self.callers(tree)
+            if len(knot) > 1 or (knot and start in self.called_by(start)):
+                knots[min(knot, key=place.__getitem__)] = frozenset(knot)
+        return knots

@@ -5,42 +5,47 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
+from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import SeenNode, View
-from btq_lang.diagnostics import Diagnostic, Place, Related
-from btq_lang.syntax import Entry, Word
+from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Node, Word
 from btq_lang.text import Span
 
-_BY_CATEGORY: dict[str, tuple[int, int | None]] = {
-    "Action": (0, 0),
-    "Condition": (0, 0),
-    "SubTree": (0, 0),
-    "Decorator": (1, 1),
-    "Control": (1, None),
-}
-_INTEGER = re.compile(r"-?[0-9]+")
-_CASE = re.compile(r"case_([0-9]+)")
+_INTEGER = re.compile(r"-?[0-9]{1,18}")
+_THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 
 
 def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
-    for seen in view.nodes(entry):
+    nodes = view.nodes(entry)
+    for index, seen in enumerate(nodes):
         if seen.category is None or _is_switch_by_children(seen):
             continue
-        least, most = seen.kind.children if seen.kind else _BY_CATEGORY[seen.category]
+        declared = declared_category(seen)
+        if seen.kind is None and seen.node.category is not None and declared not in (None, seen.node.category.raw):
+            continue  # which of the two is wrong is told first
+        least, most = seen.kind.children if seen.kind else CHILDREN[seen.category]
         count = len(seen.node.children)
         if least <= count and (most is None or count <= most):
             continue
+        if count == 0 and entry.diagnostics:
+            after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.file.text)
+            if any(seen.node.start <= problem.span.start < after for problem in entry.diagnostics):
+                continue  # its child may be what could not be read
         notes: tuple[str, ...] = ()
         if seen.kind is not None and seen.kind.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
-        related: tuple[Related, ...] = ()
+        related = model_related(view, seen, "its model says so") if seen.node.category is None else ()
         if most is not None and count > most:
             extra = seen.node.children[most]
-            related = (Related(Place(Span(extra.start, extra.end)), "the first one too many"),)
+            span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
+            related += (Related(Place(span), "the first one too many"),)
         yield Diagnostic(
             "child-count",
             seen.node.head.span,
-            f"{seen.shown} takes {_range(least, most)}, it has {count or 'none'}",
+            f"{_called(seen)} takes {_range(least, most)}, it has {count or 'none'}",
             related=related,
             notes=notes,
         )
@@ -53,34 +58,36 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         node = seen.node
         count = len(node.children)
-        cases = [pair for pair in node.attributes if _CASE.fullmatch(pair.key.text)]
-        if _is_switch_by_children(seen):
-            if not 3 <= count <= 7:
-                message = f"`Switch` has {count} children; the engine has switches of 2 to 6 cases and a default"
-                yield Diagnostic("switch-cases", node.head.span, message, notes=("so it takes 3 to 7 children",))
-                continue
-            numbers = {int(pair.key.text[5:]) for pair in cases}
-            if numbers and numbers != set(range(1, count)):
-                message = f"{len(numbers)} cases and {count} children: there must be one child more than cases"
-                yield Diagnostic("switch-cases", node.head.span, message, notes=("the last child is the default",))
-            continue
-        number = int(seen.kind.tag[6:])
-        if node.attribute("variable") is None:
-            continue  # told as a missing port
-        missing = [f"case_{case}" for case in range(1, number + 1) if node.attribute(f"case_{case}") is None]
-        if missing:
-            message = f"{seen.shown} has no {' and no '.join(f'`{case}`' for case in missing)}"
-            note = "the engine runs the default child in that case, without a word"
+        by_children = _is_switch_by_children(seen)
+        if by_children and not 3 <= count <= 7:
+            message = f"`Switch` has {count or 'no'} child{'ren' if count != 1 else ''}"
+            note = "the engine has switches of 2 to 6 cases, with one child more for the default: 3 to 7 children"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
+            continue
+        number = count - 1 if by_children else int(seen.kind.tag[6:])
+        wanted = [f"case_{case}" for case in range(1, number + 1)]
+        given = {pair.key.text: pair.key for pair in node.attributes}
+        extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
+        missing = [name for name in ("variable", *wanted) if name not in given]
+        if extra:
+            message = f"{seen.shown} has no case `{extra[0].text}`"
+            note = f"its cases are `case_1` to `{wanted[-1]}`"
+            if by_children:
+                note = f"with {count} children {note}: one child for each, and the last for the default"
+            yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
+        elif missing:
+            message = f"{seen.shown} has no {' and no '.join(f'`{name}`' for name in missing)}"
+            note = "the engine says nothing about it and runs the default child"
+            yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
 
 
 def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
     for seen in view.nodes(entry):
-        if seen.kind is None or seen.kind.tag != "Parallel":
-            continue
         count = len(seen.node.children)
-        for port in ("success_count", "failure_count"):
+        if seen.kind is None or seen.kind.tag not in _THRESHOLDS or count == 0:
+            continue  # without a child, that is what is told
+        for port in _THRESHOLDS[seen.kind.tag]:
             value = seen.node.attribute(port)
             threshold = _integer(value)
             if value is None or threshold is None or threshold <= count:
@@ -88,8 +95,10 @@ def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "parallel-threshold",
                 value.span,
-                f"`{port}` is {threshold}, but there are only {count} children",
+                f"`{port}` is {threshold}, but there {'is' if count == 1 else 'are'} only {count} "
+                f"child{'ren' if count > 1 else ''}",
                 notes=("the engine throws when the node is ticked; -1 means all children",),
+                fixes=(replace_fix("Write `-1`: all children", value.span, "-1"),),
             )
 
 
@@ -100,6 +109,11 @@ def _is_switch_by_children(seen: SeenNode) -> bool:
 
 def _integer(word: Word | None) -> int | None:
     return int(word.text) if word is not None and _INTEGER.fullmatch(word.text) else None
+
+
+def _called(seen: SeenNode) -> str:
+    """A node with its category, where the number of its children follows from nothing else."""
+    return seen.shown if seen.kind is not None or seen.is_subtree else f"the {seen.category} {seen.shown}"
 
 
 def _range(least: int, most: int | None) -> str:

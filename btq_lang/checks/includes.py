@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.near import near
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.text import Span
 
@@ -21,15 +20,14 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if view.workspace.included_by(view.path, include) is not None:
         return
     folder = posixpath.dirname(view.path)
-    known = {posixpath.relpath(other, folder or "."): other for other in view.workspace.files if other != view.path}
     fixes = tuple(
-        replace_fix(f"Replace it by `{other}`", include.path.span, quote(other)) for other in _meant(path, known)
+        replace_fix(f"Replace it by `{other}`", include.path.span, quote(other)) for other in _meant(view, path)
     )
     places = ", ".join(f"`{place}`" for place in (folder or ".", *view.workspace.project.include_paths))
     yield Diagnostic(
         "missing-include",
         include.path.span,
-        f"there is no file `{path}`",
+        f"there is no file `{path}`" if path else "this include names no file",
         notes=(f"looked for in {places}; `include-paths` in btq.toml adds folders",),
         fixes=fixes,
     )
@@ -54,18 +52,28 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def include_fix(view: View, path: str) -> Fix:
     """Include another file, behind the includes that are there."""
-    folder = posixpath.dirname(view.path)
-    shown = posixpath.relpath(path, folder or ".")
+    shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
+    at, margin = behind_includes(view)
+    return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), f"{margin}include {quote(shown)}\n"),))
+
+
+def behind_includes(view: View) -> tuple[int, str]:
+    """Where a line may be put in that belongs to the head of a file, and what it is indented with."""
+    text = view.file.text
     includes = [entry for entry in view.file.parsed.entries if isinstance(entry.item, Include)]
-    at = view.file.text.find("\n", includes[-1].start) + 1 if includes else 0
-    place = Place(Span(at, at), view.path)
-    return Fix(f"Include `{shown}`", (Change(place, f"include {quote(shown)}\n"),))
+    if includes:
+        last = includes[-1]
+        at = text.find("\n", last.start + last.item.end) + 1
+        if at:
+            return at, text[last.start : last.start + last.item.start]
+    return (1 if text.startswith("\ufeff") else 0), ""
 
 
 def _from_ros_package(include: Include) -> bool:
     return any(pair.key.text == "ros_pkg" for pair in include.attributes)
 
 
-def _meant(path: str, known: dict[str, str]) -> tuple[str, ...]:
-    same_name = [other for other in known if posixpath.basename(other) == posixpath.basename(path)]
-    return tuple(same_name[:3]) or near(path, known)
+def _meant(view: View, path: str) -> tuple[str, ...]:
+    name = posixpath.basename(path)
+    same_name = [other for other in view.other_files if posixpath.basename(other) == name]
+    return tuple(same_name[:3]) or view.near(path, None)

@@ -4,14 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, available, spellings
-from btq_lang.checks.view import View
+from btq_lang.catalog.names import model_name_problem
+from btq_lang.catalog.nodes import KNOWN_WORDS, available, lookup
+from btq_lang.checks.view import SeenNode, View
 from btq_lang.clauses import HEADS, VERBS
-from btq_lang.diagnostics import Diagnostic, Fix, Related, replace_fix
-from btq_lang.near import near
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.near import distance
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Models, is_name, quote
+from btq_lang.symbols import Kind, Symbol
+from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
+from btq_lang.text import Span
+
+# How many children the nodes of a category have; None: any number.
+CHILDREN: dict[str, tuple[int, int | None]] = {
+    "Action": (0, 0),
+    "Condition": (0, 0),
+    "SubTree": (0, 0),
+    "Decorator": (1, 1),
+    "Control": (1, None),
+}
 
 
 def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -19,28 +30,31 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     be a slip.  Without a palette any other name is a custom node that the robot's program registers."""
     for seen in view.nodes(entry):
         name = seen.node.id
-        if name is None or seen.kind or seen.definition or seen.is_subtree or name.text in KNOWN_WORDS:
+        if seen.is_subtree or seen.kind or seen.definition:
             continue
-        likely = near(name.text, (*_names_of_builtins(), *view.scope.names(Kind.MODEL)))
-        if not likely and not (_has_palette(view) and view.scope.complete):
-            continue
-        if seen.node.category is not None and not _has_palette(view):
-            continue  # written as a declaration: `Action Foo` says that there is such a node
-        fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
-        notes = () if likely else ("its model is in no file that this one includes",)
-        yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
+        if name is None:
+            if seen.node.category is not None and not _has_id(seen):
+                word = seen.node.category
+                message = f"this {word.raw} has no ID: `{word.raw} <ID>`"
+                yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
+        elif view.scope.find(Kind.TREE, name.text) is not None:
+            yield _tree_as_node(view, seen, name)
+        elif not (name.text in KNOWN_WORDS or _is_refused(view, seen, name) or _is_clause(seen)):
+            yield from _unknown(view, entry, seen, name)
 
 
 def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A word of the published language, or of an older engine, that no engine of today registers."""
     for seen in view.nodes(entry):
         name = seen.node.id
-        if name is None or name.quoted or seen.kind or seen.definition or name.text not in KNOWN_WORDS:
+        if name is None or name.quoted or seen.definition or name.text not in KNOWN_WORDS:
             continue
         known = KNOWN_WORDS[name.text]
         fixes: tuple[Fix, ...] = ()
         if known.replacement:
             fixes = (replace_fix(f"Replace it by `{known.replacement}`", name.span, known.replacement, safe=True),)
+        elif known.category == "SubTree" and seen.node.category is None:
+            fixes = (replace_fix("Replace it by `SubTree`", name.span, "SubTree"),)
         message = f"`{name.text}` is no node of the engine"
         yield Diagnostic("not-an-engine-node", name.span, message, notes=(known.why,), fixes=fixes)
 
@@ -66,50 +80,75 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`Condition MoveBase` where MoveBase is an action."""
     for seen in view.nodes(entry):
+        category = declared_category(seen)
         written_as = seen.node.category
-        if written_as is None or seen.is_subtree:
+        if written_as is None or category is None or category == written_as.raw:
             continue
-        related: tuple[Related, ...] = ()
-        category: str
-        if seen.kind is not None:
-            category, who = seen.kind.category, "the engine has it as"
-        elif seen.model is not None and seen.definition is not None:
-            category, who = seen.model.category.raw, "its model says"
-            related = (view.defined_at(seen.definition, "the model"),)
-        else:
-            continue
-        if category != written_as.raw:
-            fix = replace_fix(f"Replace it by `{category}`", written_as.span, category, safe=True)
-            message = f"{seen.shown} is written as {written_as.raw}, {who} {category}"
-            yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
+        who = "the engine has it as" if seen.kind is not None else "its model says"
+        least, most = CHILDREN[category]
+        fits = least <= len(seen.node.children) and (most is None or len(seen.node.children) <= most)
+        safe = category != "SubTree" and (fits or seen.kind is not None)
+        fix = replace_fix(f"Replace it by `{category}`", written_as.span, category, safe=safe)
+        message = f"{seen.shown} is written as {written_as.raw}, {who} {category}"
+        related = model_related(view, seen, "the model")
+        yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
 
 
 def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """`takes at most 30 s` in the block of a node is a node called `takes`."""
+    """`keeps` in the block of a node is a node called `keeps`."""
     for seen in view.nodes(entry):
         name = seen.node.kind
-        if name is None or name.quoted or seen.node.category or seen.node.children or seen.definition:
+        if name is None or not _is_clause(seen) or seen.definition:
             continue
-        if name.text in VERBS or name.text in HEADS:
-            yield Diagnostic(
-                "clause-as-node",
-                name.span,
-                f"`{name.text}` begins a clause of a requirement, but here it is a node",
-                notes=("clauses stand in the block of a requirement: `satisfies QualityReq …` on a line of its own",),
-                fixes=(replace_fix(f'Write "{name.text}" if a node is meant', name.span, quote(name.text)),),
-            )
+        if any(problem.span.start == name.start for problem in entry.diagnostics):
+            continue  # the parser has said so already
+        yield Diagnostic(
+            "clause-as-node",
+            name.span,
+            f"`{name.text}` begins a clause of a requirement, but here it is a node",
+            notes=("clauses stand in the block of a requirement: `satisfies QualityReq …` on a line of its own",),
+            fixes=(replace_fix(f'Write "{name.text}" if a node is meant', name.span, quote(name.text)),),
+        )
 
 
 def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A second model, signal, context or quality of one name."""
+    """A second signal, context or quality of one name, or a second model with another interface."""
+    for first, second in view.clashes(entry, *_DEFINED_ONCE):
+        if not _is_same_model(first.symbol, second.symbol):
+            both = (view.defined_at(first, "the first one, which counts"), view.defined_at(second, "the second one"))
+            yield _second(second.symbol, include_place(entry), both, "this file brings a second definition of")
     for symbol in view.file.summary_of(entry).symbols:
-        if symbol.kind in (Kind.TREE, Kind.REQUIREMENT):
-            continue
-        first = view.scope.find(symbol.kind, symbol.name)
-        if first is not None and first.symbol is not symbol:
-            message = f"there are two definitions of the {symbol.kind.value} `{symbol.name}`"
-            related = (view.defined_at(first, "the first one, which counts"),)
-            yield Diagnostic("duplicate-definition", symbol.span, message, related=related)
+        counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind in _DEFINED_ONCE else None
+        if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
+            one = (view.defined_at(counts, "the first one, which counts"),)
+            yield _second(symbol, symbol.span, one, "there are two definitions of")
+
+
+def declared_category(seen: SeenNode) -> str | None:
+    """What the engine or a model says of a node's category, whatever is written at the node."""
+    if seen.is_subtree:
+        return None
+    if seen.kind is not None:
+        return seen.kind.category
+    return seen.model.category.raw if seen.model is not None else None
+
+
+def model_related(view: View, seen: SeenNode, message: str) -> tuple[Related, ...]:
+    """The place of a node's model, where it has one."""
+    return (view.defined_at(seen.definition, message),) if seen.definition else ()
+
+
+def likely_category(seen: SeenNode) -> str:
+    """The category of a custom node, as said or else as the number of its children suggests."""
+    if seen.category is not None:
+        return seen.category
+    return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
+
+
+def include_place(entry: Entry) -> Span:
+    """Where a diagnostic about an included file points."""
+    item = entry.item
+    return item.path.span if isinstance(item, Include) and item.path else Span(item.start, item.end)
 
 
 def written(name: str) -> str:
@@ -117,20 +156,95 @@ def written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
-def _names_of_builtins() -> Iterator[str]:
-    return (spelling for kind in BUILTINS.values() for spelling in _words(kind))
+def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[Diagnostic]:
+    has_palette = view.has_palette and view.scope.complete
+    likely = view.near(name.text, Kind.MODEL)
+    if not has_palette:
+        if seen.node.category is not None:
+            return  # written as a declaration: `Action Foo` says that there is such a node
+        likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
+        if not likely:
+            return
+    elif not likely and view.first_nodes.get(name.text) is not seen.node:
+        return  # what is missing is one model, however many nodes would need it
+    fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
+    notes: tuple[str, ...] = ()
+    if not likely:
+        model = f"{likely_category(seen)} {written(name.text)}"
+        margin = view.file.text[entry.start : entry.start + entry.item.start]
+        fixes = (Fix(f"Declare it: `{model}`", (Change(Place(Span(0, 0)), f"{margin}{model}\n"),)),)
+        notes = (f"the other nodes here have models; the shortest is a line `{model}`",)
+    yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
 
 
-def _words(kind: NodeKind) -> tuple[str, ...]:
-    return tuple(spelling for spelling in spellings(kind) if is_name(spelling))
+def _is_slip(word: str, meant: str) -> bool:
+    """Whether nobody could mean a node of its own: `LoopPoint` is as good a name as LoopInt, `Pack` as Pick, and
+    `Switch7` as Switch6."""
+    is_builtin = lookup(meant) is not None
+    word, meant = word.casefold(), meant.casefold()
+    if _without_digits(word) == _without_digits(meant):
+        return word == meant
+    short_and_replaced = len(word) == len(meant) < 6 and sorted(word) != sorted(meant)
+    most = 2 if len(word) >= 12 and is_builtin else 1
+    return distance(word, meant) <= most and not short_and_replaced
 
 
-def _has_palette(view: View) -> bool:
-    """Whether the models in scope are meant to be all there are: a TreeNodesModel, or models from another file."""
-    for path in view.scope.paths:
-        for other in view.workspace.files[path].parsed.entries:
-            if isinstance(other.item, Models) and other.item.models:
-                return True
-            if isinstance(other.item, Model) and path != view.path and other.item.category.raw != "SubTree":
-                return True
-    return False
+def _without_digits(word: str) -> str:
+    return "".join(letter for letter in word if not letter.isdigit())
+
+
+def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
+    """`PickPlace` or `Action PickPlace` where PickPlace is a tree."""
+    category = seen.node.category
+    span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
+    tree = view.scope.find(Kind.TREE, name.text)
+    return Diagnostic(
+        "unknown-node",
+        name.span,
+        f"`{name.text}` is a tree, not a node",
+        related=(view.defined_at(tree, "the tree"),) if tree is not None else (),
+        fixes=(replace_fix(f"Write `SubTree {written(name.text)}`", span, text),),
+        severity=Severity.ERROR,
+    )
+
+
+def _has_id(seen: SeenNode) -> bool:
+    return any(pair.key.text == "ID" for pair in seen.node.attributes)
+
+
+def _is_refused(view: View, seen: SeenNode, name: Word) -> bool:
+    """Whether the name itself is the mistake, which is told."""
+    target = view.workspace.project.target
+    return seen.node.category is None and model_name_problem(name.text, target) is not None
+
+
+def _is_clause(seen: SeenNode) -> bool:
+    name = seen.node.kind
+    return (
+        name is not None
+        and not (name.quoted or seen.node.category or seen.node.children)
+        and (name.text in VERBS or name.text in HEADS)
+    )
+
+
+_DEFINED_ONCE = (Kind.MODEL, Kind.SIGNAL, Kind.CONTEXT, Kind.QUALITY)
+
+
+def _second(symbol: Symbol, span: Span, related: tuple[Related, ...], what: str) -> Diagnostic:
+    # The engine never reads the model of a node, so nothing but a tool's view of it is at stake.
+    severity = Severity.WARNING if symbol.kind is Kind.MODEL else None
+    message = f"{what} the {symbol.kind.value} `{symbol.name}`"
+    return Diagnostic("duplicate-definition", span, message, related=related, severity=severity)
+
+
+def _is_same_model(first: Symbol, second: Symbol) -> bool:
+    """Whether two models give a node the same interface; palettes that tools write repeat each other."""
+    return _interface(first) is not None and _interface(first) == _interface(second)
+
+
+def _interface(symbol: Symbol) -> object:
+    model = symbol.target
+    if not isinstance(model, Model):
+        return None
+    ports = [(port.direction, port.name, port.type, port.default) for port in model.ports]
+    return model.category.raw, shape(tuple(ports))

@@ -2,44 +2,64 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from math import isfinite
 
 from btq_lang.catalog.literals import check_literal
-from btq_lang.catalog.nodes import PortKind, port_type
+from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
+from btq_lang.checks.kinds import written
 from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import record
-from btq_lang.syntax import Entry, Pair, Port, Word
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word
 from btq_lang.tokens import BRACED, QUANTITY
 from btq_lang.units import convert, dimension_name, parse_unit
 
+_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
 @record
 class _Target:
-    """What a value goes to: a port's type, and its unit where one is known."""
+    """What a value goes to.
+
+    Attributes:
+        unit: of a number in the port, where one is known.
+        converts: the engine reads a literal as the type; for a tree's port it keeps the text or number it finds.
+    """
 
     port: str
     type: str
-    unit: str | None
+    unit: str | None = None
+    converts: bool = True
 
 
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose tail the engine drops."""
+    version = view.workspace.project.target
     for target, value in _values(view, entry):
-        if value.kind == BRACED or value.kind == QUANTITY:
+        if value.kind == BRACED:
+            continue
+        if value.kind == QUANTITY:
+            yield from _converted(target, value, version)
             continue
         text = value.text
-        problem = check_literal(target.type, text, view.workspace.project.target)
+        problem = check_literal(target.type, text, version)
         if problem is None:
             continue
-        if problem.kind == "refused":
-            message = f"`{text}` {problem.reason}"
-            notes = (f"the port `{target.port}` is of type {target.type}",)
-            yield Diagnostic("invalid-literal", value.span, message, notes=notes)
+        notes = (f"the port `{target.port}` is of type {target.type}",)
+        if not target.converts:
+            message = f"{_shown(text)} is no {target.type}"
+            yield Diagnostic("invalid-literal", value.span, message, notes=notes, severity=Severity.WARNING)
+        elif problem.kind == "refused":
+            message = f"{_shown(text)} {problem.reason}"
+            fixes = _accepted(target, value, version)
+            yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes)
         else:
             message = f"the engine reads `{text}` as {problem.reads} and drops the rest without a word"
             yield Diagnostic(
@@ -48,51 +68,81 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A quantity where the port's unit is unknown, of another dimension, or where the result is no whole number."""
+    """A quantity where the port's unit is unknown or of another dimension."""
     for target, value in _values(view, entry):
-        if value.kind != QUANTITY:
-            continue
-        quantity = parse_quantity(value.raw)
+        quantity = parse_quantity(value.raw) if value.kind == QUANTITY else None
         if quantity is None:
-            continue  # an unknown unit, which is told
+            continue  # no quantity, or an unknown unit, which is told
         number, unit, _ = quantity
-        if target.unit is None:
+        wanted = parse_unit(target.unit) if target.unit is not None else None
+        if wanted is None:
+            plain = _plain(number)
             yield Diagnostic(
                 "quantity-on-unitless-port",
                 value.span,
                 f"nobody knows the unit of the port `{target.port}`",
                 notes=("write the number that the node expects, and say its unit in the port's description",),
-                fixes=(replace_fix(f"Write `{_plain(number)}`", value.span, _plain(number)),),
+                fixes=(replace_fix(f"Write `{plain}`", value.span, plain),) if isfinite(number) else (),
             )
-            continue
-        wanted = parse_unit(target.unit)
-        assert wanted is not None, "the catalog's units are in the unit table"
-        if unit.dimension != wanted.dimension:
+        elif unit.dimension != wanted.dimension:
             message = f"`{target.port}` takes {dimension_name(wanted)}, `{value.raw}` is {dimension_name(unit)}"
             yield Diagnostic("quantity-on-unitless-port", value.span, message)
-        elif target.type in _INTEGERS and not _is_whole(convert(number, unit, wanted)):
-            message = f"`{value.raw}` is no whole number of {target.unit}, and `{target.port}` is of type {target.type}"
-            yield Diagnostic("invalid-literal", value.span, message)
+
+
+def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnostic]:
+    """A quantity that is no number of the port's type in the port's unit."""
+    quantity = parse_quantity(value.raw)
+    wanted = parse_unit(target.unit) if target.unit is not None else None
+    if quantity is None or wanted is None or quantity[1].dimension != wanted.dimension:
+        return  # told by others
+    number = convert(quantity[0], quantity[1], wanted)
+    notes = (f"the port `{target.port}` is of type {target.type}, in {target.unit}",)
+    if not isfinite(number):
+        message = f"`{value.raw}` is more than any number"
+    elif target.type in _INTEGERS and not _is_whole(number):
+        message = f"`{value.raw}` is no whole number of {target.unit}"
+    elif problem := check_literal(target.type, _plain(number), version):
+        message = f"`{value.raw}`: {_plain(number)} {target.unit} {problem.reason}"
+    else:
+        return
+    yield Diagnostic("invalid-literal", value.span, message, notes=notes)
 
 
 def _values(view: View, entry: Entry) -> Iterator[tuple[_Target, Word]]:
-    """Each value that goes to a port of known type, with what it goes to."""
+    """Each value that goes to a port, with what it goes to, where a type or a unit is in question."""
+    for port in _declared_ports(entry):
+        if port.default is not None and port.default.text and (target := _declared(port, False)) is not None:
+            yield target, port.default
     for seen in view.nodes(entry):
         if is_placeholder(seen):
             continue
         for pair in seen.node.attributes:
-            if pair.value is not None and (target := _target(view, seen, pair)) is not None:
+            if pair.value is not None and (target := _target(view, seen, pair, pair.value)) is not None:
                 yield target, pair.value
 
 
-def _target(view: View, seen: SeenNode, pair: Pair) -> _Target | None:
+def _declared_ports(entry: Entry) -> Iterator[Port]:
+    item = entry.item
+    if isinstance(item, Tree | Model):
+        yield from item.ports
+    elif isinstance(item, Models):
+        for model in item.models:
+            if isinstance(model, Model):
+                yield from model.ports
+
+
+def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | None:
     key = pair.key.text
-    if seen.kind is not None:
-        port = seen.kind.port(key)
+    builtin = BUILTINS["SubTree"] if seen.is_subtree and key == "_autoremap" else seen.kind
+    if builtin is not None:
+        port = builtin.port(key)
         return _of_builtin(port, view.workspace.project.target) if port is not None else None
     ports = subtree_ports(view, seen) if seen.is_subtree else seen.model.ports if seen.model else ()
     declared = next((port for port in ports if port.name is not None and port.name.text == key), None)
-    return _of_model(declared) if declared is not None else None
+    if declared is not None:
+        return _declared(declared, not seen.is_subtree)
+    # A node that nobody has described takes any literal, but there is no unit that a quantity could be converted to.
+    return _Target(key, "") if value.kind == QUANTITY and is_port_name(key) else None
 
 
 def _of_builtin(port: PortKind, version: str) -> _Target | None:
@@ -101,10 +151,19 @@ def _of_builtin(port: PortKind, version: str) -> _Target | None:
     return _Target(port.name, port.literal or port_type(port, version), port.unit)
 
 
-def _of_model(port: Port) -> _Target | None:
+def _declared(port: Port, converts: bool) -> _Target | None:
     if port.name is None:
         return None
-    return _Target(port.name.text, port.type.text if port.type else "", None)
+    return _Target(port.name.text, port.type.text if port.type else "", None, converts)
+
+
+def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:
+    """The same with what the engine is strict about mended: `success`, `+5`, ` 5`."""
+    text = value.text
+    for other in (text.strip(), text.strip().removeprefix("+"), text.upper(), text.lower()):
+        if other and check_literal(target.type, other, version) is None:
+            return (replace_fix(f"Write `{other}`", value.span, _as_value(other)),)
+    return ()
 
 
 def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, ...]:
@@ -113,11 +172,19 @@ def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, 
     quantity = parse_quantity(value.text.strip())
     wanted = parse_unit(target.unit) if target.unit else None
     if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
-        written = f"{_plain(quantity[0])} {quantity[2]}"
-        fixes.append(replace_fix(f"Write the quantity `{written}`", value.span, written))
+        quantity_text = f"{_plain(quantity[0])} {quantity[2]}" if isfinite(quantity[0]) else value.text
+        fixes.append(replace_fix(f"Write the quantity `{quantity_text}`", value.span, quantity_text))
     if reads is not None:
-        fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, reads, safe=not fixes))
+        fixes.append(replace_fix(f"Write what the engine reads: `{reads}`", value.span, _as_value(reads)))
     return tuple(fixes)
+
+
+def _as_value(text: str) -> str:
+    return text if _NUMBER.fullmatch(text) else written(text)
+
+
+def _shown(text: str) -> str:
+    return f"`{text}`" if text else "an empty text"
 
 
 def _plain(number: float) -> str:

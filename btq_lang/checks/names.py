@@ -4,26 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
-from btq_lang.checks.kinds import written
+from btq_lang.checks.kinds import likely_category, written
 from btq_lang.checks.ports import is_placeholder
-from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.rules import Severity
-from btq_lang.syntax import Entry, Model, Models, Tree, Word
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Include, Model, Models, Tree, Word
+from btq_lang.text import Span
+
+_UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
 
 
 def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """The name of a tree, a node, an instance or a SubTree's port that the engine refuses at load."""
     version = view.workspace.project.target
-    for what, name, reason in _refused(view, entry, version):
-        fixes: tuple[Fix, ...] = ()
-        legal = legal_name(name.text)
-        if what in ("tree", "node"):
-            title = f"Replace it by `{legal}`, here only"
-            fixes = (replace_fix(title, name.span, written(legal)),)
-        message = f"the engine refuses the {what} name `{name.text}`: {reason}"
-        yield Diagnostic("forbidden-name", name.span, message, fixes=fixes)
+    item = entry.item
+    if isinstance(item, Tree):
+        if item.name is None:
+            yield from _nameless(view, item)
+        elif reason := model_name_problem(item.name.text, version):
+            yield _tree_name(item.name, reason, _renamed(view, entry, item.name))
+        for seen in view.nodes(entry):
+            yield from _of_node(view, entry, seen, version)
+    elif isinstance(item, Model | Models):
+        for model in (item,) if isinstance(item, Model) else item.models:
+            if not isinstance(model, Model) or model.category.raw != "SubTree":
+                continue
+            for port in model.ports:
+                if port.name is not None and (reason := port_name_problem(port.name.text, version)):
+                    yield _refused("port", port.name, reason)
 
 
 def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -31,7 +43,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     first: dict[tuple[bool, str], Word] = {}
     for seen in view.nodes(entry):
         name = seen.node.name
-        if name is None:
+        if name is None or (name.text == "" and not seen.is_subtree):
             continue
         text = name.text
         if seen.node.id is not None and text == seen.node.id.text and not seen.is_subtree:
@@ -46,27 +58,74 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message = f"two SubTrees of this tree are called `{text}`: the engine refuses that"
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related, severity=Severity.ERROR)
         else:
-            message = f"two nodes of this tree are called `{text}`: logs cannot tell them apart"
+            message = f"two nodes of this tree are called `{text}`: in logs both have the same path"
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related)
 
 
-def _refused(view: View, entry: Entry, version: str) -> Iterator[tuple[str, Word, str]]:
-    item = entry.item
-    if isinstance(item, Tree):
-        if item.name is not None and (reason := model_name_problem(item.name.text, version)):
-            yield "tree", item.name, reason
-        for seen in view.nodes(entry):
-            name = seen.node.id
-            checked = seen.is_subtree or (seen.node.category is None and seen.kind is None)
-            if checked and name is not None and (reason := model_name_problem(name.text, version)):
-                yield "tree" if seen.is_subtree else "node", name, reason
-            label = seen.node.name
-            if label is not None and (reason := instance_name_problem(label.text, version)):
-                yield "instance", label, reason
-    elif isinstance(item, Model | Models):
-        for model in (item,) if isinstance(item, Model) else item.models:
-            if not isinstance(model, Model) or model.category.raw != "SubTree":
-                continue
-            for port in model.ports:
-                if port.name is not None and (reason := port_name_problem(port.name.text, version)):
-                    yield "port", port.name, reason
+def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator[Diagnostic]:
+    name = seen.node.id
+    label = seen.node.name
+    if name is not None and (reason := model_name_problem(name.text, version)):
+        if seen.is_subtree and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
+            yield _tree_name(name, reason, ())  # else it is told where the tree is, or that there is none
+        elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
+            yield _refused("node", name, reason, _explicit(seen, name))
+    if label is not None and (reason := instance_name_problem(label.text, version)):
+        yield _refused("instance", label, reason)
+    if label is not None and label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE):
+        main = view.main_tree
+        if main is not None and view.is_this(main, entry):
+            yield _refused("instance", label, "it is empty, as that of the main tree is")
+
+
+def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
+    """A tree without an ID: the engine takes it where nothing stands beside it."""
+    others = [
+        other.item
+        for other in view.file.parsed.entries
+        if isinstance(other.item, Tree | Model | Models | Include) and other.item is not tree
+    ]
+    if others:
+        span = Span(tree.start, tree.start + len("BehaviorTree"))
+        note = "the engine takes a tree without ID only if nothing else is in the file"
+        yield Diagnostic("forbidden-name", span, "this tree has no ID: `BehaviorTree <ID>`", notes=(note,))
+
+
+def _tree_name(name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
+    """Only a warning: a build writes the tree and all that refer to it under a legal name."""
+    return Diagnostic(
+        "forbidden-name",
+        name.span,
+        f"the engine refuses the tree name `{name.text}`: {reason}",
+        notes=(f"`btq build` writes it as `{legal_name(name.text)}`",),
+        fixes=fixes,
+        severity=Severity.WARNING,
+    )
+
+
+def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
+    message = f"the engine refuses the {what} name `{name.text}`: {reason}"
+    return Diagnostic("forbidden-name", name.span, message, fixes=fixes)
+
+
+def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
+    """A legal name for a tree, wherever it is named."""
+    definition = view.scope.find(Kind.TREE, name.text)
+    if definition is None or not view.is_this(definition, entry):
+        return ()
+    legal = legal_name(name.text)
+    while view.scope.find(Kind.TREE, legal) is not None:
+        legal += "_"
+    places = [view.place(definition)]
+    places += [Place(use.use.span, use.path, use.entry.item) for use in view.workspace.references(definition)]
+    changes = tuple(Change(place, written(legal)) for place in places)
+    return (Fix(f"Rename it to `{legal}` wherever it is named", changes),)
+
+
+def _explicit(seen: SeenNode, name: Word) -> tuple[Fix, ...]:
+    """`Action "my node"`: the ID of the explicit form is not looked at."""
+    if name.text in ("", "Root", "root"):
+        return ()
+    category = likely_category(seen)
+    title = f"Write its category: `{category} {written(name.text)}`"
+    return (replace_fix(title, Span(name.start, name.start), f"{category} "),)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nodes import OLD_PORTS, PLACEHOLDERS
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS
 from btq_lang.checks.kinds import written
 from btq_lang.checks.view import SeenNode, View, subtree_ports
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
+from btq_lang.record import record
 from btq_lang.rules import Severity
-from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.text import Span
 
 _OWN = frozenset(("ID", "name"))
@@ -21,70 +24,89 @@ _OWN = frozenset(("ID", "name"))
 def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree behind a SubTree does not have."""
     for seen in view.nodes(entry):
-        known = _port_names(view, seen)
+        if not seen.node.attributes:
+            continue
+        yield from _forbidden_id(seen)
+        known = _ports(view, seen)
         if known is None:
             continue
-        for pair in seen.node.attributes:
-            key = pair.key.text
-            if key in known or key in _OWN or key in RESERVED_ATTRIBUTES or not is_port_name(key):
-                continue
-            old = OLD_PORTS.get((seen.kind.tag, key)) if seen.kind else None
-            likely = (old,) if old else near(key, known)
-            fixes = tuple(replace_fix(f"Replace `{key}` by `{port}`", pair.key.span, written(port)) for port in likely)
-            notes = (f"it has {', '.join(f'`{port}`' for port in known)}" if known else "it has no ports",)
+        names = ", ".join(f"`{port.name}`" for port in known)
+        required = {port.name for port in known if port.required}
+        for key, likely in _meant(seen, known).items():
+            # The engine takes any port of a SubTree, and a model without ports is often one that nobody finished.
+            harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
+            fixes = tuple(replace_fix(f"Replace `{key.text}` by `{port}`", key.span, written(port)) for port in likely)
             yield Diagnostic(
                 "unknown-port",
-                pair.key.span,
-                f"{seen.shown} has no port `{key}`",
+                key.span,
+                f"{seen.shown} has no port `{key.text}`",
                 related=_declared(view, seen),
-                notes=notes,
+                notes=(f"it has {names}" if known else "it has no ports",),
                 fixes=fixes,
-                severity=Severity.WARNING if seen.is_subtree else None,  # the engine takes any port of a SubTree
+                severity=Severity.WARNING if harmless else None,
             )
+            if not known and seen.kind is None:
+                break  # what is missing is the model's ports, all of them
 
 
 def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port without a value: one the engine asks for, or an input without default of a model."""
     for seen in view.nodes(entry):
+        known = _ports(view, seen) or ()
         given = {pair.key.text for pair in seen.node.attributes}
-        if seen.kind is not None:
-            if is_placeholder(seen):
-                continue
-            known = tuple(port.name for port in seen.kind.ports)
-            slips = {near(key, known, 1) for key in given.difference(known)}  # told as unknown, with a fix
-            for port in seen.kind.ports:
-                if port.required and port.name not in given and (port.name,) not in slips:
-                    yield _missing(view, seen, port.name, port.doc, None)
-        elif seen.is_subtree:
-            if given & {"_autoremap", "__shared_blackboard", "__autoremap"}:
-                continue
-            for declared in subtree_ports(view, seen):
-                if declared.name is not None and declared.default is None and declared.name.text not in given:
-                    yield _missing(view, seen, declared.name.text, "", None)
-        elif seen.model is not None:
-            for declared in seen.model.ports:
-                name = declared.name.text if declared.name else ""
-                if name and declared.direction.raw == "input" and declared.default is None and name not in given:
-                    yield _missing(view, seen, name, declared.text.text if declared.text else "", Severity.WARNING)
+        missing = [port for port in known if port.required and port.name not in given]
+        if not missing or (seen.is_subtree and _remaps_all(seen)):
+            continue
+        slips = {likely[0] for likely in _meant(seen, known).values() if likely}  # told as unknown, with a fix
+        missing = [port for port in missing if port.name not in slips]
+        if not missing:
+            continue
+        names = " and ".join(f"`{port.name}`" for port in missing)
+        yield Diagnostic(
+            "missing-port",
+            seen.node.head.span,
+            f"{seen.shown} needs {'a value' if len(missing) == 1 else 'values'} for its "
+            f"port{'s' if len(missing) > 1 else ''} {names}",
+            related=_declared(view, seen),
+            notes=tuple(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
+            fixes=_passing_on(view, entry, seen, missing),
+            # Whether the robot's program asks for an input is known to nobody but the program.
+            severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
+        )
 
 
 def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`_skipif`: neither a port nor anything the engine reads, and it says nothing about it."""
+    if isinstance(entry.item, Tree):
+        for pair in entry.item.attributes:
+            kind = RESERVED_ATTRIBUTES.get(pair.key.text)
+            if kind is not None and kind.is_script:
+                message = f"`{pair.key.text}` does nothing on a BehaviorTree: put it on the tree's node"
+                yield Diagnostic("unknown-attribute", pair.key.span, message)
     for seen in view.nodes(entry):
         for pair in seen.node.attributes:
             key = pair.key.text
-            if key in RESERVED_ATTRIBUTES or key in _OWN or is_port_name(key):
+            if is_port_name(key) or key in _OWN or key in _KEPT:
                 continue
-            likely = near(key, RESERVED_ATTRIBUTES)
-            fixes = tuple(replace_fix(f"Replace `{key}` by `{name}`", pair.key.span, name) for name in likely)
-            message = f"`{key}` is no attribute that the engine reads: it ignores it without a word"
-            yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
+            likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
+            if not likely:
+                yield Diagnostic(
+                    "unknown-attribute",
+                    pair.key.span,
+                    f"the engine does not read `{key}`",
+                    notes=("it keeps it for the node's own code, from 4.7 on",),
+                    severity=Severity.HINT,
+                )
+            elif not (key in _OF_TODAY and _is_off(pair.value)):
+                fixes = tuple(replace_fix(f"Replace `{key}` by `{name}`", pair.key.span, name) for name in likely)
+                message = f"`{key}` is no attribute that the engine reads: it ignores it without a word"
+                yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
 
 
 def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two values for one attribute: the first counts."""
-    for pairs, label in _attribute_lists(entry):
-        first: dict[str, Span] = {"name": label} if label is not None else {}
+    for pairs, said_before in _attribute_lists(entry):
+        first: dict[str, Span] = {key: word.span for key, word in said_before.items() if word is not None}
         for pair in pairs:
             key = pair.key.text
             if key in first:
@@ -106,50 +128,145 @@ def is_placeholder(seen: SeenNode) -> bool:
     )
 
 
-def _port_names(view: View, seen: SeenNode) -> tuple[str, ...] | None:
+def is_case(seen: SeenNode, key: str) -> bool:
+    """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
+    is_switch = seen.kind is not None and seen.kind.tag.startswith("Switch")
+    return is_switch and key.startswith("case_") and key[5:].isdecimal()
+
+
+@record
+class _Port:
+    """A port that a node has, whoever says so."""
+
+    name: str
+    required: bool
+    doc: str
+
+
+def _ports(view: View, seen: SeenNode) -> tuple[_Port, ...] | None:
     """The ports a node has; None where nobody knows."""
     if is_placeholder(seen):
         return None
     if seen.is_subtree:
+        # The engine reads `default = ""` as none, and asks for outputs, too.
         declared = subtree_ports(view, seen)
-        return tuple(port.name.text for port in declared if port.name) if declared else None
+        return tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared) or None
     if seen.kind is not None:
-        return tuple(port.name for port in seen.kind.ports)
+        return _builtin_ports(seen.kind.tag)
     if seen.model is not None:
-        return tuple(port.name.text for port in seen.model.ports if port.name)
+        return tuple(
+            _declared_port(port, port.direction.raw == "input" and port.default is None) for port in seen.model.ports
+        )
     return None
 
 
+@cache
+def _builtin_ports(tag: str) -> tuple[_Port, ...]:
+    ports = BUILTINS[tag].ports
+    return tuple(_Port(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
+
+
+def _declared_port(port: Port, required: bool) -> _Port:
+    name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
+    return _Port(name.text if name else "", required and name is not None, port.text.text if port.text else "")
+
+
+def _meant(seen: SeenNode, known: tuple[_Port, ...]) -> dict[Word, tuple[str, ...]]:
+    """The keys that are no port, each with the ports that may be meant: none that has a value."""
+    names = {port.name for port in known}
+    given = {pair.key.text for pair in seen.node.attributes}
+    free = [port for port in known if port.name not in given]
+    found: dict[Word, tuple[str, ...]] = {}
+    for pair in seen.node.attributes:
+        key = pair.key.text
+        if key in names or key in _OWN or not is_port_name(key) or is_case(seen, key):
+            continue
+        old = OLD_PORTS.get((seen.kind.tag, key)) if seen.kind else None
+        likely = near(key, (port.name for port in free)) if len(found) * len(free) < _MOST_COMPARED else ()
+        found[pair.key] = (old,) if old else likely
+    strange = [key for key, likely in found.items() if not likely]
+    missing = [port.name for port in free if port.required]
+    if len(strange) == len(missing) == 1 and not any(missing[0] in likely for likely in found.values()):
+        found[strange[0]] = (missing[0],)  # `timeout_ms` can only be `msec`
+    return found
+
+
+def _forbidden_id(seen: SeenNode) -> Iterator[Diagnostic]:
+    """`-> (ID = x)`: the engine takes an ID in the explicit form only."""
+    node = seen.node
+    if node.kind is None or node.category is not None or (not node.kind.quoted and node.kind.raw in KNOWN_WORDS):
+        return
+    for pair in node.attributes:
+        if pair.key.text == "ID":
+            message = f"{seen.shown} takes no `ID`: the engine refuses it"
+            fix = replace_fix("Replace `ID` by `name`", pair.key.span, "name")
+            fixes = () if node.name is not None else (fix,)
+            yield Diagnostic("unknown-port", pair.key.span, message, fixes=fixes)
+
+
+def _remaps_all(seen: SeenNode) -> bool:
+    """Whether a SubTree gets every entry under its own name, or its writer thinks so: that is told."""
+    values = [seen.node.attribute(key) for key in ("_autoremap", *_OF_TODAY)]
+    return any(value is not None and not _is_off(value) for value in values)
+
+
+def _is_off(value: Word | None) -> bool:
+    return value is not None and value.text in ("false", "False", "FALSE", "0")
+
+
 def _declared(view: View, seen: SeenNode) -> tuple[Related, ...]:
-    return (view.defined_at(seen.definition, "its ports are declared here"),) if seen.definition else ()
+    definition = seen.definition
+    if seen.is_subtree and seen.node.id is not None:
+        definition = view.scope.find(Kind.TREE, seen.node.id.text)
+    return (view.defined_at(definition, "its ports are declared here"),) if definition else ()
 
 
-def _missing(view: View, seen: SeenNode, port: str, doc: str, severity: Severity | None) -> Diagnostic:
-    return Diagnostic(
-        "missing-port",
-        seen.node.head.span,
-        f"{seen.shown} needs a value for its port `{port}`",
-        related=_declared(view, seen),
-        notes=(f"`{port}`: {doc[0].lower()}{doc[1:]}",) if doc else (),
-        severity=severity,
-    )
+def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[_Port]) -> tuple[Fix, ...]:
+    """Give a custom node or a SubTree the blackboard entries that are called as its ports."""
+    if seen.kind is not None:
+        return ()
+    node = seen.node
+    pairs = " ".join(f"{written(port.name)} = {{=}}" for port in missing)
+    title = f"Pass on the entr{'y' if len(missing) == 1 else 'ies'} of the same name: `{pairs}`"
+    if node.attributes:
+        end = node.attributes[-1].span.end
+        return (replace_fix(title, Span(end, end), f" {pairs}"),)
+    end = (node.label or node.kind or node.head).end
+    behind = view.file.text[entry.start + end : entry.start + node.end].lstrip(" \t")
+    return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 
-def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], Span | None]]:
-    """Every list of attributes in an item, with the place of a label that is a `name` too."""
+def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
+    """Every list of attributes in an item, with what stands before the brackets and says an attribute, too."""
     item = entry.item
     if isinstance(item, Tree):
-        yield item.attributes, None
+        yield item.attributes, {"ID": item.name}
         for port in item.ports:
-            yield port.attributes, None
+            yield port.attributes, _said(port)
         for node in item.walk():
-            yield node.attributes, node.label.span if node.label else None
-    elif isinstance(item, Include | Root):
-        yield item.attributes, None
+            yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
+    elif isinstance(item, Include):
+        yield item.attributes, {"path": item.path}
+    elif isinstance(item, Root):
+        yield item.attributes, {"main_tree_to_execute": item.name}
     elif isinstance(item, Model | Models):
         for model in (item,) if isinstance(item, Model) else item.models:
             if isinstance(model, Model):
-                yield model.attributes, None
+                yield model.attributes, {"ID": model.name}
                 for part in model.body:
-                    if isinstance(part, Port | Meta):
-                        yield part.attributes, None
+                    if isinstance(part, Port):
+                        yield part.attributes, _said(part)
+                    elif isinstance(part, Meta):
+                        yield part.attributes, {}
+
+
+def _said(port: Port) -> dict[str, Word | None]:
+    return {"name": port.name, "type": port.type, "default": port.default}
+
+
+# At a node with hundreds of ports and as many mistakes nobody reads what each may mean.
+_MOST_COMPARED = 2_000
+
+# Version 3's attributes of a SubTree, and what does today what they did.
+_OF_TODAY = {"__shared_blackboard": "_autoremap", "__autoremap": "_autoremap"}
+_KEPT = frozenset(RESERVED_ATTRIBUTES) - frozenset(_OF_TODAY)

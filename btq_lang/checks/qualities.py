@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
+from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
+from btq_lang.checks.kinds import written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
-from btq_lang.near import near
+from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Qualities
+from btq_lang.text import Span
 
 
 def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -23,35 +25,41 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for use, match in _matches(view, entry):
         if match.kind != "unknown":
             continue
-        own = near(use.name, view.scope.names(Kind.QUALITY))
-        fixes = tuple(
-            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, name) for name in (*own, *match.near)[:3]
-        )
+        own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
+        meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
         yield Diagnostic(
             "unknown-quality",
             use.span,
-            f"`{use.name}` is no quality of {_edition(view)}",
-            notes=(f"a quality of your own is declared with a line `quality {use.name.rpartition('.')[2]}`",),
-            fixes=fixes,
+            f"`{use.name}` is no quality of {view.edition}",
+            notes=(f"a quality of your own is declared with a line `quality {written(_last(use))}`",),
+            fixes=tuple(
+                replace_fix(f"Replace `{use.name}` by `{name}`", _whole(view, entry, use), name) for name in meant
+            ),
         )
 
 
 def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An alias, or a name of the edition that was not chosen."""
     for use, match in _matches(view, entry):
-        if match.kind not in ("alias", "other-edition") or not match.candidates:
+        if match.kind not in ("alias", "other-edition"):
             continue
-        new = match.candidates[0].id
         is_alias = match.kind == "alias"
+        if match.safe:
+            new = match.candidates[0].id
+            message = f"`{use.name}` is another word for `{new}`"
+            if not is_alias:
+                message = f"`{use.name}` is called `{new}` in {view.edition}"
+        else:
+            message = f"`{use.name}` is no name of {view.edition}"
+        # "`x` is another word for y" says nothing new behind such a message.
+        notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
         yield Diagnostic(
             "old-quality-name",
             use.span,
-            f"`{use.name}` is another word for `{new}`"
-            if is_alias
-            else f"`{use.name}` is called `{new}` in {_edition(view)}",
-            notes=(match.explanation,) if match.explanation else (),
+            message,
+            notes=notes,
             fixes=tuple(
-                replace_fix(f"Replace it by `{candidate.id}`", use.span, candidate.id, safe=match.safe)
+                replace_fix(f"Replace it by `{candidate.id}`", _whole(view, entry, use), candidate.id, safe=match.safe)
                 for candidate in match.candidates[:3]
             ),
             tags=() if is_alias else (Tag.DEPRECATED,),
@@ -61,35 +69,40 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name with several meanings."""
     for use, match in _matches(view, entry):
-        if match.kind == "ambiguous":
-            yield Diagnostic(
-                "ambiguous-quality",
-                use.span,
-                f"`{use.name}` means several qualities",
-                notes=(match.explanation,) if match.explanation else (),
-                fixes=tuple(
-                    replace_fix(f"Replace it by `{candidate.id}`: {candidate.name}", use.span, candidate.id)
-                    for candidate in match.candidates[:4]
-                ),
-            )
+        if match.kind != "ambiguous":
+            continue
+        # The old name of a characteristic, `usability`, is read as what the characteristic is called now.
+        usual = match.candidates[0].id if match.candidates[0].id in successors(fold(use.name)) else None
+        yield Diagnostic(
+            "ambiguous-quality",
+            use.span,
+            f"`{use.name}` means several qualities" + (f"; it is read as `{usual}`" if usual else ""),
+            notes=(match.explanation,) if match.explanation else (),
+            fixes=tuple(
+                replace_fix(f"Replace it by `{candidate.id}`: {candidate.name}", _whole(view, entry, use), candidate.id)
+                for candidate in match.candidates[:4]
+            ),
+            severity=Severity.INFO if usual else None,
+        )
 
 
 def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
     """Each quality named in an entry, but those that the files in scope declare themselves."""
-    uses = tuple(view.uses(entry, Kind.QUALITY))
-    if not uses:
-        return
-    own = {fold(name) for name in view.scope.names(Kind.QUALITY)}
-    edition = EDITIONS[_edition(view)]
-    for use in uses:
-        words = tuple(use.name.split("."))
-        if fold(words[-1]) not in own:
-            yield use, find(words, edition)
+    for use in view.uses(entry, Kind.QUALITY):
+        if use.name and (match := view.quality(use.name)) is not None:
+            yield use, match
 
 
-def _edition(view: View) -> str:
-    """The edition that holds for the file."""
-    for entry in view.file.parsed.entries:
-        if isinstance(entry.item, Qualities) and entry.item.edition is not None and entry.item.edition.text in EDITIONS:
-            return entry.item.edition.text
-    return view.workspace.project.qualities
+def _whole(view: View, entry: Entry, use: Use) -> Span:
+    """The span to replace: of `performance <time-behavior>` with the `>`, which is no part of the name."""
+    text = view.file.text
+    end = entry.start + use.span.end
+    if "<" in text[entry.start + use.span.start : end]:
+        closing = text.find(">", end)
+        if closing >= 0 and not text[end:closing].strip():
+            return Span(use.span.start, closing + 1 - entry.start)
+    return use.span
+
+
+def _last(use: Use) -> str:
+    return use.name.rpartition(".")[2]

@@ -5,42 +5,45 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.checks.includes import include_fix
-from btq_lang.checks.kinds import written
+from btq_lang.checks.kinds import include_place, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
-from btq_lang.near import near
-from btq_lang.symbols import Kind, same_requirement
-from btq_lang.syntax import Claim, Entry, Requirement, Tree
+from btq_lang.symbols import Kind, Symbol, same_requirement
+from btq_lang.syntax import Claim, Entry, Requirement
 
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement that is named but defined nowhere."""
+    if not view.scope.complete:
+        return
     for use in view.uses(entry, Kind.REQUIREMENT):
-        if view.scope.find(Kind.REQUIREMENT, use.name) is not None or not view.scope.complete:
+        if view.scope.find(Kind.REQUIREMENT, use.name) is not None:
             continue
-        fixes = tuple(
-            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
-            for name in near(use.name, view.scope.names(Kind.REQUIREMENT))
-        )
         elsewhere = view.workspace.defined_anywhere(Kind.REQUIREMENT, use.name)
-        fixes += tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        fixes = tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        fixes += tuple(
+            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
+            for name in view.near(use.name, Kind.REQUIREMENT)
+        )
         message = f"no requirement `{use.name}` is defined here or in an included file"
         yield Diagnostic("unknown-requirement", use.span, message, fixes=fixes)
 
 
 def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """One ID with two texts; one ID with one text is one requirement in several places."""
+    for first, second in view.clashes(entry, Kind.REQUIREMENT):
+        if _differ(second.symbol, first.symbol):
+            related = (view.defined_at(first, _COUNTS), view.defined_at(second, "the other definition"))
+            message = f"this file brings a second requirement `{second.symbol.name}`, which says something else"
+            yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
     for symbol in view.file.summary_of(entry).symbols:
-        first = view.scope.find(symbol.kind, symbol.name)
-        if symbol.kind is not Kind.REQUIREMENT or first is None or first.symbol is symbol:
-            continue
-        target, other = symbol.target, first.symbol.target
-        if isinstance(target, Requirement) and isinstance(other, Requirement) and not same_requirement(target, other):
+        counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind is Kind.REQUIREMENT else None
+        if counts is not None and counts.symbol is not symbol and _differ(symbol, counts.symbol):
             yield Diagnostic(
                 "conflicting-requirement",
                 symbol.span,
                 f"the requirement `{symbol.name}` says something else in another place",
-                related=(view.defined_at(first, "the first definition, which counts"),),
+                related=(view.defined_at(counts, _COUNTS),),
                 notes=(
                     f"to refer to it, write `satisfies {written(symbol.name)}`; another requirement needs another ID",
                 ),
@@ -54,7 +57,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
         return
-    if not _has_trees(view):
+    if not view.trees:
         return  # a file of requirements: its users may be anywhere
     definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
     if definition is None or not view.is_this(definition, entry) or view.workspace.references(definition):
@@ -72,14 +75,28 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement with neither a text nor a clause."""
     for symbol in view.file.summary_of(entry).symbols:
         requirement = symbol.target
-        if not isinstance(requirement, Requirement) or requirement.clauses:
+        if not isinstance(requirement, Requirement) or not _is_empty(requirement):
             continue
-        if requirement.text is not None and requirement.text.text.strip():
-            continue
+        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+            continue  # what it says may be what could not be read
         message = f"the requirement `{symbol.name}` says nothing"
         note = "give it a text in quotes, or a clause such as `takes at most 30 s`"
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
-def _has_trees(view: View) -> bool:
-    return any(isinstance(entry.item, Tree) for entry in view.file.parsed.entries)
+_COUNTS = "the first definition, which counts"
+
+
+def _differ(symbol: Symbol, first: Symbol) -> bool:
+    """Whether two definitions contradict each other; one that says nothing is told for that."""
+    mine, other = symbol.target, first.target
+    return (
+        isinstance(mine, Requirement)
+        and isinstance(other, Requirement)
+        and not (_is_empty(mine) or _is_empty(other))
+        and not same_requirement(mine, other)
+    )
+
+
+def _is_empty(requirement: Requirement) -> bool:
+    return not requirement.clauses and (requirement.text is None or not requirement.text.text.strip())

@@ -1,5 +1,7 @@
 """`# btq: ignore[rule, …]`: a comment that silences rules on its line, or, alone on a line, on the next one.
 
+Such comments may follow each other: they all mean the first line behind them that is no comment.
+
 `# btq: ignore` without rules silences all of them there.
 """
 
@@ -12,24 +14,32 @@ from btq_lang.diagnostics import Diagnostic
 from btq_lang.tokens import COMMENT
 from btq_lang.workspace import File
 
-_IGNORE = re.compile(r"btq:\s*ignore(?:\[([^\]]*)\])?")
+_IGNORE = re.compile(r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?")
 
 
 def suppressed_lines(file: File) -> Callable[[Diagnostic], bool]:
     """Whether a comment of the file silences a diagnostic, whose span counts from the start of the file."""
-    silenced: dict[int, set[str] | None] = {}  # None: every rule
-    for token in file.parsed.tokens:
-        if token.kind == COMMENT and (match := _IGNORE.search(token.text)):
-            line = file.lines.position(token.start).line
-            alone = not file.text[: token.start].rpartition("\n")[2].strip()
-            rules = {rule.strip() for rule in match[1].split(",")} if match[1] is not None else None
-            silenced[line + 1 if alone else line] = rules
+    everything: set[int] = set()
+    silenced: dict[int, set[str]] = {}
+    meant: dict[int, int] = {}  # of lines that are only a comment: the line behind them that is more
+    for token in reversed(file.parsed.tokens):
+        if token.kind != COMMENT:
+            continue
+        start = file.lines.position(token.start)
+        line = start.line
+        if not file.lines.line(line)[: start.column].strip():
+            behind = file.lines.position(token.end).line + 1
+            line = meant[line] = meant.get(behind, behind)
+        match = _IGNORE.search(token.text)
+        if match is None or (match[1] and not match[3]):
+            continue
+        if match[2] is None:
+            everything.add(line)
+        else:
+            silenced.setdefault(line, set()).update(rule.strip() for rule in match[2].split(","))
 
     def suppressed(diagnostic: Diagnostic) -> bool:
         line = file.lines.position(diagnostic.span.start).line
-        if line not in silenced:
-            return False
-        rules = silenced[line]
-        return rules is None or diagnostic.rule in rules
+        return line in everything or diagnostic.rule in silenced.get(line, ())
 
     return suppressed

@@ -5,75 +5,97 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.checks.includes import include_fix
+from btq_lang.checks.includes import behind_includes, include_fix
+from btq_lang.checks.kinds import include_place, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.near import near
-from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Root, Tree, is_name, quote
+from btq_lang.symbols import Kind, Use
+from btq_lang.syntax import Entry, Model, Node, Root, Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Definition
+
+_LAST_WINS = "the engine does not complain: it runs the last one it reads"
 
 
 def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
-    if not isinstance(entry.item, Tree | Root):
+    for seen in view.nodes(entry):
+        word = seen.node.category
+        if seen.is_subtree and word is not None and seen.node.id is None and not seen.has_attribute("ID"):
+            yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
+    if not isinstance(entry.item, Tree | Root) or not view.scope.complete:
         return
     for use in view.uses(entry, Kind.TREE):
-        if view.scope.find(Kind.TREE, use.name) is not None or not view.scope.complete:
+        if use.name == "" or view.scope.find(Kind.TREE, use.name) is not None:
             continue
         elsewhere = view.workspace.defined_anywhere(Kind.TREE, use.name)
-        fixes = tuple(
-            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, _written(name))
-            for name in near(use.name, view.scope.names(Kind.TREE))
+        fixes = tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        fixes += tuple(
+            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
+            for name in view.near(use.name, Kind.TREE)
         )
-        fixes += tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
-        yield Diagnostic("unknown-tree", use.span, f"there is no tree `{use.name}`", fixes=fixes)
+        message = f"there is no tree `{use.name}` in this file or in those it includes"
+        model = view.scope.find(Kind.MODEL, use.name)
+        if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
+            message = f"`{use.name}` is a node, not a tree"
+            fixes = _as_node(use)
+        yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
 
 
 def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A tree whose ID another tree has already: the engine silently takes the last one."""
+    for first, second in view.clashes(entry, Kind.TREE):
+        yield Diagnostic(
+            "duplicate-tree",
+            include_place(entry),
+            f"this file brings a second tree `{second.symbol.name}`",
+            related=(view.defined_at(first, "the first one"), view.defined_at(second, "the second one")),
+            notes=(_LAST_WINS,),
+        )
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name
-    first = view.scope.find(Kind.TREE, name.text)
-    if first is not None and not view.is_this(first, entry):
+    first_one = view.scope.find(Kind.TREE, name.text)
+    if first_one is not None and not view.is_this(first_one, entry):
         yield Diagnostic(
             "duplicate-tree",
             name.span,
             f"there are two trees `{name.text}`",
-            related=(view.defined_at(first, "the first one"),),
-            notes=("the engine does not complain: it runs the last one it reads",),
+            related=(view.defined_at(first_one, "the first one"),),
+            notes=(_LAST_WINS,),
         )
 
 
 def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A tree that contains itself, told where the circle closes in this tree."""
+    """A tree that contains itself, told where the circle begins in the first of its trees."""
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name.text
-    for use in view.uses(entry, Kind.TREE):
-        circle = view.calls.way(use.name, name)
-        if circle is None or min((*circle, name), key=view.scope.names(Kind.TREE).index) != name:
-            continue  # a circle is told once, at the first of its trees
-        way = " → ".join(f"`{step}`" for step in (name, *circle))
-        yield Diagnostic(
-            "recursive-tree",
-            use.span,
-            f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 1 else ""),
-            notes=("the engine refuses it from 4.9 on and crashes before; repeat with Repeat or Retry instead",),
-        )
+    circle = view.calls.circle(name)
+    definition = view.scope.find(Kind.TREE, name)
+    if circle is None or definition is None or not view.is_this(definition, entry):
         return
+    use = next(use for use in view.uses(entry, Kind.TREE) if use.name == circle[1])
+    way = " → ".join(f"`{step}`" for step in circle)
+    yield Diagnostic(
+        "recursive-tree",
+        use.span,
+        f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else ""),
+        notes=("the engine refuses it from 4.9 on and crashes before; repeat with Repeat or Retry instead",),
+    )
 
 
 def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A tree that nothing refers to, or that only such trees refer to, in a file with a mission."""
     if not isinstance(entry.item, Tree) or entry.item.name is None or view.path in view.workspace.included_files:
         return
-    main = view.workspace.main_tree(view.path)
     name = entry.item.name
+    main = view.main_tree
+    definition = view.scope.find(Kind.TREE, name.text)
     if main is None or name.text in view.calls.reached_from(main.symbol.name):
         return
+    if definition is None or not view.is_this(definition, entry):
+        return  # another tree of that name counts, which is told
     users = view.calls.callers(name.text)
     if not users:
         message = f"nothing refers to the tree `{name.text}`, and the mission is `{main.symbol.name}`"
@@ -87,22 +109,15 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Several trees, and nothing says which of them is the mission; told at the first."""
-    file = view.file
-    if not isinstance(entry.item, Tree) or view.path in view.workspace.included_files:
+    if not view.trees or entry is not view.trees[0] or view.path in view.workspace.included_files:
         return
-    if any(isinstance(other.item, Root) for other in file.parsed.entries) or view.workspace.main_tree(view.path):
+    roots = [other for other in view.file.parsed.entries if isinstance(other.item, Root)]
+    if view.main_tree or any(use.kind is Kind.TREE for root in roots for use in view.file.summary_of(root).uses):
         return
-    trees = [(other, other.item.name) for other in file.parsed.entries if isinstance(other.item, Tree)]
-    named = [(tree.start, name) for tree, name in trees if name is not None]
-    if entry is not trees[0][0] or len(named) < 2:
-        return
-    if all(view.calls.callers(name.text) for _, name in named):
-        return  # each is run by another, so they run in circles, and that is told
+    named = [(tree.start, tree.item.name) for tree in view.trees if isinstance(tree.item, Tree) and tree.item.name]
     tops = [name for _, name in named if not view.calls.callers(name.text)]
-    start = Place(Span(0, 0), view.path)
-    fixes = tuple(
-        Fix(f"Make `{name.text}` the main tree", (Change(start, f"Root {_written(name.text)}\n"),)) for name in tops[:3]
-    )
+    if len(named) < 2 or not tops:
+        return  # without one at the top they run in circles, and that is told
     names = ", ".join(f"`{name.text}`" for name in tops)
     yield Diagnostic(
         "unknown-main-tree",
@@ -113,7 +128,7 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
             for begin, name in named[1:4]
         ),
         notes=("a line `Root <tree>` names the main tree",),
-        fixes=fixes,
+        fixes=tuple(_main_tree_fix(view, roots, name.text) for name in tops[:3]),
     )
 
 
@@ -128,12 +143,14 @@ def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             note = "a tree has one node at its top, in its block"
             yield Diagnostic("tree-root-count", place, "this tree has no node", notes=(note,))
         return
-    extra = tree.children[1]
+    first, extra = (
+        child.head.span if isinstance(child, Node) else Span(child.start, child.end) for child in tree.children[:2]
+    )
     yield Diagnostic(
         "tree-root-count",
-        Span(extra.start, extra.end),
+        extra,
         f"a tree has one node at its top, this one has {len(tree.children)}",
-        related=(Related(Place(Span(tree.children[0].start, tree.children[0].end)), "the first one"),),
+        related=(Related(Place(first), "the first one"),),
         notes=("put them under one node, a Sequence `->` for example",),
     )
 
@@ -156,8 +173,24 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _written(name: str) -> str:
-    return name if is_name(name) else quote(name)
+def _as_node(use: Use) -> tuple[Fix, ...]:
+    """`SubTree MoveBase`, where MoveBase is a node: without the word."""
+    node = use.node
+    if node is None or node.category is None or node.kind is None:
+        return ()
+    span = Span(node.category.start, node.kind.start)
+    return (replace_fix(f"Write `{node.kind.raw}` alone", span, ""),)
+
+
+def _main_tree_fix(view: View, roots: list[Entry], name: str) -> Fix:
+    """Name the main tree: in the Root that is there, or in a line of its own behind the includes."""
+    if roots and isinstance(roots[0].item, Root):
+        at = roots[0].start + roots[0].item.start + len("Root")
+        change = Change(Place(Span(at, at), view.path), f" {written(name)}")
+    else:
+        at, margin = behind_includes(view)
+        change = Change(Place(Span(at, at), view.path), f"{margin}Root {written(name)}\n")
+    return Fix(f"Make `{name}` the main tree", (change,))
 
 
 def _is_subtree_model(definition: Definition) -> bool:

@@ -5,16 +5,23 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cache, cached_property
+from typing import TYPE_CHECKING
 
-from btq_lang.catalog.nodes import NodeKind, lookup
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
+from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks.calls import Calls
 from btq_lang.diagnostics import Place, Related
+from btq_lang.near import near
 from btq_lang.record import record
 from btq_lang.symbols import Kind, Use
-from btq_lang.syntax import Entry, Model, Node, Port, Tree
+from btq_lang.syntax import Entry, Include, Model, Models, Node, Port, Qualities, Tree, Word, is_name
 from btq_lang.workspace import Definition, File, Scope, Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.checks.results import TreeResults
 
 
 @record
@@ -24,7 +31,7 @@ class SeenNode:
     Attributes:
         parent: the node whose child it is; None for a tree's own.
         index: which child of its parent it is.
-        kind: the built-in it is, if it is one.
+        kind: the built-in it is, if it is one; for an older engine's word the one of today.
         definition: its model, where one is in scope.
         category: as written, or as the built-in or the model has it; None where nobody says.
     """
@@ -51,6 +58,10 @@ class SeenNode:
     def is_subtree(self) -> bool:
         return self.category == "SubTree"
 
+    def has_attribute(self, key: str) -> bool:
+        """Whether the key is there, if only without a value."""
+        return any(pair.key.text == key for pair in self.node.attributes)
+
     def ancestors(self) -> Iterator[SeenNode]:
         """Its parent, the parent's parent, and so on."""
         above = self.parent
@@ -68,6 +79,9 @@ class View:
         self.file: File = workspace.files[path]
         self.scope: Scope = workspace.scope(path)
         self._nodes: dict[int, tuple[SeenNode, ...]] = {}
+        self._near: dict[tuple[Kind | None, str], tuple[str, ...]] = {}
+        self._compared = 0
+        self._qualities: dict[str, QualityMatch | None] = {}
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
@@ -83,9 +97,111 @@ class View:
         return (use for use in self.file.summary_of(entry).uses if use.kind is kind)
 
     @cached_property
+    def trees(self) -> tuple[Entry, ...]:
+        """The file's trees, in order."""
+        return tuple(entry for entry in self.file.parsed.entries if isinstance(entry.item, Tree))
+
+    @cached_property
+    def main_tree(self) -> Definition | None:
+        """The tree that runs when the engine loads the file."""
+        return self.workspace.main_tree(self.path)
+
+    @cached_property
+    def edition(self) -> str:
+        """The edition of the quality model that holds for the file."""
+        for entry in self.file.parsed.entries:
+            edition = entry.item.edition if isinstance(entry.item, Qualities) else None
+            if edition is not None and edition.text in EDITIONS:
+                return edition.text
+        return self.workspace.project.qualities
+
+    def quality(self, name: str) -> QualityMatch | None:
+        """What the catalog says of a quality's name; None for a quality that a file in scope declares."""
+        if name not in self._qualities:
+            words = tuple(name.split("."))
+            is_own = fold(words[-1]) in self._own_qualities
+            self._qualities[name] = None if is_own else find(words, EDITIONS[self.edition])
+        return self._qualities[name]
+
+    @cached_property
+    def _own_qualities(self) -> frozenset[str]:
+        return frozenset(map(fold, self.scope.names(Kind.QUALITY)))
+
+    @cached_property
+    def has_palette(self) -> bool:
+        """Whether the models in scope are meant to be all there are: a TreeNodesModel, or models of another file."""
+        for path in self.scope.paths:
+            for entry in self.workspace.files[path].parsed.entries:
+                if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
+                    return True
+                if path != self.path and _is_of_node(entry.item):
+                    return True
+        return False
+
+    @cached_property
+    def first_nodes(self) -> dict[str, Node]:
+        """The first node of the file for each ID that a node has."""
+        found: dict[str, Node] = {}
+        for summary in self.file.summaries:
+            for use in summary.uses:
+                if use.kind is Kind.MODEL and use.node is not None:
+                    found.setdefault(use.name, use.node)
+        return found
+
+    def near(self, word: str, kind: Kind | None) -> tuple[str, ...]:
+        """The names of a kind that look like a word that is none; a node may have a built-in's name, too.
+
+        In a file where hundreds of names are unknown nobody reads what each of them may mean, so at some point there
+        is no answer any more.
+
+        Args:
+            kind: None for the project's other files, as an include names them.
+        """
+        if (kind, word) not in self._near:
+            names = self.other_files if kind is None else self._names(kind)
+            self._compared += len(names)
+            self._near[kind, word] = near(word, names) if self._compared <= _MOST_COMPARED else ()
+        return self._near[kind, word]
+
+    def _names(self, kind: Kind) -> tuple[str, ...]:
+        names = self.scope.names(kind)
+        return (*_builtin_names(), *names) if kind is Kind.MODEL else names
+
+    @cached_property
+    def other_files(self) -> tuple[str, ...]:
+        """The project's other files, as an include in this one names them."""
+        folder = posixpath.dirname(self.path) or "."
+        return tuple(posixpath.relpath(other, folder) for other in self.workspace.files if other != self.path)
+
+    @cached_property
     def calls(self) -> Calls:
         """Which tree runs which, of all trees in scope."""
         return Calls(self.workspace, self.scope)
+
+    @cached_property
+    def results(self) -> TreeResults:
+        """What the nodes of a tree can return."""
+        from btq_lang.checks.results import TreeResults  # it asks views, too
+
+        return TreeResults(self)
+
+    @cached_property
+    def placeholders(self) -> dict[str, tuple[str, Entry, Word]]:
+        """The first placeholder in scope that becomes each ID: its file, its tree and its name."""
+        from btq_lang.checks.placeholders import first_placeholders  # it asks views, too
+
+        return first_placeholders(self)
+
+    @cached_property
+    def node_names(self) -> frozenset[str]:
+        """Every name in scope by which a path can name a node: of trees, of kinds and of instances."""
+        found: set[str] = set()
+        for path in self.scope.paths:
+            for entry in self.workspace.files[path].parsed.entries:
+                if isinstance(entry.item, Tree):
+                    words = [entry.item.name, *(word for node in entry.item.walk() for word in (node.id, node.name))]
+                    found.update(word.text for word in words if word is not None)
+        return frozenset(found)
 
     def _seen(self, tree: Tree) -> Iterator[SeenNode]:
         waiting: list[tuple[Node, SeenNode | None, int]] = []
@@ -105,11 +221,36 @@ class View:
             kind = lookup(name.text, name.quoted, len(node.nodes))
             if kind is None:
                 definition = self.scope.find(Kind.MODEL, name.text)
+            if kind is None and definition is None and not name.quoted and name.text in KNOWN_WORDS:
+                kind = BUILTINS.get(KNOWN_WORDS[name.text].replacement or "")
         if category is None and kind is not None:
             category = kind.category
         elif category is None and definition is not None and isinstance(model := definition.symbol.target, Model):
             category = model.category.raw
         return SeenNode(node, tree, parent, index, kind, definition, category)
+
+    def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
+        """The names that a file included here and one included before it both define, each with the definition that
+        counts and the other one.  Neither file can see the other, so nobody else says it."""
+        for first, second in self._clashes.get(id(entry), ()):
+            if second.symbol.kind in kinds:
+                yield first, second
+
+    @cached_property
+    def _clashes(self) -> dict[int, list[tuple[Definition, Definition]]]:
+        found: dict[int, list[tuple[Definition, Definition]]] = {}
+        includes = [entry for entry in self.file.parsed.entries if isinstance(entry.item, Include)]
+        before: set[str] = set()
+        for entry in includes if len(includes) > 1 else ():
+            target = self.workspace.included_by(self.path, entry.item) if isinstance(entry.item, Include) else None
+            brought = self.workspace.closure(target) if target is not None else ()
+            for path in brought if before else ():
+                for definition in self.workspace.defined_in(path) if path not in before else ():
+                    first = self.scope.find(definition.symbol.kind, definition.symbol.name)
+                    if first is not None and first.path in before and first.path not in brought:
+                        found.setdefault(id(entry), []).append((first, definition))
+            before.update(brought)
+        return found
 
     def place(self, definition: Definition) -> Place:
         """Where a definition's name stands, to be shown beside a diagnostic."""
@@ -133,6 +274,25 @@ def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
         if definition is not None and isinstance(target := definition.symbol.target, Tree | Model) and target.ports:
             return target.ports
     return ()
+
+
+def called(node: Node) -> str:
+    """A node as a message names it among others: its kind and its instance name."""
+    name = node.name
+    return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
+
+
+def _is_of_node(item: object) -> bool:
+    return isinstance(item, Model) and item.category.raw != "SubTree"
+
+
+@cache
+def _builtin_names() -> tuple[str, ...]:
+    return tuple(word for kind in BUILTINS.values() for word in spellings(kind) if is_name(word))
+
+
+# How many names one file's misspelt ones are compared with: 30 ms of work, a second where all look alike (rq_0001 …).
+_MOST_COMPARED = 20_000
 
 
 def _numbered(children: tuple[object, ...]) -> list[tuple[int, Node]]:

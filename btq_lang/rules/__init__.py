@@ -70,17 +70,17 @@ _TABLE = (
     Rule("child-count", _E, "more or fewer children than the node takes"),
     Rule("switch-cases", _E, "a Switch whose cases and children do not match"),
     Rule("parallel-threshold", _E, "a Parallel threshold that its children cannot reach"),
-    Rule("duplicate-instance-name", _W, "two nodes of one tree with the same name"),
+    Rule("duplicate-instance-name", _H, "two nodes of one tree with the same name"),
     Rule("forbidden-name", _E, "a name that the engine refuses"),
     Rule("classic-placeholder", _H, "a ScriptAction or ScriptCondition without code that stands for a skill"),
-    Rule("placeholder-clash", _E, "two placeholders whose names become the same node ID"),
+    Rule("placeholder-clash", _E, "a placeholder whose name becomes a node ID that is taken"),
     # Trees and files.
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
     Rule("duplicate-tree", _E, "two trees with one ID"),
     Rule("recursive-tree", _E, "a tree that contains itself"),
     Rule("unused-tree", _W, "a tree that nothing refers to"),
-    Rule("unreachable-tree", _W, "a tree that only unused trees refer to"),
-    Rule("unknown-main-tree", _E, "no way to tell which tree is the mission"),
+    Rule("unreachable-tree", _H, "a tree that only unused trees refer to"),
+    Rule("unknown-main-tree", _W, "no way to tell which tree is the mission"),
     Rule("tree-named-like-node", _E, "a tree whose ID is the name of a node"),
     Rule("missing-include", _E, "an included file that cannot be found"),
     Rule("cyclic-include", _E, "a file that includes itself: the engine crashes"),
@@ -104,7 +104,7 @@ _TABLE = (
     Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent goes on as if it had succeeded"),
     Rule("unreachable-child", _W, "a child that can never run"),
-    Rule("condition-without-recheck", _W, "a condition behind a memory Fallback that cannot interrupt what runs"),
+    Rule("condition-without-recheck", _H, "a condition behind a memory Fallback that cannot interrupt what runs"),
 )
 
 RULES = {rule.name: rule for rule in _TABLE}

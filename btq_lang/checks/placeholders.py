@@ -1,0 +1,152 @@
+"""Classic placeholders: script nodes without code, which stand for skills (language.md §4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from btq_lang.catalog.names import legal_name
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
+from btq_lang.checks.ports import is_placeholder
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.clauses import HEADS, VERBS
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.near import near
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Node, Pair, Word, is_name, quote
+from btq_lang.text import Span
+from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+
+_BLANKS = " \t"
+_WHITE = " \t\r\n"
+# Words that mean something else where a node's kind, or its label, may stand.
+_NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERBS | {"xml"}
+
+
+def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A placeholder, with the same in the short form."""
+    for seen in view.nodes(entry):
+        if not is_placeholder(seen) or seen.node.name is None or seen.node.kind is None:
+            continue
+        name = legal_name(seen.node.name.text)
+        if _taken(view, name) is not None:
+            continue  # told as a clash
+        what = "the condition" if seen.category == "Condition" else "the action"
+        fix = _short_form(view, entry, seen, name)
+        yield Diagnostic(
+            "classic-placeholder",
+            seen.node.kind.span,
+            f"`{seen.node.kind.text}` without code stands for {what} `{name}`",
+            fixes=(fix,) if fix is not None else (),
+        )
+
+
+def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A name that becomes an ID which another name has become already, or which is taken."""
+    for seen in view.nodes(entry):
+        name = seen.node.name
+        if name is None or not is_placeholder(seen):
+            continue
+        legal = legal_name(name.text)
+        taken = _taken(view, legal)
+        path, other_entry, other = view.placeholders.get(legal, (view.path, entry, name))
+        if taken is not None:
+            yield Diagnostic("placeholder-clash", name.span, f"`{name.text}` becomes the node ID `{legal}`, {taken}")
+        elif other.text != name.text:
+            yield Diagnostic(
+                "placeholder-clash",
+                name.span,
+                f"`{other.text}` and `{name.text}` both become the node ID `{legal}`",
+                related=(Related(Place(other.span, path, other_entry.item), "the first one"),),
+            )
+
+
+def first_placeholders(view: View) -> dict[str, tuple[str, Entry, Word]]:
+    """The first placeholder in scope that becomes each ID: its file, its tree and its name."""
+    found: dict[str, tuple[str, Entry, Word]] = {}
+    for path in view.scope.paths:
+        for entry in view.workspace.files[path].parsed.entries:
+            for seen in view.nodes(entry):
+                if is_placeholder(seen) and (name := seen.node.name) is not None:
+                    found.setdefault(legal_name(name.text), (path, entry, name))
+    return found
+
+
+def _taken(view: View, name: str) -> str | None:
+    """Why a placeholder cannot become a node of this ID."""
+    if name in BUILTINS:
+        return "which is a node of the engine"
+    return "which is the name of a tree" if view.scope.find(Kind.TREE, name) is not None else None
+
+
+def _short_form(view: View, entry: Entry, seen: SeenNode, name: str) -> Fix | None:
+    """`MoveBase (…)`, `Condition BatteryLow "BatteryLow?"`; None where what stands around the name is unusual.
+
+    It is safe where no models are in scope: with models the node would be held against them.
+    """
+    node = seen.node
+    if entry.diagnostics or node.children or node.kind is None or node.name is None:
+        return None
+    head = _as_kind(name)
+    if seen.category == "Condition" or _looks_like_builtin(name):
+        head = f"{seen.category} {head}"
+    if node.name.text != name:
+        head = f"{head} {_as_label(node.name)}"
+    changes = _replace_head(view.file.text, entry.start, node, head)
+    if changes is None:
+        return None
+    return Fix(f"Write `{head}`", changes, not view.scope.names(Kind.MODEL))
+
+
+def _as_kind(name: str) -> str:
+    is_plain = is_name(name) and name not in _NOT_A_KIND and lookup(name) is None and name not in KNOWN_WORDS
+    return name if is_plain else quote(name)
+
+
+def _as_label(name: Word) -> str:
+    return name.raw if name.quoted or (is_name(name.raw) and name.raw not in _NOT_A_KIND) else quote(name.text)
+
+
+@lru_cache(1000)
+def _looks_like_builtin(name: str) -> bool:
+    """Whether a node of that name would be taken for a misspelt one of the engine's."""
+    return bool(near(name, (spelling for kind in BUILTINS.values() for spelling in spellings(kind))))
+
+
+def _replace_head(text: str, base: int, node: Node, head: str) -> tuple[Change, ...] | None:
+    """Put `head` where the kind and the name stand; `base` is where the item begins in the text."""
+    assert node.kind is not None, "a placeholder has a kind"
+    names = [pair for pair in node.attributes if pair.key.text == "name"]
+    if node.label is not None:
+        if names or text[base + node.kind.end : base + node.label.start].strip(_BLANKS):
+            return None
+        return (Change(Place(Span(node.kind.start, node.label.end)), head),)
+    if len(names) != 1 or names[0] is not node.attributes[0]:
+        return None
+    return _without_name(text, base, node.kind, names[0], head)
+
+
+def _without_name(text: str, base: int, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
+    """Replace the kind and take the name out of the brackets, where it is the first thing; empty ones go, too."""
+    start, end = base + name.span.start, base + name.span.end
+    if text[base + kind.end : start].strip(_WHITE) != "(":
+        return None
+    end = _behind(text, end, _BLANKS)
+    if text[end : end + 1] == ",":
+        end = _behind(text, end + 1, _BLANKS)
+    following = _behind(text, end, _WHITE)
+    if text[following : following + 1] == ")":
+        return (Change(Place(Span(kind.start, following + 1 - base)), head),)
+    line = start
+    while line > 0 and text[line - 1] in _BLANKS:
+        line -= 1
+    if text[end : end + 1] in ("\r", "\n") and text[line - 1] in "\r\n":
+        start = line  # the name has a line of its own
+        end += 2 if text.startswith("\r\n", end) else 1
+    return Change(Place(kind.span), head), Change(Place(Span(start - base, end - base)), "")
+
+
+def _behind(text: str, at: int, blanks: str) -> int:
+    while at < len(text) and text[at] in blanks:
+        at += 1
+    return at

@@ -1,0 +1,82 @@
+"""`_failureIf`, `_successIf` and `_while` on nodes that run over several ticks, where they do not do what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.statuses import RUNNING
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry
+
+_SKIPPED_IS_SUCCESS = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory", "TryCatch"))
+_PASS_SKIPPED_ON = frozenset(
+    ("Inverter", "ForceSuccess", "ForceFailure", "Timeout", "Delay", "Repeat", "RetryUntilSuccessful", "RunOnce")
+)
+
+
+def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`_failureIf`, which is asked once, on a node that runs; `_successIf` is a hint, for "do it unless it is done" is
+    what most people use it for."""
+    for seen in view.nodes(entry):
+        for pair in seen.node.attributes:
+            key = pair.key.text
+            if key not in ("_failureIf", "_successIf") or not view.results.of(entry, seen.node).ever & RUNNING:
+                continue
+            if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
+                continue
+            is_failure = key == "_failureIf"
+            watched = "`R->` with a ScriptCondition in front of it, or a requirement with `keeps`"
+            if not is_failure:
+                watched = "`R?` with a ScriptCondition in front of it"
+            start = "a requirement with `needs`, or `->`" if is_failure else "`?`"
+            yield Diagnostic(
+                "one-shot-monitor",
+                pair.key.span,
+                f"`{key}` is asked once, when {seen.shown} starts, and not while it runs",
+                notes=(
+                    f"{watched} asks at every tick",
+                    f"where it is to be asked once, {start} with a ScriptCondition in front of it says so",
+                ),
+                severity=None if is_failure else Severity.HINT,
+            )
+
+
+def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`_while` on a step of a Sequence: when it becomes false the step is halted, and the next one begins.
+
+    Where another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is meant.
+    """
+    for seen in view.nodes(entry):
+        pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
+        if pair is None or not view.results.of(entry, seen.node).ever & RUNNING:
+            continue
+        step = seen
+        while step.parent is not None and step.parent.kind is not None and step.parent.kind.tag in _PASS_SKIPPED_ON:
+            step = step.parent
+        parent = step.parent
+        if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
+            continue
+        yield Diagnostic(
+            "while-skip-is-success",
+            pair.key.span,
+            f"when `_while` becomes false, {seen.shown} is halted and {parent.shown} goes on as if it had succeeded",
+            notes=(
+                "a halted node is SKIPPED, and a Sequence takes that for done",
+                "to fail instead: `R->` with a ScriptCondition in front of it, or a requirement with `keeps`",
+            ),
+        )
+
+
+def _takes_for_success(parent: SeenNode, step: SeenNode) -> bool:
+    if parent.kind is None or parent.kind.tag not in _SKIPPED_IS_SUCCESS:
+        return False
+    return parent.kind.tag != "TryCatch" or step.index + 1 < len(parent.node.children)
+
+
+def _is_choice(parent: SeenNode, step: SeenNode) -> bool:
+    return any(
+        other is not step.node and (other.attribute("_while") is not None or other.attribute("_skipIf") is not None)
+        for other in parent.node.nodes
+    )

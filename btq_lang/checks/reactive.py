@@ -1,0 +1,138 @@
+"""Children that run over several ticks: what a reactive node does to them, and what a node with a memory does not.
+
+A Sequence or Fallback goes on with the child that is running; a reactive one begins with its first child at every tick
+and halts what it does not reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.kinds import at_least
+from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btq_lang.checks.view import SeenNode, View, called
+from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Node, Word, quote
+
+_SEQUENCES = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory"))
+
+
+def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A child of a reactive node that runs behind another one that runs: a warning where the other one certainly takes
+    more than a tick, a hint where it does if a custom action does."""
+    for seen in view.nodes(entry):
+        if seen.kind is None or not seen.kind.reactive:
+            continue
+        refused = _second_async_sequence(seen, view.workspace.project.target)
+        if refused is not None:
+            yield refused
+            continue
+        goes_on = SKIPPED | (SUCCESS if seen.kind.tag == "ReactiveSequence" else FAILURE)
+        first: Node | None = None
+        surely = False
+        for child in seen.node.nodes:
+            results = view.results.of(entry, child)
+            if first is not None and results.ever & RUNNING:
+                yield _never_gets_further(seen, first, child, surely)
+                break
+            if first is None and not results.usual & goes_on and results.ever & goes_on:
+                first = child
+                surely = not results.first & goes_on
+
+
+def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
+    if view.main_tree is None or not view.is_this(view.main_tree, entry):
+        return
+    nodes = {id(seen.node): seen for seen in view.nodes(entry)}
+    for seen in nodes.values():
+        if seen.kind is None or seen.kind.tag not in ("Fallback", "AsyncFallback") or not _is_at_the_top(seen):
+            continue
+        guard: SeenNode | None = None
+        for child in seen.node.nodes:
+            if guard is not None and view.results.of(entry, child).usual & RUNNING:
+                yield _not_asked_again(seen, guard, child)
+                break
+            guard = guard or _guard(nodes, nodes[id(child)])
+
+
+def _second_async_sequence(seen: SeenNode, version: str) -> Diagnostic | None:
+    """The engine looks for these tags alone, and for children alone."""
+    found = [child for child in seen.node.nodes if child.kind is not None and child.kind.text in _ASYNC_SEQUENCE]
+    if seen.kind is None or seen.kind.tag != "ReactiveSequence" or len(found) < 2 or not at_least(version, "4.7"):
+        return None
+    return Diagnostic(
+        "reactive-multiple-async",
+        found[1].head.span,
+        f"the engine refuses a second AsyncSequence in {seen.shown}",
+        related=(Related(Place(found[0].head.span), "the first one"),),
+        severity=Severity.ERROR,
+    )
+
+
+def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) -> Diagnostic:
+    other, this = called(first), called(child)
+    message = f"{this} never gets further than one tick: {other} then starts again and halts it"
+    if not surely:
+        message = f"if {other} takes longer than one tick, it starts again whenever {this} is RUNNING, and halts it"
+    return Diagnostic(
+        "reactive-multiple-async",
+        child.head.span,
+        message,
+        related=(Related(Place(first.head.span), "what starts again"),),
+        notes=(
+            f"at every tick {seen.shown} begins with its first child, and a child that is RUNNING halts all others",
+            f"only the last child of {seen.shown} should take its time; put the steps of a plan into a `->`",
+        ),
+        severity=None if surely else Severity.HINT,
+    )
+
+
+def _is_at_the_top(seen: SeenNode) -> bool:
+    """Whether nothing but decorators and reactive nodes stands above: elsewhere a choice is part of a longer plan, and
+    meant to be made once."""
+    for above in seen.ancestors():
+        if above.category != "Decorator" and not (above.kind is not None and above.kind.reactive):
+            return False
+    return True
+
+
+def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
+    """The condition in front of a branch `-> [condition, …]`; a condition alone is no branch: what follows it in the
+    Fallback brings about what it asks for."""
+    if branch.kind is None or branch.kind.tag not in _SEQUENCES or len(branch.node.children) < 2:
+        return None
+    seen: SeenNode | None = branch
+    while seen is not None and seen.category != "Condition":
+        inside = seen is branch or (seen.kind is not None and seen.kind.tag in (*_SEQUENCES, "Inverter"))
+        first = seen.node.children[0] if inside and seen.node.children else None
+        seen = nodes.get(id(first))
+    return seen
+
+
+def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node) -> Diagnostic:
+    kind = seen.node.head
+    return Diagnostic(
+        "condition-without-recheck",
+        kind.span,
+        f"while {called(branch)} runs, {called(guard.node)} is not asked again",
+        related=(
+            Related(Place(guard.node.head.span), "asked once, and then no more until the Fallback has completed"),
+            Related(Place(branch.head.span), "not interrupted"),
+        ),
+        notes=(
+            f"{seen.shown} goes on with the child that is running; `R?` begins with the first one at every tick",
+            "that is right where the choice is to be made once",
+        ),
+        fixes=(replace_fix("Ask at every tick: `R?`", kind.span, _reactive(kind)),),
+    )
+
+
+def _reactive(kind: Word) -> str:
+    if kind.quoted:
+        return quote("ReactiveFallback")
+    return "ReactiveFallback" if kind.text.isalpha() else "R?"
+
+
+_ASYNC_SEQUENCE = frozenset(("AsyncSequence", "A->", "A→"))

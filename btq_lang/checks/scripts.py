@@ -1,0 +1,59 @@
+"""Scripts in attributes and ports: refused by the engine, empty, or read differently by its versions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.strings import moved
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.record import replace
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Pair, Word
+
+
+def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """What is wrong with a script, in any version that the project is for: script-error, empty-script,
+    script-version."""
+    project = view.workspace.project
+    for seen in view.nodes(entry):
+        for pair in seen.node.attributes:
+            expects_value = _expects_value(seen, pair)
+            if expects_value is None or pair.value is None:
+                continue
+            for problem in _problems(pair.value.text, project.engines, expects_value):
+                found = moved(problem, pair.value)
+                if problem.rule == "empty-script":
+                    yield _empty(seen, pair.value, found)
+                elif problem.rule == "script-version" and not project.pinned:
+                    pin = f'if that is what you run, say `engine = "{project.target}"` in btq.toml'
+                    yield replace(found, notes=(*found.notes, pin))
+                else:
+                    yield found
+
+
+def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
+    """Whether a script in this attribute has to give a value, as a condition has; None: it holds no script."""
+    key = pair.key.text
+    attribute = RESERVED_ATTRIBUTES.get(key)
+    if attribute is not None:
+        return attribute.group == "pre" if attribute.is_script else None
+    port = seen.kind.port(key) if seen.kind is not None else None
+    if port is None or port.content != "script" or (pair.value is not None and is_pointer(pair.value.text)):
+        return None
+    return seen.kind is not None and seen.kind.tag != "Script"
+
+
+def _problems(script: str, versions: tuple[str, ...], expects_value: bool) -> tuple[Diagnostic, ...]:
+    from btq_lang.script import check_script, parse_script  # most files have no script, and it is large
+
+    return check_script(parse_script(script), versions=versions, expects_value=expects_value)
+
+
+def _empty(seen: SeenNode, value: Word, found: Diagnostic) -> Diagnostic:
+    """The whole value is the place; the engine runs a Script without any character, and refuses all others."""
+    if seen.kind is not None and seen.kind.tag == "Script" and value.text == "":
+        return replace(found, span=value.span, message="this script does nothing", severity=Severity.WARNING)
+    return replace(found, span=value.span)

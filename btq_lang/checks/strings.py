@@ -1,0 +1,63 @@
+"""Places inside a value: from the text that a STRING says back to the source that says it.
+
+One invariant: the characters of a value's text and the pieces of its source correspond one to one and in order, an
+escape or a line end of two characters being one piece.
+"""
+
+from __future__ import annotations
+
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.record import replace
+from btq_lang.syntax import Word, quote
+from btq_lang.text import Edit, Span, apply_edits
+
+_ESCAPED = frozenset("\"'\\nt")
+
+
+def in_source(word: Word, span: Span) -> Span:
+    """Where a part of a value's text stands, counted as the value is."""
+    if not word.quoted:
+        return span.shifted(word.start)
+    if "\\" not in word.raw and "\r" not in word.raw:
+        return span.shifted(word.start + 1)
+    starts = _starts(word)
+    return Span(starts[span.start], starts[span.end])
+
+
+def moved(diagnostic: Diagnostic, word: Word) -> Diagnostic:
+    """A diagnostic that counts from the start of a value's text, with its fixes, as one of the value."""
+    return replace(
+        diagnostic,
+        span=in_source(word, diagnostic.span),
+        related=tuple(
+            Related(Place(in_source(word, related.place.span)), related.message) for related in diagnostic.related
+        ),
+        fixes=tuple(Fix(fix.title, _changes(fix.changes, word), fix.safe) for fix in diagnostic.fixes),
+    )
+
+
+def _changes(changes: tuple[Change, ...], word: Word) -> tuple[Change, ...]:
+    """In a STRING each change where it belongs; another value needs quotes, once something is changed in it."""
+    if word.quoted:
+        sign = word.raw[0]
+        return tuple(
+            Change(Place(in_source(word, change.place.span)), _escaped(change.text, sign)) for change in changes
+        )
+    text = apply_edits(word.text, (Edit(change.place.span, change.text) for change in changes))
+    return (Change(Place(word.span), quote(text)),)
+
+
+def _escaped(text: str, sign: str) -> str:
+    return text.replace("\\", "\\\\").replace(sign, f"\\{sign}").replace("\t", "\\t")
+
+
+def _starts(word: Word) -> list[int]:
+    """Where each character of the text begins in the source, and where the last one ends."""
+    raw = word.raw
+    starts = []
+    at = 1
+    for _ in word.text:
+        starts.append(word.start + at)
+        pair = raw[at : at + 2]
+        at += 2 if pair == "\r\n" or (pair[:1] == "\\" and pair[1:] and pair[1] in _ESCAPED) else 1
+    return [*starts, word.start + at]

@@ -1,0 +1,110 @@
+"""Children that can never run, because of what those before them return or because of their parent's attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
+from btq_lang.checks.view import SeenNode, View, called
+from btq_lang.diagnostics import Diagnostic, Place, Related, Tag
+from btq_lang.syntax import Entry, Node, Verbatim
+from btq_lang.text import Span
+
+_GOES_ON = {
+    "Sequence": SUCCESS,
+    "ReactiveSequence": SUCCESS,
+    "AsyncSequence": SUCCESS,
+    "SequenceWithMemory": SUCCESS,
+    "Fallback": FAILURE,
+    "ReactiveFallback": FAILURE,
+    "AsyncFallback": FAILURE,
+}
+_BY_CONDITION = frozenset(("IfThenElse", "WhileDoElse"))
+
+
+def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A child that can never run; told once for all those behind one place."""
+    for seen in view.nodes(entry):
+        if seen.kind is None or len(seen.node.children) < 2:
+            continue
+        tag = seen.kind.tag
+        if tag in _GOES_ON:
+            found = _behind(view, entry, seen, seen.node.children, _GOES_ON[tag])
+        elif tag == "TryCatch":
+            found = _in_try_catch(view, entry, seen)
+        elif tag in _BY_CONDITION:
+            found = _by_condition(view, entry, seen)
+        elif tag.startswith("Switch"):
+            found = _in_switch(seen)
+        else:
+            continue
+        if found is not None:
+            yield found
+
+
+def _behind(
+    view: View, entry: Entry, seen: SeenNode, children: tuple[Node | Verbatim, ...], goes_on: int
+) -> Diagnostic | None:
+    """The child behind one that can only end the node."""
+    for child, following in pairwise(children):
+        if isinstance(child, Node) and not view.results.of(entry, child).ever & (goes_on | SKIPPED):
+            never = "succeeds" if goes_on == SUCCESS else "fails"
+            return _unreachable(following, f"{_shown(child)} before it never {never}", child)
+    return None
+
+
+def _in_try_catch(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
+    """The last child is the one that cleans up, after a failure and perhaps after a halt."""
+    *tried, last = seen.node.children
+    found = _behind(view, entry, seen, tuple(tried), SUCCESS)
+    if found is not None or seen.node.attribute("catch_on_halt") is not None:
+        return found
+    if any(view.results.of(entry, child).ever & FAILURE for child in tried):
+        return None
+    return _unreachable(last, "nothing before it can fail", None)
+
+
+def _by_condition(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
+    condition, *branches = seen.node.children
+    results = view.results.of(entry, condition).ever
+    if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):
+        return None
+    if not results & SUCCESS:
+        return _unreachable(branches[0], f"the condition {_shown(condition)} never succeeds", condition)
+    if not results & FAILURE and len(branches) > 1:
+        return _unreachable(branches[1], f"the condition {_shown(condition)} never fails", condition)
+    return None
+
+
+def _in_switch(seen: SeenNode) -> Diagnostic | None:
+    """A case that an earlier one has already, or that a literal variable does not name."""
+    variable = seen.node.attribute("variable")
+    if variable is None:
+        reason = f"{seen.shown} has no `variable`, so it runs its last child"
+        return _unreachable(seen.node.children[0], reason, None)
+    first: set[str] = set()
+    for number, child in enumerate(seen.node.children[:-1], 1):
+        case = seen.node.attribute(f"case_{number}")
+        if case is None or is_pointer(case.text):
+            continue
+        if case.text in first:
+            return _unreachable(child, f"an earlier case is `{case.text}` already", None)
+        first.add(case.text)
+    return None
+
+
+def _unreachable(child: Node | Verbatim, reason: str, culprit: Node | None) -> Diagnostic:
+    span = child.head.span if isinstance(child, Node) else Span(child.start, child.end)
+    return Diagnostic(
+        "unreachable-child",
+        span,
+        f"{_shown(child)} can never run: {reason}",
+        related=(Related(Place(culprit.head.span), "because of this"),) if culprit is not None else (),
+        tags=(Tag.UNNECESSARY,),
+    )
+
+
+def _shown(child: Node | Verbatim) -> str:
+    return called(child) if isinstance(child, Node) else "this element"

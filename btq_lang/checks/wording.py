@@ -1,0 +1,127 @@
+"""What a sentence about a bound says as a clause: "shall take at most 30 sec" is `takes at most 30 s`.
+
+One invariant: there is an answer only where the sentence has one number, with a unit, one comparison, and no word that
+could change what it says (and, or, if, per, average …).  It knows no file; what is measured is given to it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from btq_lang.units import Dimension, parse_unit
+
+
+def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]) -> str | None:
+    """The clause that says what a sentence says; None where it is not plain.
+
+    Args:
+        violates: the sentence says when the requirement is violated, not when it is met.
+        signals: what is measured, with the dimension of its unit.
+    """
+    sentence = " ".join(sentence.split())
+    words = frozenset(_WORD.findall(sentence.lower()))
+    found = _bound_pattern().search(sentence)
+    if found is None or len(_NUMBER.findall(sentence)) != 1 or words & _QUALIFIERS:
+        return None
+    comparison = found["comparison"].lower()
+    relation = _COMPARISONS[comparison]
+    for turned in (found["negation"] is not None, violates):
+        relation = _OPPOSITE[relation] if turned else relation
+    if found["unit"].lower() in _TRIES:
+        counts = found["number"].isdecimal() and relation in ("<=", "<")
+        return f"tries {_BOUNDS[relation]} {found['number']}" if counts else None
+    unit = parse_unit(found["unit"])
+    if unit is None:
+        return None
+    quantity = f"{found['number']} {unit.symbol}"
+    if unit.dimension != _time():
+        return _measured(words, relation, quantity, [name for name, of in signals.items() if of == unit.dimension])
+    if comparison == "within":
+        return f"succeeds within {quantity}" if relation == "<=" else None
+    is_duration = comparison in ("longer than", "shorter than") or words & _DURATIONS
+    return f"takes {_BOUNDS[relation]} {quantity}" if is_duration else None
+
+
+def _measured(words: frozenset[str], relation: str, quantity: str, signals: list[str]) -> str | None:
+    """A bound of the one signal that the sentence names."""
+    named = [name for name in signals if words.issuperset(_WORD.findall(name.lower()))]
+    if len(named) != 1:
+        return None
+    if words & _USES and relation in ("<=", "<"):
+        return f"uses {_BOUNDS[relation]} {quantity} of {named[0]}"
+    return f"{'leaves' if words & _AT_THE_END else 'keeps'} {named[0]} {relation} {quantity}"
+
+
+@cache
+def _bound_pattern() -> re.Pattern[str]:
+    """`not take longer than 30 sec`, `at least a battery capacity of 3%`"""
+    comparisons = "|".join(words.replace(" ", r"\s") for words in sorted(_COMPARISONS, key=len, reverse=True))
+    return re.compile(
+        r"(?:\b(?P<negation>not|never|no|cannot|without)\s(?:[a-z]+\s){0,3}?)?"
+        rf"\b(?P<comparison>{comparisons})\s"
+        r"(?:[a-z]+\s){0,4}?"
+        r"(?P<number>[0-9]+(?:\.[0-9]+)?)\s?"
+        r"(?P<unit>%|[^\W\d_](?:[\w/^*]*\w)?)",
+        re.IGNORECASE,
+    )
+
+
+@cache
+def _time() -> Dimension:
+    unit = parse_unit("s")
+    assert unit is not None, "the second is in the unit table"
+    return unit.dimension
+
+
+_OPPOSITE = {"<=": ">", "<": ">=", ">=": "<", ">": "<="}
+_BOUNDS = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}
+_COMPARISONS = {
+    "at most": "<=",
+    "at maximum": "<=",
+    "maximum of": "<=",
+    "up to": "<=",
+    "within": "<=",
+    "less than": "<",
+    "fewer than": "<",
+    "lower than": "<",
+    "smaller than": "<",
+    "shorter than": "<",
+    "below": "<",
+    "under": "<",
+    "at least": ">=",
+    "at minimum": ">=",
+    "minimum of": ">=",
+    "more than": ">",
+    "longer than": ">",
+    "greater than": ">",
+    "higher than": ">",
+    "larger than": ">",
+    "above": ">",
+    "exceed": ">",
+    "exceeds": ">",
+    "exceeded": ">",
+    "exceeding": ">",
+}
+_TRIES = frozenset(("times", "attempts", "tries", "retries"))
+# Words by which a sentence may say more than its one comparison does, or less.
+_QUALIFIERS = frozenset(
+    (
+        *("and", "or", "but", "if", "when", "whenever", "while", "unless", "except", "until", "after", "before"),
+        *("since", "during", "per", "every", "between", "average", "averaged", "mean", "median", "percentile"),
+        *("probability", "probably", "usually", "often"),
+    )
+)
+_DURATIONS = frozenset(
+    (
+        *("take", "takes", "taking", "taken", "took", "last", "lasts", "lasted", "need", "needs", "needed"),
+        *("duration", "time", "complete", "completes", "completed", "finish", "finishes", "finished", "done"),
+        *("reach", "reaches", "reached", "arrive", "arrives", "arrived", "spend", "spends", "spent"),
+    )
+)
+_USES = frozenset(("use", "uses", "used", "using", "consume", "consumes", "consumed"))
+_AT_THE_END = frozenset(("left", "remain", "remains", "remaining", "arrive", "arrives", "arrived"))
+# What the module needs of a text before it knows whether there is more to do.
+_WORD = re.compile(r"[^\W_]+")
+_NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?")

@@ -1,0 +1,31 @@
+"""No check has anything to say of an item that it is not registered for."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from check_asserts import split_files
+
+from btq_lang import rules
+from btq_lang.checks import CHECKS
+from btq_lang.checks.view import View
+from btq_lang.workspace import Workspace
+
+BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+PAGES = sorted(Path(rules.__file__).parent.glob("*.md"))
+ALL = dict.fromkeys(check for checks in CHECKS.values() for check in checks)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_what_is_not_registered_finds_nothing(page: Path) -> None:
+    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+        files = split_files(block[1])
+        workspace = Workspace.of(files)
+        for path in files:
+            view = View(workspace, path)
+            for entry in view.file.parsed.entries:
+                registered = CHECKS.get(type(entry.item), ())
+                others = [check for check in ALL if check not in registered]
+                assert [found for check in others for found in check(view, entry)] == []

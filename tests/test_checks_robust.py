@@ -1,0 +1,199 @@
+"""The checks on files that nobody would hand in: cut, torn and stirred.  None raises, every place lies in its file, a
+safe fix mends, and a workspace reached by edits says the same as a fresh one."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from check_asserts import assert_sound
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from btq_lang.checks import check
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.lexer import tokens
+from btq_lang.project import Project
+from btq_lang.record import replace
+from btq_lang.workspace import Workspace
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+SUFFIXES = (".btq", ".qualitybtcpp")
+PROJECT = Project(include_paths=("shared",))  # as the hospital's
+TORN_TOKENS = 60  # deletions of a token in each example
+
+
+def folders() -> list[dict[str, str]]:
+    """The examples, each with the files that belong to it."""
+    found = []
+    for folder in sorted(path for path in EXAMPLES.iterdir() if path.is_dir()):
+        paths = sorted(path for path in folder.rglob("*") if path.suffix in SUFFIXES)
+        found.append({str(path.relative_to(folder)): path.read_text("utf-8") for path in paths})
+    return found
+
+
+# What is wrong in many ways at once: a mutation of it reaches what no example does.
+CROOKED = {
+    "main.btq": """\
+include "parts.btq"
+include "main.btq"
+include "nowhere.btq"
+qualities iso25010-2011
+quality hygiene : safety
+signal battery : %
+signal battery : V
+Action MoveBase
+    input place : int = x
+    input speed : double
+SubTree Sub
+    input 1st : string
+TreeNodesModel
+    Condition Ready
+    Condition Ready
+        input level
+QualityReq rq1 : performance "fast"
+    takes at most 30 s
+QualityReq rq1 : speed
+QualityReq rq2
+apply rq3, rq1 to every MoveBase
+BehaviorTree
+    Sequence
+BehaviorTree "a b"
+    -> (ID = x) satisfices usability, performance <time-behavior>, robustnes
+        MoveBase One (place = 3 m plce = 1 plce = 2)
+        MoveBase One
+        SubTree Loop
+        SubTree
+        SubTreePlus (ID = Loop)
+        Retry (num_attempts = "3 times")
+        Timeout (msec = 1e999 s)
+            Switch (case_1 = a case_3 = b)
+                Action
+                keeps
+        || (success_count = 7)
+            SequenceStar
+            Rety
+            BatteryLow?
+        "my node" (_skipif = true)
+BehaviorTree Loop
+    SubTree Loop satisfies rq9, QualityReq rq2, QualityReq rq5 "x"
+    TryCatch
+BehaviorTree Loop
+BehaviorTree Retry
+    Inverter
+""",
+    "parts.btq": 'include "main.btq"\nsignal battery : K\nBehaviorTree Loop\n    X\nQualityReq rq1 "slow"\n',
+}
+
+ALL = [*folders(), CROOKED]
+NUMBERS = range(len(ALL))
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_every_prefix(number: int) -> None:
+    for path, text in ALL[number].items():
+        lines = text.splitlines(keepends=True)
+        for count in range(len(lines)):
+            examine({**ALL[number], path: "".join(lines[:count])}, path)
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_every_line_missing(number: int) -> None:
+    for path, text in ALL[number].items():
+        lines = text.splitlines(keepends=True)
+        for index in range(len(lines)):
+            examine({**ALL[number], path: "".join(lines[:index] + lines[index + 1 :])}, path)
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_a_token_missing(number: int) -> None:
+    chance = random.Random(number)
+    for path, text in ALL[number].items():
+        words = [token for token in tokens(text) if token.text.strip()]
+        for token in chance.sample(words, min(TORN_TOKENS, len(words))):
+            examine({**ALL[number], path: text[: token.start] + text[token.end :]}, path)
+
+
+def mutations(draw: st.DrawFn, text: str) -> str:
+    """A text after some of: a line gone, doubled, moved, indented; a token gone, or replaced by one of all examples."""
+    for _ in range(draw(st.integers(1, 4))):
+        lines = text.splitlines(keepends=True) or [""]
+        at = draw(st.integers(0, len(lines) - 1))
+        line = lines[at]
+        action = draw(st.sampled_from(["cut", "double", "move", "indent", "outdent", "drop", "replace"]))
+        if action == "cut":
+            lines[at] = ""
+        elif action == "double":
+            lines[at] = line + line
+        elif action == "move":
+            lines[at] = ""
+            lines.insert(draw(st.integers(0, len(lines))), line)
+        elif action == "indent":
+            lines[at] = f"    {line}"
+        elif action == "outdent":
+            lines[at] = line.removeprefix("    ")
+        else:
+            words = [token for token in tokens(line) if token.text.strip()]
+            if words:
+                word = draw(st.sampled_from(words))
+                other = draw(st.sampled_from(WORDS)) if action == "replace" else ""
+                lines[at] = line[: word.start] + other + line[word.end :]
+        text = "".join(lines)
+    return text
+
+
+WORDS = sorted({token.text for files in ALL for text in files.values() for token in tokens(text) if token.text.strip()})
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> tuple[dict[str, str], str]:
+    """The files of an example, one of them mutated, and which."""
+    files = dict(draw(st.sampled_from(ALL)))
+    path = draw(st.sampled_from(sorted(files)))
+    files[path] = mutations(draw, files[path])
+    return files, path
+
+
+@given(mutated())
+def test_mutated_files(mutated: tuple[dict[str, str], str]) -> None:
+    files, path = mutated
+    examine(files, path)
+
+
+@given(st.data())
+@settings(max_examples=40)
+def test_a_workspace_reached_by_edits_says_the_same_as_a_fresh_one(data: st.DataObject) -> None:
+    files = dict(data.draw(st.sampled_from(ALL)))
+    workspace = Workspace.of(files, PROJECT)
+    for _ in range(data.draw(st.integers(1, 4))):
+        path = data.draw(st.sampled_from(sorted(files)))
+        if data.draw(st.booleans()) and len(files) > 1:
+            del files[path]
+            workspace = workspace.without_file(path)
+        else:
+            files[path] = mutations(data.draw, files[path])
+            workspace = workspace.with_file(path, files[path])
+        said(workspace)  # so that whatever is kept for later is there when the next edit comes
+    assert said(workspace) == said(Workspace.of(files, PROJECT))
+
+
+def test_the_order_of_the_files_is_nothing() -> None:
+    for files in ALL:
+        assert said(Workspace.of(files, PROJECT)) == said(Workspace.of(dict(reversed(files.items())), PROJECT))
+
+
+@pytest.mark.parametrize("version", ["4.6", "4.8", "4.10"])
+def test_every_version_of_the_engine(version: str) -> None:
+    for files in ALL:
+        for path in files:
+            examine(files, path, replace(PROJECT, engines=(version,)))
+
+
+def said(workspace: Workspace) -> dict[str, tuple[Diagnostic, ...]]:
+    return {path: check(workspace, path) for path in sorted(workspace.files)}
+
+
+def examine(files: dict[str, str], path: str, project: Project = PROJECT) -> None:
+    workspace = Workspace.of(files, project)
+    assert_sound(workspace, path, check(workspace, path))
