@@ -28,7 +28,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.nodes(entry):
         if not is_placeholder(seen) or seen.node.name is None or seen.node.kind is None:
             continue
-        name = legal_name(seen.node.name.text)
+        name = _id_of(seen.node.name.text)
         if _taken(view, name) is not None:
             continue  # told as a clash
         what = "the condition" if seen.category == "Condition" else "the action"
@@ -47,7 +47,7 @@ def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
         name = seen.node.name
         if name is None or not is_placeholder(seen):
             continue
-        legal = legal_name(name.text)
+        legal = _id_of(name.text)
         taken = _taken(view, legal)
         path, other_entry, other = view.placeholders.get(legal, (view.path, entry, name))
         if taken is not None:
@@ -68,8 +68,14 @@ def first_placeholders(view: View) -> dict[str, tuple[str, Entry, Word]]:
         for entry in view.workspace.files[path].parsed.entries:
             for seen in view.nodes(entry):
                 if is_placeholder(seen) and (name := seen.node.name) is not None:
-                    found.setdefault(legal_name(name.text), (path, entry, name))
+                    found.setdefault(_id_of(name.text), (path, entry, name))
     return found
+
+
+@lru_cache(10_000)
+def _id_of(name: str) -> str:
+    """The ID that a placeholder's name becomes; a mission names the same skills again and again."""
+    return legal_name(name)
 
 
 def _taken(view: View, name: str) -> str | None:
