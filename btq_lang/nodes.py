@@ -146,7 +146,7 @@ class NodeParser(ClauseParser):
             message = f"`{kind.raw}` begins a clause, and clauses stand in a requirement"
             note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
-        elif self.at("=") and self.index > 0:
+        elif self.at("=") and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
             self.bare_attributes()
         elif clauses and self.at_name():
             self.expected("`,` or the end of the line")

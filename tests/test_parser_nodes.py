@@ -134,6 +134,7 @@ def test_behind_the_first_node_a_port_word_is_a_node(word: str) -> None:
         ("X (a = 1) b", "X (a=1)", "1:11 syntax-error «b» expected the end of the line, found `b`"),
         ("X a = 1", "X as a", "1:3 syntax-error «a = 1» attributes stand in brackets: `( key = value )`"),
         ("X = 1", "X", "1:1 syntax-error «X = 1» attributes stand in brackets: `( key = value )`"),
+        ("X (a) = 1)", "X", "1:10 syntax-error «)» this `)` closes nothing"),
         (
             "X (a = 1) (b = 2)",
             "X (a=1)",

@@ -27,8 +27,10 @@ The style:
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Iterable, Iterator, Sequence
 from itertools import pairwise
+from typing import Final
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.formatter.clauses import sections
@@ -82,6 +84,8 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
     parsed = parse(text)
     if _first_error(parsed):
         return ()
+    if _OLD_LINE_END.search(text):  # a new `\n` behind an old `\r` would be one line end and not two
+        start, end = 0, len(text)
     start = min(start, len(text) - 1)  # the end of the text belongs to its last line
     chosen: list[_Stretch] = []
     for block in _blocks(_stretches(parsed, options)):
@@ -114,11 +118,12 @@ class _Stretch:
 def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     """The whole file, stretch by stretch."""
     marks = marks_of(parsed)
-    lines = logical_lines(parsed.text, parsed.tokens, marks.atoms)
-    _part_items(lines, {entry.start + entry.item.start for entry in parsed.entries})
+    parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
+    items = {entry.start + entry.item.start for entry in parsed.entries}
+    _part_items([line for section in parts for line in section.lines], items)
     found: list[_Stretch] = []
     above = -1  # the level of the row above
-    for section in sections(lines, marks, options):
+    for section in parts:
         moved = False
         text: list[str] = []
         for row in (row for line in section.lines for row in _rows(line, marks, options)):
@@ -188,22 +193,37 @@ def _blocks(stretches: Iterable[_Stretch]) -> Iterator[list[_Stretch]]:
 
 
 def _edits(text: str, stretches: Iterable[_Stretch]) -> tuple[Edit, ...]:
-    """For each stretch that changes, an edit of what is between its unchanged beginning and its unchanged end."""
+    """The edits of the stretches that change: one for each gap between words, where the words keep their order."""
     edits: list[Edit] = []
     for stretch in stretches:
         old, new = text[stretch.start : stretch.end], stretch.text
         if old == new:
             continue
-        same = _same(old, new)
-        same -= old[same - 1 : same + 1] == "\r\n"  # an editor has no place between these two
-        same_behind = _same(old[same:][::-1], new[same:][::-1])
-        end = len(old) - same_behind
-        end += old[end - 1 : end + 1] == "\r\n"
-        edits.append(Edit(Span(stretch.start + same, stretch.start + end), new[same : len(new) - len(old) + end]))
+        if _BLANKS.sub("", old) != _BLANKS.sub("", new):
+            edits.append(_edit(stretch.start, old, new))
+            continue
+        at = new_at = 0
+        while at < len(old) or new_at < len(new):
+            end, new_end = _end(_BLANKS, old, at), _end(_BLANKS, new, new_at)
+            if old[at:end] != new[new_at:new_end]:
+                edits.append(_edit(stretch.start + at, old[at:end], new[new_at:new_end]))
+            same = min(_end(_WORD, old, end) - end, _end(_WORD, new, new_end) - new_end)
+            at, new_at = end + same, new_end + same
     return tuple(edits)
 
 
-def _same(first: str, second: str) -> int:
-    """How many characters two texts begin with that are the same."""
-    pairs = enumerate(zip(first, second, strict=False))
-    return next((index for index, (one, other) in pairs if one != other), min(len(first), len(second)))
+def _edit(at: int, old: str, new: str) -> Edit:
+    """Replace the one text by the other, but for what both begin with."""
+    pairs = enumerate(zip(old, new, strict=False))
+    same = next((index for index, (one, other) in pairs if one != other), min(len(old), len(new)))
+    return Edit(Span(at + same, at + len(old)), new[same:])
+
+
+def _end(pattern: re.Pattern[str], text: str, at: int) -> int:
+    found = pattern.match(text, at)
+    return found.end() if found else at
+
+
+_OLD_LINE_END: Final = re.compile(r"\r(?!\n)")
+_BLANKS: Final = re.compile(r"[ \t\r\n\ufeff]+")
+_WORD: Final = re.compile(r"[^ \t\r\n\ufeff]+")

@@ -55,14 +55,16 @@ class _Group:
     Attributes:
         spread: each of their elements has a line of its own.
         indent: the indentation of the line that opens them.
+        has_lines: a line began in them already.
         loose: the element at hand is broken, because it is too long for one line.
     """
 
-    __slots__ = ("indent", "loose", "spread")
+    __slots__ = ("has_lines", "indent", "loose", "spread")
 
     def __init__(self, spread: bool, indent: int) -> None:
         self.spread: Final = spread
         self.indent: Final = indent
+        self.has_lines = False
         self.loose = False
 
 
@@ -86,7 +88,9 @@ class _Writer:
         before = self.pieces[index - 1] if index else None
         indent = None if before is None else self.new_line(index, before)
         if indent is not None:
-            self.end_line(indent, piece.blank and before is not None and before.kind != OPEN and piece.kind != CLOSE)
+            group = self.groups[-1]
+            self.end_line(indent, piece.blank and group.has_lines and piece.kind != CLOSE)
+            group.has_lines = True
         elif piece.kind != COMMENT:
             self.remark = -1
         elif before is not None and before.kind != COMMENT:
