@@ -5,8 +5,6 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from typing import Final
-
 from btq_lang.cursor import Cursor
 from btq_lang.diagnostics import replace_fix
 from btq_lang.lexer import unknown_unit
@@ -53,6 +51,10 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")

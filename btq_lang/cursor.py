@@ -8,7 +8,6 @@ nor is one where the lexer has said what is wrong.
 from __future__ import annotations
 
 from bisect import bisect_left
-from typing import Final
 
 from btq_lang.diagnostics import Diagnostic, Fix
 from btq_lang.lexer import Lexer, unknown_unit
@@ -16,6 +15,10 @@ from btq_lang.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax import Word
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 class Cursor:

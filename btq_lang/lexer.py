@@ -12,7 +12,6 @@ one and not by regular expressions because that is the form which mypyc compiles
 from __future__ import annotations
 
 import re
-from typing import Final
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import blanks_end, line_end, line_opening, name_end, number_at, string_end, symbol_at, unit_run
@@ -37,6 +36,10 @@ from btq_lang.tokens import (
     Token,
 )
 from btq_lang.units import nearest_units
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 def tokens(text: str) -> tuple[Token, ...]:

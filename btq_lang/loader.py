@@ -12,13 +12,16 @@ import errno
 import os
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import BinaryIO
 
 from btq_lang.globs import glob_matcher
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import record
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import File, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import BinaryIO
 
 SUFFIXES = (".btq", ".qualitybtcpp")
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv

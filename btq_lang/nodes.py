@@ -5,8 +5,6 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
-from typing import Final
-
 from btq_lang.clauses import HEADS, VERBS, ClauseParser
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
@@ -42,6 +40,10 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
 

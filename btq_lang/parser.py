@@ -8,7 +8,6 @@ and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`
 from __future__ import annotations
 
 import gc
-from typing import Final
 
 from btq_lang.clauses import HEADS, VERBS
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
@@ -53,6 +52,10 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 

@@ -7,10 +7,13 @@ it is only what needs no second look: words of letters, digits and `_`, single b
 from __future__ import annotations
 
 import re
-from typing import Final
 
 from btq_lang.syntax import Pair, Word
 from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, NAME, NODE_CLAUSES, NUMBER, STRING, SYMBOL, SYMBOLS
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 Head = tuple["Word | None", "Word | None", "Word | None", int]
 

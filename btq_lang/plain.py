@@ -12,7 +12,6 @@ None in their place: no further line may begin, as it may not outside brackets.
 from __future__ import annotations
 
 import re
-from typing import Final
 
 from btq_lang.scan import braced_end, line_end, name_end, number_at, symbol_at
 from btq_lang.syntax import (
@@ -29,6 +28,10 @@ from btq_lang.syntax import (
     Word,
 )
 from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, STRING, SYMBOL
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int] | None:

@@ -19,7 +19,6 @@ from __future__ import annotations
 import os.path
 import re
 from collections.abc import Iterable, Iterator
-from typing import Any, Literal, NamedTuple
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
 from btq_lang.diagnostics import Diagnostic
@@ -28,7 +27,11 @@ from btq_lang.record import record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import LineIndex, Position
 
-Kind = Literal["btq.toml", "pyproject.toml"]
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Any, Literal, TypeAlias
+
+Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 
 
 @record
@@ -142,7 +145,8 @@ def include_candidates(project: Project, path: str, include: str) -> tuple[str, 
 _ALWAYS = frozenset(("syntax-error",))
 
 
-class _Complaint(NamedTuple):
+@record
+class _Complaint:
     """What is wrong with the value of a key: with the entry `below` it, or with the string `value` in it."""
 
     message: str
@@ -150,7 +154,7 @@ class _Complaint(NamedTuple):
     value: str | None = None
 
 
-_Read = tuple[Any, list[_Complaint]]  # None keeps the field as it is without the key
+_Read: TypeAlias = "tuple[Any, list[_Complaint]]"  # None keeps the field as it is without the key
 
 
 def _engines(key: str, value: object) -> _Read:

@@ -1,24 +1,29 @@
 """`@record`: a frozen, slotted class from its annotations, as `dataclass(frozen=True, slots=True)` makes it.
 
 Why not dataclasses: importing them and making our classes with them costs 50 ms at every start of `btq check`, more
-than the whole check; this costs 3 ms, for `__init__` is written only when a class is first used.  Type checkers treat
-both alike (PEP 681).  Deliberately left out: inheritance of fields, keyword-only fields, default factories, ordering.
+than the whole check; this costs 4 ms, for a class gets an `__init__` of its own only when it is used much.  Type
+checkers treat both alike (PEP 681).  Deliberately left out: inheritance, keyword-only fields, default factories,
+ordering.
 """
 
 from __future__ import annotations
 
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, TypeVar
 
+TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
 if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
     from typing_extensions import dataclass_transform
+
+    T = TypeVar("T")
 else:
 
     def dataclass_transform(**_: object) -> Any:
         return lambda function: function
 
 
-T = TypeVar("T")
+_MANY = 100  # instances take as long to fill field by field as it takes to compile an `__init__`, and more
 
 
 @dataclass_transform(frozen_default=True, eq_default=True)
@@ -28,29 +33,31 @@ def record(cls: type[T]) -> type[T]:
     Raises:
         TypeError: a field without a default follows one with a default.
     """
-    fields = tuple(cls.__annotations__) if "__annotations__" in dir(cls) else ()
     namespace = {name: value for name, value in cls.__dict__.items() if name not in ("__dict__", "__weakref__")}
+    fields = tuple(namespace.get("__annotations__", ()))
     defaults = {name: namespace.pop(name) for name in fields if name in namespace}
-    if tuple(defaults) != fields[len(fields) - len(defaults) :]:
+    required = len(fields) - len(defaults)
+    if tuple(defaults) != fields[required:]:
         raise TypeError(f"{cls.__name__}: a field without a default follows one with a default")
-    namespace |= {
-        "__slots__": fields,
-        "__match_args__": fields,
-        "__eq__": _equal,
-        "__hash__": _hash,
-        "__repr__": _repr,
-        "__setattr__": _refuse,
-        "__delattr__": _refuse,
-        "__reduce__": _reduce,
-        "_values": property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields)),
-    }
-    made: Any = type(cls.__name__, cls.__bases__, namespace)
+    last_values = tuple(defaults.values())
+    made: Any = None
+    count = 0
 
-    def write_init(self: Any, *args: object, **kwargs: object) -> None:
-        made.__init__ = _make_init(made, fields, defaults)
-        made.__init__(self, *args, **kwargs)
+    def fill(self: Any, *values: object, **named: object) -> None:
+        """The `__init__` of the first instances, until there are many, or one comes with keywords or by mistake."""
+        nonlocal count
+        count += 1
+        if named or count > _MANY or not required <= len(values) <= len(fields):
+            made.__init__ = _make_init(made, fields, defaults)
+            made.__init__(self, *values, **named)
+            return
+        for name, value in zip(fields, values + last_values[len(values) - required :], strict=True):
+            _set(self, name, value)
 
-    made.__init__ = write_init
+    namespace["__slots__"] = namespace["__match_args__"] = fields
+    namespace["__init__"] = fill
+    namespace["_values"] = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
+    made = type(cls.__name__, (_Record,), namespace)
     return made  # type: ignore[no-any-return]  # made anew with slots, so only its name ties it to T
 
 
@@ -58,7 +65,35 @@ def replace(instance: T, **changes: object) -> T:
     """A copy of a record with some fields changed."""
     fields: tuple[str, ...] = type(instance).__slots__  # type: ignore[attr-defined]  # every record has them
     values = dict(zip(fields, instance._values, strict=True)) | changes  # type: ignore[attr-defined]  # as above
-    return type(instance)(**values)
+    return type(instance)(*values.values())
+
+
+class _Record:
+    """What all records do alike; a base, for a class made of fewer names is made faster."""
+
+    __slots__ = ()
+    _values: tuple[object, ...]
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._values))
+
+    def __repr__(self) -> str:
+        fields: tuple[str, ...] = self.__slots__
+        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in fields)})"
+
+    def __setattr__(self, name: str, _: object) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot change {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot change {name!r}")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), self._values
 
 
 def _make_init(made: type, fields: tuple[str, ...], defaults: dict[str, object]) -> Any:
@@ -75,23 +110,4 @@ def _few(self: Any, fields: tuple[str, ...]) -> tuple[object, ...]:
     return tuple(getattr(self, name) for name in fields)
 
 
-def _equal(self: Any, other: Any) -> Any:
-    if type(other) is not type(self):
-        return NotImplemented
-    return self._values == other._values
-
-
-def _hash(self: Any) -> int:
-    return hash((type(self), self._values))
-
-
-def _repr(self: Any) -> str:
-    return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in self.__slots__)})"
-
-
-def _refuse(self: Any, name: str, *_: object) -> None:
-    raise AttributeError(f"{type(self).__name__} is frozen: cannot change {name!r}")
-
-
-def _reduce(self: Any) -> tuple[object, ...]:
-    return type(self), self._values
+_set = object.__setattr__  # which the refusing one of records hides

@@ -10,11 +10,14 @@ expression, and mypyc makes the most of a loop over characters.
 from __future__ import annotations
 
 import re
-from typing import Final
 
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 from btq_lang.units import SYMBOLS as UNITS
 from btq_lang.units import parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 COMPILED: Final = not __file__.endswith(".py")
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import Enum
-from typing import TypeAlias
 
 from btq_lang.record import record
 from btq_lang.syntax import (
@@ -33,6 +32,10 @@ from btq_lang.syntax import (
     shape,
 )
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
 
 
 class Kind(Enum):

@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Final, TypeAlias
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import record
 from btq_lang.text import Span
 from btq_lang.tokens import QUANTITY, STRING
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
 
 _ESCAPE = re.compile(r"\\([\"'\\nt])")
 _ESCAPED = {"n": "\n", "t": "\t"}

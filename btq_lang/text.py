@@ -8,32 +8,45 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections import namedtuple
 from collections.abc import Iterable
-from typing import Literal, NamedTuple
 
 from btq_lang.record import record
 
-Encoding = Literal["code-points", "utf-8", "utf-16"]
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Literal, NamedTuple, TypeAlias
+
+    class _Ends(NamedTuple):
+        start: int
+        end: int
+
+    class _Place(NamedTuple):
+        line: int
+        column: int
+else:
+    _Ends = namedtuple("_Ends", ("start", "end"))
+    _Place = namedtuple("_Place", ("line", "column"))
+
+Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
 # A line ends with these and with nothing else: str.splitlines would also cut at form feeds and U+2028.
 LINE_END = re.compile(r"\r\n|\n|\r")
 
 
-class Span(NamedTuple):
+class Span(_Ends):
     """A half-open range of offsets."""
 
-    start: int
-    end: int
+    __slots__ = ()
 
     def shifted(self, by: int) -> Span:
         return Span(self.start + by, self.end + by)
 
 
-class Position(NamedTuple):
+class Position(_Place):
     """A line and a column, both counted from 0."""
 
-    line: int
-    column: int
+    __slots__ = ()
 
 
 @record

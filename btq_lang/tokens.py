@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 # Words and values.
 NAME: Final = 0  # MoveBase, satisfies, BatteryLow?

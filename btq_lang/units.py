@@ -11,10 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf, pi
-from typing import Final
 
 from btq_lang.near import near
 from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 # Exponents over length, mass, time, current, temperature, angle, data, count, percent.
 Dimension = tuple[int, int, int, int, int, int, int, int, int]

@@ -7,9 +7,11 @@ row against them); what is said of behaviour was read in the sources of 4.10.0 a
 
 from __future__ import annotations
 
-from typing import Final
-
 from btq_lang.catalog.kinds import Direction, NodeKind, PortKind
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 _STRING: Final = "std::string"
 _MILLISECONDS: Final = "unsigned int"

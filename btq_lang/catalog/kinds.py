@@ -7,9 +7,12 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 from __future__ import annotations
 
 from functools import cache
-from typing import Final, Literal
 
 from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
 
 # The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")
@@ -17,19 +20,19 @@ DEFAULT_VERSION: Final = "4.10"
 
 
 # The engine's five categories, as the word in a file and the tag of the explicit XML form have them.
-Category = Literal["Action", "Condition", "Control", "Decorator", "SubTree"]
+Category: TypeAlias = "Literal['Action', 'Condition', 'Control', 'Decorator', 'SubTree']"
 CATEGORIES: Final[tuple[Category, ...]] = ("Action", "Condition", "Control", "Decorator", "SubTree")
 
 # Where a port's value flows, as a model's Port says it.
-Direction = Literal["input", "output", "inout"]
+Direction: TypeAlias = "Literal['input', 'output', 'inout']"
 
 # When a node returns RUNNING.  synchronous: never, it completes within the tick that started it.  asynchronous: by
 # itself, if only between two children that complete at once; a Timeout around it can halt it.  as-children: exactly
 # when a child of it does.
-Execution = Literal["synchronous", "asynchronous", "as-children"]
+Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
 
 # What the text of a port is: a value, a script, or the name of a blackboard entry, written without braces.
-Content = Literal["value", "script", "key"]
+Content: TypeAlias = "Literal['value', 'script', 'key']"
 
 
 @record

@@ -9,10 +9,13 @@ Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.
 from __future__ import annotations
 
 import re
-from typing import Final, Literal
 
 from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
 from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal
 
 
 @record

@@ -7,10 +7,12 @@ an XML tag, nor whether it is taken.
 
 from __future__ import annotations
 
-from typing import Final
-
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:

@@ -12,14 +12,17 @@ is understood is an alias (another word, or another word in front), another edit
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final, Literal
 
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.near import near
 from btq_lang.record import record
 
-Edition = Literal["2011", "2023"]
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
+
+Edition: TypeAlias = "Literal['2011', '2023']"
 
 # By the word behind `qualities` in a file.
 EDITIONS: Final[dict[str, Edition]] = {"iso25010-2023": "2023", "iso25010-2011": "2011"}

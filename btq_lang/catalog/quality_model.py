@@ -7,7 +7,9 @@ for a quality: those are `qualities` and `quality_words`.
 
 from __future__ import annotations
 
-from typing import Final, Literal
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal
 
 # Characteristics: id, definition, and their sub-characteristics: the rest of the id, definition.
 Model = tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...]

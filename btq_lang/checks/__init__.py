@@ -7,26 +7,7 @@ count from that entry; it never raises, whatever the file.  A module holds the r
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeAlias
 
-from btq_lang.checks import (
-    children,
-    conditions,
-    includes,
-    kinds,
-    literals,
-    names,
-    placeholders,
-    ports,
-    preconditions,
-    prose,
-    qualities,
-    reactive,
-    requirements,
-    scripts,
-    trees,
-    unreachable,
-)
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -48,6 +29,29 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.workspace import File, Workspace
+
+from btq_lang.checks import (
+    children,
+    conditions,
+    includes,
+    kinds,
+    literals,
+    names,
+    placeholders,
+    ports,
+    preconditions,
+    prose,
+    qualities,
+    reactive,
+    requirements,
+    scripts,
+    trees,
+    unreachable,
+)
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
 
 Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 

@@ -123,8 +123,8 @@ def is_placeholder(seen: SeenNode) -> bool:
         and node.kind is not None
         and not node.kind.quoted
         and node.kind.raw in PLACEHOLDERS
-        and node.attribute("code") is None
         and node.name is not None
+        and not any(pair.key.text == "code" or near(pair.key.text, ("code",)) for pair in node.attributes)
     )
 
 

@@ -7,19 +7,22 @@ the blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
-
 from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
+from btq_lang.record import record
 from btq_lang.symbols import Kind
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from typing import Final
+
     from btq_lang.checks.view import SeenNode, View
     from btq_lang.syntax import Entry, Node
     from btq_lang.workspace import Definition
 
 
-class Results(NamedTuple):
+@record
+class Results:
     """What a node can return: sets of statuses.
 
     Attributes:

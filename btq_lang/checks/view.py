@@ -8,7 +8,6 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator
 from functools import cache, cached_property
-from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
@@ -20,6 +19,7 @@ from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Include, Model, Models, Node, Port, Qualities, Tree, Word, is_name
 from btq_lang.workspace import Definition, File, Scope, Workspace
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.checks.results import TreeResults
 

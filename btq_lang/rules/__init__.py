@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import os.path
 from enum import Enum
-from typing import NamedTuple
+
+from btq_lang.record import record
 
 
 class Severity(Enum):
@@ -19,7 +20,8 @@ class Severity(Enum):
     HINT = "hint"
 
 
-class Rule(NamedTuple):
+@record
+class Rule:
     """A rule's name, its severity where nobody configured another, and what it finds in one line."""
 
     name: str

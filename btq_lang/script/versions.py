@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
-from typing import TYPE_CHECKING, Final, NamedTuple
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
+from btq_lang.record import record
 from btq_lang.rules import Severity
 from btq_lang.script.tree import (
     RANK,
@@ -32,8 +32,9 @@ from btq_lang.script.tree import (
 )
 from btq_lang.text import Span
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import TypeGuard
+    from typing import Final, TypeGuard
 
 
 def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:
@@ -51,7 +52,8 @@ def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic
     return found
 
 
-class _Targets(NamedTuple):
+@record
+class _Targets:
     """The versions to hold for, by the grammar they have."""
 
     early: tuple[str, ...]  # before 4.7
