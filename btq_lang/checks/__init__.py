@@ -8,6 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from btq_lang.checks import (
+    children,
+    conditions,
+    includes,
+    kinds,
+    literals,
+    names,
+    placeholders,
+    ports,
+    preconditions,
+    prose,
+    qualities,
+    reactive,
+    requirements,
+    scripts,
+    trees,
+    unreachable,
+)
 from btq_lang.checks.suppressions import suppressed_lines
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -30,25 +48,6 @@ from btq_lang.syntax import (
 from btq_lang.text import Span
 from btq_lang.workspace import File, Workspace
 
-from btq_lang.checks import (
-    children,
-    conditions,
-    includes,
-    kinds,
-    literals,
-    names,
-    placeholders,
-    ports,
-    preconditions,
-    prose,
-    qualities,
-    reactive,
-    requirements,
-    scripts,
-    trees,
-    unreachable,
-)
-
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -57,7 +56,14 @@ Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 
 # The checks of each kind of item: most items are small, and most checks have nothing to say of most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {
-    Include: (includes.missing_include, includes.cyclic_include, ports.duplicate_attribute),
+    Include: (
+        includes.missing_include,
+        includes.cyclic_include,
+        trees.duplicate_tree,
+        kinds.duplicate_definition,
+        requirements.conflicting_requirement,
+        ports.duplicate_attribute,
+    ),
     Root: (trees.unknown_tree, ports.duplicate_attribute),
     Tree: (
         trees.unknown_tree,
@@ -100,8 +106,20 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         unreachable.unreachable_child,
     ),
-    Model: (kinds.duplicate_definition, ports.duplicate_attribute, literals.invalid_literal, names.forbidden_name),
-    Models: (kinds.duplicate_definition, ports.duplicate_attribute, literals.invalid_literal, names.forbidden_name),
+    Model: (
+        kinds.duplicate_definition,
+        ports.duplicate_attribute,
+        literals.invalid_literal,
+        literals.quantity_on_unitless_port,
+        names.forbidden_name,
+    ),
+    Models: (
+        kinds.duplicate_definition,
+        ports.duplicate_attribute,
+        literals.invalid_literal,
+        literals.quantity_on_unitless_port,
+        names.forbidden_name,
+    ),
     Signal: (kinds.duplicate_definition,),
     Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks),
     Requirement: (

@@ -4,20 +4,30 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from btq_lang.symbols import Kind
+from btq_lang.symbols import Kind, Use
 from btq_lang.workspace import Scope, Workspace
 
 
 class Calls:
-    """The trees of a scope, by name, with the trees that each of them runs as SubTree."""
+    """The trees of a scope, by name, with the trees that each of them runs as SubTree.
+
+    Attributes:
+        has_gaps: a SubTree names a tree that nobody knows, so that what is reached cannot be told.
+    """
 
     def __init__(self, workspace: Workspace, scope: Scope) -> None:
         self._called: dict[str, tuple[str, ...]] = {}
+        self._meant: dict[str, list[str]] = {}
+        trees = frozenset(scope.names(Kind.TREE))
         for name in scope.names(Kind.TREE):
             definition = scope.find(Kind.TREE, name)
             assert definition is not None, "the scope has just named it"
             uses = workspace.files[definition.path].summary_of(definition.entry).uses
             self._called[name] = tuple(dict.fromkeys(use.name for use in uses if use.kind is Kind.TREE))
+            self._meant[name] = [use for use in map(_meant, uses) if use in trees]
+        self.has_gaps = not scope.complete or any(
+            called not in trees for names in self._called.values() for called in names
+        )
 
     def called_by(self, name: str) -> tuple[str, ...]:
         """The trees that a tree runs, in the order of their SubTrees; none for an unknown tree."""
@@ -28,7 +38,7 @@ class Calls:
         return self._callers.get(name, ())
 
     def reached_from(self, name: str) -> frozenset[str]:
-        """A tree and all that it runs, directly or not."""
+        """A tree and all that it runs, directly or not, and those that it means to run: where `SubTree` is missing."""
         if name not in self._reached:
             seen: set[str] = set()
             waiting = [name]
@@ -37,6 +47,7 @@ class Calls:
                 if tree not in seen:
                     seen.add(tree)
                     waiting += self.called_by(tree)
+                    waiting += self._meant.get(tree, ())
             self._reached[name] = frozenset(seen)
         return self._reached[name]
 
@@ -105,3 +116,11 @@ class Calls:
             if len(knot) > 1 or (knot and start in self.called_by(start)):
                 knots[min(knot, key=place.__getitem__)] = frozenset(knot)
         return knots
+
+
+def _meant(use: Use) -> str:
+    """What a node's kind may name where it should be a tree: `PickPlace`, `Subtree PickPlace`."""
+    node = use.node
+    if node is not None and node.label is not None and use.name.casefold() == "subtree":
+        return node.label.text
+    return use.name if use.kind is Kind.MODEL else ""

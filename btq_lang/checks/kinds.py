@@ -32,11 +32,13 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         name = seen.node.id
         if seen.is_subtree or seen.kind or seen.definition:
             continue
-        if name is None:
-            if seen.node.category is not None and not _has_id(seen):
-                word = seen.node.category
+        word = seen.node.category
+        if word is not None and (name is None or name.text == ""):
+            if not is_torn(entry, seen):
                 message = f"this {word.raw} has no ID: `{word.raw} <ID>`"
                 yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
+        elif name is None:
+            continue
         elif view.scope.find(Kind.TREE, name.text) is not None:
             yield _tree_as_node(view, seen, name)
         elif not (name.text in KNOWN_WORDS or _is_refused(view, seen, name) or _is_clause(seen)):
@@ -145,6 +147,11 @@ def likely_category(seen: SeenNode) -> str:
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
 
 
+def is_torn(entry: Entry, seen: SeenNode) -> bool:
+    """Whether something in a node's own lines could not be read."""
+    return any(seen.node.start <= problem.span.start <= seen.node.end for problem in entry.diagnostics)
+
+
 def include_place(entry: Entry) -> Span:
     """Where a diagnostic about an included file points."""
     item = entry.item
@@ -206,10 +213,6 @@ def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
         fixes=(replace_fix(f"Write `SubTree {written(name.text)}`", span, text),),
         severity=Severity.ERROR,
     )
-
-
-def _has_id(seen: SeenNode) -> bool:
-    return any(pair.key.text == "ID" for pair in seen.node.attributes)
 
 
 def _is_refused(view: View, seen: SeenNode, name: Word) -> bool:

@@ -57,8 +57,10 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
         return
-    if not view.trees:
-        return  # a file of requirements: its users may be anywhere
+    if not view.trees or view.path in view.workspace.included_files:
+        return  # a file of requirements, or a library: its users may be anywhere
+    if not view.is_read or view.names_unknown_requirements:
+        return  # its user may be what could not be read, or misspells it
     definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
     if definition is None or not view.is_this(definition, entry) or view.workspace.references(definition):
         return

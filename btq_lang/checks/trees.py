@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.includes import behind_includes, include_fix
-from btq_lang.checks.kinds import include_place, written
+from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.symbols import Kind, Use
@@ -21,9 +21,10 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
     for seen in view.nodes(entry):
         word = seen.node.category
-        if seen.is_subtree and word is not None and seen.node.id is None and not seen.has_attribute("ID"):
+        is_nameless = seen.node.id is None or seen.node.id.text == ""
+        if seen.is_subtree and word is not None and is_nameless and not is_torn(entry, seen):
             yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
-    if not isinstance(entry.item, Tree | Root) or not view.scope.complete:
+    if not isinstance(entry.item, Tree | Root) or not view.scope.complete or any(map(_has_torn_head, view.trees)):
         return
     for use in view.uses(entry, Kind.TREE):
         if use.name == "" or view.scope.find(Kind.TREE, use.name) is not None:
@@ -92,7 +93,12 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     name = entry.item.name
     main = view.main_tree
     definition = view.scope.find(Kind.TREE, name.text)
-    if main is None or name.text in view.calls.reached_from(main.symbol.name):
+    if (
+        main is None
+        or view.calls.has_gaps
+        or not view.is_read
+        or name.text in view.calls.reached_from(main.symbol.name)
+    ):
         return
     if definition is None or not view.is_this(definition, entry):
         return  # another tree of that name counts, which is told
@@ -171,6 +177,12 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"`{name.text}` is a node: a tree cannot have its name",
             related=(view.defined_at(model, "the node is declared here"),),
         )
+
+
+def _has_torn_head(entry: Entry) -> bool:
+    """Whether a tree's name may be what could not be read."""
+    tree = entry.item
+    return isinstance(tree, Tree) and any(problem.span.start <= tree.end for problem in entry.diagnostics)
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:

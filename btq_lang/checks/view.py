@@ -15,6 +15,7 @@ from btq_lang.checks.calls import Calls
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
 from btq_lang.record import record
+from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Include, Model, Models, Node, Port, Qualities, Tree, Word, is_name
 from btq_lang.workspace import Definition, File, Scope, Workspace
@@ -57,10 +58,6 @@ class SeenNode:
     @property
     def is_subtree(self) -> bool:
         return self.category == "SubTree"
-
-    def has_attribute(self, key: str) -> bool:
-        """Whether the key is there, if only without a value."""
-        return any(pair.key.text == key for pair in self.node.attributes)
 
     def ancestors(self) -> Iterator[SeenNode]:
         """Its parent, the parent's parent, and so on."""
@@ -126,6 +123,18 @@ class View:
     @cached_property
     def _own_qualities(self) -> frozenset[str]:
         return frozenset(map(fold, self.scope.names(Kind.QUALITY)))
+
+    @cached_property
+    def is_read(self) -> bool:
+        """Whether the whole file could be read: else what seems to be missing may be what could not."""
+        problems = (problem for entry in self.file.parsed.entries for problem in entry.diagnostics)
+        return all(problem.effective_severity is not Severity.ERROR for problem in problems)
+
+    @cached_property
+    def names_unknown_requirements(self) -> bool:
+        """Whether the file refers to a requirement that is defined nowhere."""
+        names = {use.name for summary in self.file.summaries for use in summary.uses if use.kind is Kind.REQUIREMENT}
+        return any(self.scope.find(Kind.REQUIREMENT, name) is None for name in names)
 
     @cached_property
     def has_palette(self) -> bool:
