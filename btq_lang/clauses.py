@@ -425,7 +425,8 @@ class ClauseParser(Cursor):
         """Bounded, as the upper bound that `within` and `every` mean"""
         start = self.start()
         value = self.bounded()
-        return Bound(start, self.last_end(), "<=", value)
+        end = self.last_end()
+        return Bound(min(start, end), end, "<=", value)
 
     def bounded(self) -> Bounded | None:
         """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""

@@ -12,6 +12,7 @@ one and not by regular expressions because that is the form which mypyc compiles
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import blanks_end, line_end, line_opening, name_end, number_at, string_end, symbol_at, unit_run
@@ -107,6 +108,8 @@ class Lexer:
         self._adopted = False  # there is such a one
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
         self._strange = False  # a character that begins nothing was reported on this line
+        self._stray_until = -1  # the end of the last line of text where a `)` was reported
+        self._wrong_units = 0  # how many were reported on this line
         self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
         self._root_level = -1  # the level of an open Root block's items
         self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
@@ -180,6 +183,7 @@ class Lexer:
         self.kinds, self.starts, self.raws = [], [], []
         self._brackets.clear()
         self._strange = False
+        self._wrong_units = 0
         self._last_line = self.line_start
         position = self.position
         text, size = self.text, self.size
@@ -316,7 +320,9 @@ class Lexer:
         if kind == ERROR:
             unit = blanks_end(self.text, end, self.size)
             kind, end = QUANTITY, unit_run(self.text, unit)
-            self.problems.append(unknown_unit(self.text, unit, end))
+            self._wrong_units += 1
+            if self._wrong_units <= _MANY:
+                self.problems.append(unknown_unit(self.text, unit, end))
         return self._add(kind, start, end)
 
     def _string(self, start: int, quote: str) -> int:
@@ -468,8 +474,9 @@ class Lexer:
         if not self._brackets:
             if self.ended_early:  # it is the one that was missed
                 self.ended_early -= 1
-            else:
+            elif position > self._stray_until:
                 self._report("syntax-error", position, position + 1, "this `)` closes nothing")
+                self._stray_until = line_end(self.text, position)
             return position + 1
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
@@ -558,7 +565,7 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     """What stands there is no unit; the fixes replace it by what was probably meant."""
     word = text[start:end]
     glued = start > 0 and text[start - 1].isdigit()
-    symbols = nearest_units(word)
+    symbols = _nearest_units(word)
     fixes = tuple(
         replace_fix(f"Replace `{word}` by `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
         for symbol in symbols
@@ -611,6 +618,8 @@ _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
+_MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
+_nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time
 # The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
 _TOP_LINE: Final = re.compile(

@@ -123,6 +123,7 @@ class Parser(NodeParser):
         super().__init__(text)
         self.entries: list[Entry] = []
         self.has_root = False
+        self.roots: list[int] = []  # the levels of the Roots whose blocks are open, for more than one is a mistake
         self.stray_level = -1  # the level of lines indented for no reason, reported once
 
     # ---- file and items ----
@@ -131,7 +132,9 @@ class Parser(NodeParser):
         """File = { Item }"""
         self.more = self.lexer.open_line()
         while self.more:
-            self.item(0, False)
+            while self.roots and self.lexer.level <= self.roots[-1]:
+                self.roots.pop()
+            self.item(self.roots[-1] + 1 if self.roots else 0, bool(self.roots))
         if self.problems or self.lexer.problems:  # behind the last item, or in a file without any
             self.base = 0
             self.entry(Skipped(len(self.text), len(self.text)), False)
@@ -376,8 +379,7 @@ class Parser(NodeParser):
         end = self.end_line()
         item = Root(word.start, end, name, attributes, bracketed)
         self.entry(item, in_root)
-        while self.deeper(level):
-            self.item(level + 1, True)
+        self.roots.append(level)
 
     def tree(self, level: int) -> Tree:
         """ "BehaviorTree" [ [ "ID" "=" ] Name ] [ Attributes ] NL [ INDENT { Port } { ClauseLine } { Node } DEDENT ]"""
