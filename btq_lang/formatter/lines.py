@@ -72,21 +72,20 @@ class Line:
         blank: whether a blank line stands above it.
         lead: the comment lines above it, at its own level.
         pieces: its words and the comments between and behind them; none: the end of the file.
-        tail: the comment lines below it that belong to it, or to a line above it, rather than to the line that follows.
+        tail: the comment lines below it that belong to it or to a line above it, not beside the line that follows.
         start, end: its span, with comment lines and with the blank lines above.
     """
 
     __slots__ = ("blank", "blanks", "end", "lead", "level", "pieces", "start", "tail")
 
-    def __init__(self, level: int, blanks: str, blank: bool, pieces: list[Piece], start: int = 0) -> None:
+    def __init__(self, level: int, blanks: str, blank: bool, pieces: list[Piece]) -> None:
         self.level: Final = level
         self.blanks: Final = blanks
         self.blank = blank
         self.pieces = pieces
         self.lead: list[Remark] = []
         self.tail: list[Remark] = []
-        self.start = start
-        self.end = start
+        self.start = self.end = 0
 
     @property
     def words(self) -> list[Piece]:
@@ -103,18 +102,16 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
     """
     lines: list[Line] = []
     open_lines: list[Line] = []  # the line above and those whose blocks it stands in
-    level = 0
     for remarks, line in _gathered(text, tokens, atoms):
-        level = line.level
         for remark in remarks:
-            remark.depth = _depth(remark.blanks, open_lines, level)
-        below = max((index + 1 for index, remark in enumerate(remarks) if remark.depth > level), default=0)
+            remark.depth = _depth(remark.blanks, open_lines, line.level)
+        below = max((index + 1 for index, remark in enumerate(remarks) if remark.depth > line.level), default=0)
         line.lead = remarks[below:]
         line.start = lines[-1].end if lines else 0
         if below:
             lines[-1].tail = remarks[:below]
             line.start = lines[-1].end = _line_end(text, remarks[below - 1].end)
-        while open_lines and open_lines[-1].level >= level:
+        while open_lines and open_lines[-1].level >= line.level:
             open_lines.pop()
         open_lines.append(line)
         lines.append(line)
