@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_PARTS = re.compile(r"/\*\*/|^\*\*/|/\*\*$|\*\*|\*|\?|[^*?/]+|/")
+_PARTS = r"/\*\*/|^\*\*/|/\*\*$|\*\*|\*|\?|[^*?/]+|/"  # compiled when it is used: most projects exclude nothing
 _MEANINGS = {"/**/": "/(?:.*/)?", "**/": "(?:.*/)?", "/**": "/.+", "**": ".*", "*": "[^/]*", "?": "[^/]"}
 
 
@@ -25,5 +25,5 @@ def glob_matcher(patterns: Iterable[str]) -> re.Pattern[str] | None:
 
 def _expression(pattern: str) -> str:
     anchored = "/" in pattern.rstrip("/")
-    body = "".join(_MEANINGS.get(part) or re.escape(part) for part in _PARTS.findall(pattern.strip("/")))
+    body = "".join(_MEANINGS.get(part) or re.escape(part) for part in re.findall(_PARTS, pattern.strip("/")))
     return ("" if anchored else "(?:.*/)?") + body + ("/" if pattern.endswith("/") else "/?")

@@ -12,7 +12,7 @@ one and not by regular expressions because that is the form which mypyc compiles
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache, lru_cache
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import blanks_end, line_end, line_opening, name_end, number_at, string_end, symbol_at, unit_run
@@ -171,7 +171,7 @@ class Lexer:
     def _adopting_level(self, blanks: str) -> int:
         """The block that a line belongs to whose indentation fits none: for an item that of the items, else the
         deepest whose opener stands further left."""
-        if _TOP_LINE.match(self.text, self.position):
+        if _top_line().match(self.text, self.position):
             return max(self._root_level, 0)
         level = len(self._indents) - 1
         while not _extends(blanks, self._indents[level - 1], self._aliases[level - 1]):
@@ -358,7 +358,7 @@ class Lexer:
 
     def _check_lines(self, start: int, end: int) -> None:
         for line in _LINE_START.finditer(self.text, start, end):
-            if item := _TOP_LINE.match(self.text, line.end()):
+            if item := _top_line().match(self.text, line.end()):
                 place = Place(Span(item.start(), item.end()))
                 self.problems.append(
                     Diagnostic(
@@ -497,7 +497,7 @@ class Lexer:
         if at >= size or text[at] == ")" or _COMMENT_SIGN.match(text, at):
             return at
         blanks = text[start:at]
-        if self._at_top_column(blanks) and _TOP_LINE.match(text, at):
+        if self._at_top_column(blanks) and _top_line().match(text, at):
             self._end_brackets(len(self._brackets), position, at)
             return position
         ended = 0
@@ -597,8 +597,33 @@ def _shown(blanks: str) -> str:
 
 def _pieces(text: str, start: int, end: int) -> list[Token]:
     return [
-        Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _PIECES.finditer(text, start, end)
+        Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _piece().finditer(text, start, end)
     ]
+
+
+# ---- patterns that few files need: each takes a millisecond to compile ----
+
+
+@cache
+def _piece() -> re.Pattern[str]:
+    return re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
+
+
+@cache
+def _top_line() -> re.Pattern[str]:
+    """The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2,
+    Brackets)."""
+    return re.compile(
+        r"""
+        BehaviorTree [ \t]+ ID [ \t]* = (?!=)
+        | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
+        | (?:BehaviorTree|Root|TreeNodesModel|include|signal|context|apply|quality|qualities|QualityReq)
+          (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
+            | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
+          (?! [ \t]* = )
+        """,
+        re.VERBOSE,
+    )
 
 
 # ---- tables ----
@@ -608,11 +633,12 @@ _INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
     "[": "attributes stand in `( … )`",
+    "“": "strings stand in straight quotes",
+    "”": "strings stand in straight quotes",
     "\xa0": "this is a no-break space: use an ordinary blank",
     "\ufeff": "a byte order mark belongs at the start of a file",
 }
 _BLANKS: Final = re.compile(r"[ \t]*")
-_PIECES: Final = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
@@ -621,15 +647,3 @@ _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time
-# The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
-_TOP_LINE: Final = re.compile(
-    r"""
-    BehaviorTree [ \t]+ ID [ \t]* = (?!=)
-    | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
-    | (?:BehaviorTree|Root|TreeNodesModel|include|signal|context|apply|quality|qualities|QualityReq)
-      (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
-        | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
-      (?! [ \t]* = )
-    """,
-    re.VERBOSE,
-)

@@ -17,7 +17,9 @@ PACKAGE = Path(btq_lang.__file__).parent
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "text", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
-    frozenset({"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "plain", "parser", "script"}),
+    frozenset(
+        {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "patterns", "plain", "parser", "script"}
+    ),
     frozenset({"catalog"}),
     frozenset({"toml_places", "project", "symbols", "workspace"}),
     frozenset({"checks", "formatter", "render", "fixes"}),
@@ -80,7 +82,8 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
         ("import btq_lang", {"pygls", "lsprotocol", "lxml", "re", "btq_lang.parser"}),
         (
             "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
-            {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"},
+            {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
+            | {"typing", "argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
         ),
         ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "re", "btq_lang.parser"}),
     ],

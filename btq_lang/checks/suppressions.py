@@ -14,7 +14,7 @@ from btq_lang.diagnostics import Diagnostic
 from btq_lang.tokens import COMMENT
 from btq_lang.workspace import File
 
-_IGNORE = re.compile(r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?")
+_IGNORE = r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?"  # few files have one, so it is compiled when it is used
 
 
 def suppressed_lines(file: File) -> Callable[[Diagnostic], bool]:
@@ -29,8 +29,9 @@ def suppressed_lines(file: File) -> Callable[[Diagnostic], bool]:
         line = start.line
         if not file.lines.line(line)[: start.column].strip():
             behind = file.lines.position(token.end).line + 1
-            line = meant[line] = meant.get(behind, behind)
-        match = _IGNORE.search(token.text)
+            meant[line] = meant.get(behind, behind)
+            line = meant[line]
+        match = re.search(_IGNORE, token.text)
         if match is None or (match[1] and not match[3]):
             continue
         if match[2] is None:

@@ -10,7 +10,6 @@ from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.fixes import fixed
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace
@@ -84,6 +83,8 @@ def _fix(
     groups: tuple[Group, ...], options: CheckOptions, files: Files
 ) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
     """Apply the safe fixes to the files that were asked for; the groups with the new texts, and how many fixes."""
+    from btq_lang.fixes import fixed
+
     done: list[Group] = []
     trouble: list[LoadProblem] = []
     mended = 0

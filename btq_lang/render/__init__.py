@@ -50,6 +50,10 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
         ValueError: there is no such format.
     """
     # A run imports the one renderer that it uses: `json` alone would cost more than the whole of `full`.
+    if form in ("full", "concise") and not report.findings:
+        from btq_lang.render.summary import summary
+
+        return iter((summary(report) + "\n",))
     if form == "full":
         from btq_lang.render import full
 
