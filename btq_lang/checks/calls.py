@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 
 from btq_lang.symbols import Kind, Use
@@ -34,8 +35,8 @@ class Calls:
         return self._called.get(name, ())
 
     def callers(self, name: str) -> tuple[str, ...]:
-        """The other trees that run a tree."""
-        return self._callers.get(name, ())
+        """The other trees that run a tree, or mean to."""
+        return (*self._callers.get(name, ()), *self._meant_by.get(name, ()))
 
     def reached_from(self, name: str) -> frozenset[str]:
         """A tree and all that it runs, directly or not, and those that it means to run: where `SubTree` is missing."""
@@ -76,13 +77,12 @@ class Calls:
         return {}
 
     @cached_property
-    def _callers(self) -> dict[str, tuple[str, ...]]:
-        callers: dict[str, list[str]] = {}
-        for name, called in self._called.items():
-            for tree in called:
-                if tree != name:
-                    callers.setdefault(tree, []).append(name)
-        return {name: tuple(trees) for name, trees in callers.items()}
+    def _callers(self) -> dict[str, list[str]]:
+        return _turned(self._called)
+
+    @cached_property
+    def _meant_by(self) -> dict[str, list[str]]:
+        return _turned(self._meant)
 
     @cached_property
     def _knots(self) -> dict[str, frozenset[str]]:
@@ -112,10 +112,19 @@ class Calls:
                 if tree in left_over:
                     left_over.remove(tree)
                     knot.add(tree)
-                    waiting += self.callers(tree)
+                    waiting += self._callers.get(tree, ())
             if len(knot) > 1 or (knot and start in self.called_by(start)):
                 knots[min(knot, key=place.__getitem__)] = frozenset(knot)
         return knots
+
+
+def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
+    turned: dict[str, list[str]] = {}
+    for name, called in graph.items():
+        for tree in called:
+            if tree != name:
+                turned.setdefault(tree, []).append(name)
+    return turned
 
 
 def _meant(use: Use) -> str:

@@ -68,7 +68,8 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
         wanted = [f"case_{case}" for case in range(1, number + 1)]
         given = {pair.key.text: pair.key for pair in node.attributes}
         extra = [key for name, key in given.items() if is_case(seen, name) and name not in wanted]
-        missing = [name for name in ("variable", *wanted) if name not in given]
+        # Without a variable no case counts, and that is told: the children that can never run.
+        missing = [name for name in wanted if name not in given] if "variable" in given else []
         if extra:
             message = f"{seen.shown} has no case `{extra[0].text}`"
             note = f"its cases are `case_1` to `{wanted[-1]}`"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.names import model_name_problem
-from btq_lang.catalog.nodes import KNOWN_WORDS, available, lookup
+from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks.view import SeenNode, View
 from btq_lang.clauses import HEADS, VERBS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -41,7 +41,9 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         elif view.scope.find(Kind.TREE, name.text) is not None:
             yield _tree_as_node(view, seen, name)
-        elif not (name.text in KNOWN_WORDS or _is_refused(view, seen, name) or _is_clause(seen)):
+        elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
+            continue  # no node of the engine, which is told
+        elif not (_is_refused(view, seen, name) or _is_clause(seen)):
             yield from _unknown(view, entry, seen, name)
 
 
@@ -49,16 +51,17 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A word of the published language, or of an older engine, that no engine of today registers."""
     for seen in view.nodes(entry):
         name = seen.node.id
-        if name is None or name.quoted or seen.definition or name.text not in KNOWN_WORDS:
+        if name is None or seen.definition or seen.is_subtree:
             continue
-        known = KNOWN_WORDS[name.text]
-        fixes: tuple[Fix, ...] = ()
-        if known.replacement:
-            fixes = (replace_fix(f"Replace it by `{known.replacement}`", name.span, known.replacement, safe=True),)
-        elif known.category == "SubTree" and seen.node.category is None:
-            fixes = (replace_fix("Replace it by `SubTree`", name.span, "SubTree"),)
         message = f"`{name.text}` is no node of the engine"
-        yield Diagnostic("not-an-engine-node", name.span, message, notes=(known.why,), fixes=fixes)
+        known = KNOWN_WORDS.get(name.text)
+        if known is not None and (not name.quoted or known.tag == name.text):
+            fixes = _of_today(seen, name, known)
+            yield Diagnostic("not-an-engine-node", name.span, message, notes=(known.why,), fixes=fixes)
+        elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
+            note = f"in quotes a kind is the XML tag, and the engine's node is called {meant.tag}"
+            fix = replace_fix("Take off the quotes", name.span, name.text)
+            yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
 
 
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -161,6 +164,22 @@ def include_place(entry: Entry) -> Span:
 def written(name: str) -> str:
     """A name as it is written in a file: in quotes where it must be."""
     return name if is_name(name) else quote(name)
+
+
+def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
+    """The node of today in the place of an older engine's."""
+    if known.replacement is not None:
+        # Without quotes the old word is read as the new one already, so nothing but this diagnostic changes.
+        title = f"Replace it by `{known.replacement}`"
+        return (replace_fix(title, name.span, known.replacement, safe=not name.quoted),)
+    if known.category == "SubTree" and seen.node.category is None:
+        return (replace_fix("Replace it by `SubTree`", name.span, "SubTree"),)
+    return ()
+
+
+def _quoted_alias(seen: SeenNode, name: Word) -> NodeKind | None:
+    """The built-in that a word would mean without its quotes: `"Retry"` is no tag of the engine."""
+    return lookup(name.text) if name.quoted and seen.kind is None else None
 
 
 def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[Diagnostic]:

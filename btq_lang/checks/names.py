@@ -24,7 +24,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     item = entry.item
     if isinstance(item, Tree):
         if item.name is None:
-            yield from _nameless(view, item)
+            yield from _nameless(view, entry, item)
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(item.name, reason, _renamed(view, entry, item.name))
         for seen in view.nodes(entry):
@@ -78,14 +78,14 @@ def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator
             yield _refused("instance", label, "it is empty, as that of the main tree is")
 
 
-def _nameless(view: View, tree: Tree) -> Iterator[Diagnostic]:
+def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine takes it where nothing stands beside it."""
     others = [
         other.item
         for other in view.file.parsed.entries
         if isinstance(other.item, Tree | Model | Models | Include) and other.item is not tree
     ]
-    if others:
+    if others and not any(problem.span.start <= tree.end for problem in entry.diagnostics):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         note = "the engine takes a tree without ID only if nothing else is in the file"
         yield Diagnostic("forbidden-name", span, "this tree has no ID: `BehaviorTree <ID>`", notes=(note,))

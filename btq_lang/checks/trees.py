@@ -14,6 +14,7 @@ from btq_lang.syntax import Entry, Model, Node, Root, Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Definition
 
+_MOST_NAMES = 5  # in one message
 _LAST_WINS = "the engine does not complain: it runs the last one it reads"
 
 
@@ -117,24 +118,28 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Several trees, and nothing says which of them is the mission; told at the first."""
     if not view.trees or entry is not view.trees[0] or view.path in view.workspace.included_files:
         return
+    if view.calls.has_gaps or not view.is_read:
+        return  # the tree that runs the others may be what is misspelt
     roots = [other for other in view.file.parsed.entries if isinstance(other.item, Root)]
     if view.main_tree or any(use.kind is Kind.TREE for root in roots for use in view.file.summary_of(root).uses):
         return
-    named = [(tree.start, tree.item.name) for tree in view.trees if isinstance(tree.item, Tree) and tree.item.name]
-    tops = [name for _, name in named if not view.calls.callers(name.text)]
-    if len(named) < 2 or not tops:
+    tops: dict[str, Related] = {}
+    for other in view.trees:
+        name = other.item.name if isinstance(other.item, Tree) else None
+        if name is not None and not view.calls.callers(name.text) and name.text not in tops:
+            place = Place(name.span.shifted(other.start), view.path)
+            tops[name.text] = Related(place, "another tree that no tree refers to")
+    if len(tops) < 2 or not isinstance(entry.item, Tree):
         return  # without one at the top they run in circles, and that is told
-    names = ", ".join(f"`{name.text}`" for name in tops)
+    names = ", ".join(f"`{name}`" for name in tuple(tops)[:_MOST_NAMES])
+    span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
     yield Diagnostic(
         "unknown-main-tree",
-        named[0][1].span,
-        f"nothing says which tree is the mission: no tree refers to {names}",
-        related=tuple(
-            Related(Place(name.span.shifted(begin), view.path), "another tree of this file")
-            for begin, name in named[1:4]
-        ),
+        span,
+        f"nothing says which tree is the mission: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
+        related=tuple(tops.values())[1:_MOST_NAMES],
         notes=("a line `Root <tree>` names the main tree",),
-        fixes=tuple(_main_tree_fix(view, roots, name.text) for name in tops[:3]),
+        fixes=tuple(_main_tree_fix(view, roots, name) for name in tuple(tops)[:3]),
     )
 
 

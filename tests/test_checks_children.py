@@ -1,0 +1,129 @@
+"""child-count, switch-cases, parallel-threshold: what their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+
+def tree(*lines: str) -> str:
+    return "".join(f"{line}\n" for line in ("BehaviorTree Main", *(f"    {line}" for line in lines)))
+
+
+def test_numbers_of_children() -> None:
+    assert_clean(tree("->", "    X"))
+    assert_clean(tree("IfThenElse", "    X", "    Y", "    Z"))
+    assert_clean(tree("Own", "    X", "    Y"))  # whose category nobody knows
+    assert_clean(tree("->", '    xml "<X/>"'))
+    assert_problems(tree("->"), "2:5 error child-count «->» `->` takes 1 or more children, it has none")
+    assert_problems(
+        tree("Inverter", "    X", "    Y"),
+        "2:5 error child-count «Inverter» `Inverter` takes exactly 1 child, it has 2",
+    )
+    assert_problems(
+        tree("WhileDoElse", "    W", "    X", "    Y", "    Z"),
+        "2:5 error child-count «WhileDoElse» `WhileDoElse` takes 2 to 3 children, it has 4",
+    )
+    assert_problems(
+        tree("SubTree Pick", "    X") + "BehaviorTree Pick\n    X\n",
+        "2:13 error child-count «Pick» `Pick` takes no children, it has 1",
+    )
+
+
+def test_what_the_category_says() -> None:
+    assert_problems(
+        tree("Decorator Slow"), "2:15 error child-count «Slow» the Decorator `Slow` takes exactly 1 child, it has none"
+    )
+    assert_problems(
+        "Action Move\n" + tree("Move", "    X"),
+        "3:5 error child-count «Move» the Action `Move` takes no children, it has 1",
+    )
+
+
+def test_where_two_categories_disagree_only_that_is_told() -> None:
+    assert_problems(
+        "Decorator Slow\n" + tree("Action Slow", "    X"),
+        "3:5 warning category-mismatch «Action» `Slow` is written as Action, its model says Decorator",
+    )
+
+
+def test_a_child_that_could_not_be_read_is_not_missed() -> None:
+    assert_problems(
+        tree("->", "    Inverter", "        = X", "    Y"),
+        "4:13 error syntax-error «=» expected a node: its kind, or a symbol: -> ? || …, found `=`",
+    )
+    assert_problems(
+        tree("->", "    Inverter", "    Y", "    = X"),
+        "3:9 error child-count «Inverter» `Inverter` takes exactly 1 child, it has none",
+        "5:9 error syntax-error «=» expected a node: its kind, or a symbol: -> ? || …, found `=`",
+    )
+
+
+# ---- Switch ----------------------------------------------------------------------------------------------------------
+
+CASES = "variable = {x} case_1 = a case_2 = b"
+
+
+def test_a_switch_by_its_children() -> None:
+    assert_clean(tree(f"Switch ({CASES})", "    X", "    Y", "    Z"))
+    assert_problems(tree(f"Switch ({CASES})", "    X"), "2:5 error switch-cases «Switch» `Switch` has 1 child")
+    assert_problems(tree("Switch"), "2:5 error switch-cases «Switch» `Switch` has no children")
+    assert_problems(
+        tree(f"Switch ({CASES})", *["    X"] * 8), "2:5 error switch-cases «Switch» `Switch` has 8 children"
+    )
+    assert_problems(
+        tree(f"Switch ({CASES})", *["    X"] * 5),
+        "2:5 warning switch-cases «Switch» `Switch` has no `case_3` and no `case_4`",
+    )
+
+
+@pytest.mark.parametrize("switch", ["Switch", "Switch2", '"Switch2"'])
+def test_a_case_too_many_is_told_once(switch: str) -> None:
+    text = tree(f"{switch} ({CASES} case_3 = c)", "    X", "    Y", "    Z")
+    column = text.index("case_3") - text.index("\n")
+    shown = switch.strip('"')
+    assert_problems(text, f"2:{column} error switch-cases «case_3» `{shown}` has no case `case_3`")
+
+
+def test_a_numbered_switch_counts_its_children() -> None:
+    assert_problems(
+        tree(f"Switch2 ({CASES})", "    X", "    Y"),
+        "2:5 error child-count «Switch2» `Switch2` takes exactly 3 children, it has 2",
+    )
+
+
+def test_strange_numbers_of_cases() -> None:
+    for key in ("case_0", "case_" + "9" * 5_000):
+        text = tree(f"Switch2 ({CASES} {key} = c)", "    X", "    Y", "    Z")
+        column = text.index(key) - text.index("\n")
+        assert_problems(text, f"2:{column} error switch-cases «{key}» `Switch2` has no case `{key}`")
+    assert_problems(
+        tree(f"Switch2 ({CASES} case_x = c)", "    X", "    Y", "    Z"),
+        "2:51 error unknown-port «case_x» `Switch2` has no port `case_x`",
+    )
+
+
+# ---- Parallel --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "ports", ["", " (success_count = 2)", " (success_count = -1 failure_count = 2)", " (success_count = {n})"]
+)
+def test_thresholds_that_can_be_reached(ports: str) -> None:
+    assert_clean(tree(f"||{ports}", "    X", "    Y"))
+
+
+def test_thresholds_out_of_reach() -> None:
+    text = tree("|| (success_count = 2)", "    X")
+    assert_problems(text, "2:25 error parallel-threshold «2» `success_count` is 2, but there is only 1 child")
+    assert_fix(text, "Write `-1`: all children", text.replace("= 2", "= -1"))
+    assert_problems(
+        tree("All|| (max_failures = 3)", "    X", "    Y"),
+        "2:27 error parallel-threshold «3» `max_failures` is 3, but there are only 2 children",
+    )
+
+
+def test_without_children_that_is_the_mistake() -> None:
+    assert_problems(
+        tree("|| (success_count = 2)"), "2:5 error child-count «||» `||` takes 1 or more children, it has none"
+    )

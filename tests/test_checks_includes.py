@@ -1,0 +1,53 @@
+"""missing-include, cyclic-include: what their pages do not show."""
+
+from __future__ import annotations
+
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+from btq_lang.project import Project
+
+
+def test_includes_that_are_found() -> None:
+    assert_clean('//- a/main.btq\ninclude "b.btq"\ninclude "../c.btq"\n//- a/b.btq\n//- c.btq\n')
+    assert_clean('//- main.btq\ninclude "b.btq"\n//- shared/b.btq\n', Project(include_paths=("shared",)))
+    assert_clean('include "nav.xml" (ros_pkg = "nav2")\n')  # what a ROS package holds nobody knows here
+
+
+def test_what_may_be_meant() -> None:
+    elsewhere = '//- missions/main.btq\ninclude "skills.btq"\n//- shared/skills.btq\n'
+    assert_problems(
+        elsewhere, 'missions/main.btq:1:9 error missing-include «"skills.btq"» there is no file `skills.btq`'
+    )
+    assert_fix(elsewhere, "Replace it by `../shared/skills.btq`", elsewhere.replace('"skills', '"../shared/skills'))
+    misspelt = '//- main.btq\ninclude "skils.btq"\n//- skills.btq\n'
+    assert_fix(misspelt, "Replace it by `skills.btq`", misspelt.replace("skils", "skills"))
+
+
+def test_an_empty_path() -> None:
+    assert_problems('include ""\n', '1:9 error missing-include «""» this include names no file')
+
+
+def test_circles() -> None:
+    assert_problems('include "main.btq"\n', '1:9 error cyclic-include «"main.btq"» this file includes itself')
+    assert_problems(
+        '//- a.btq\ninclude "b.btq"\n//- b.btq\ninclude "c.btq"\n//- c.btq\ninclude "b.btq"\n',
+        'b.btq:1:9 error cyclic-include «"c.btq"» this file includes `c.btq`, which includes this file again',
+        'c.btq:1:9 error cyclic-include «"b.btq"» this file includes `b.btq`, which includes this file again',
+    )
+
+
+def test_in_a_circle_everything_is_known() -> None:
+    assert_problems(
+        """
+        //- a.btq
+        include "b.btq"
+        BehaviorTree A
+            SubTree B
+        //- b.btq
+        include "a.btq"
+        BehaviorTree B
+            X
+        """,
+        'a.btq:1:9 error cyclic-include «"b.btq"» this file includes `b.btq`, which includes this file again',
+        'b.btq:1:9 error cyclic-include «"a.btq"» this file includes `a.btq`, which includes this file again',
+    )

@@ -1,0 +1,290 @@
+"""unknown-node, not-an-engine-node, newer-engine-node, category-mismatch, clause-as-node, duplicate-definition: what
+their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+from btq_lang.project import Project
+
+
+def tree(node: str) -> str:
+    return f"BehaviorTree Main\n    ->\n        {node}\n"
+
+
+# ---- unknown-node ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        "MoveBase",  # without a palette every name is a node of the robot's own
+        "Pack",
+        "LoopPoint (queue = {points})",  # programs register loops over types of their own
+        "Switch7",  # and switches with more cases
+        "Sleep2",
+        "Action Rety",  # a category says that there is such a node
+        '"Test"',
+    ],
+)
+def test_a_name_that_may_be_meant(node: str) -> None:
+    assert_clean(tree(node))
+
+
+@pytest.mark.parametrize(
+    ("slip", "meant"),
+    [
+        ("sequence", "Sequence"),
+        ("Sequences", "Sequence"),
+        ("Rety", "Retry"),
+        ("inverter", "Inverter"),
+        ("RetryUntilSucessfull", "RetryUntilSuccessful"),
+        ("Subtree", "SubTree"),
+    ],
+)
+def test_a_slip_of_a_built_in(slip: str, meant: str) -> None:
+    assert_problems(tree(slip), f"3:9 warning unknown-node «{slip}» unknown node `{slip}`")
+    assert_fix(tree(slip), f"Replace `{slip}` by `{meant}`", tree(meant))
+
+
+@pytest.mark.parametrize(("model", "node"), [("Pick", "Pik"), ("MoveBase", "movebase"), ("OpenDoor", "OpenDoors")])
+def test_a_slip_of_a_model(model: str, node: str) -> None:
+    text = f"Action {model}\n{tree(node)}"
+    assert_problems(text, f"4:9 warning unknown-node «{node}» unknown node `{node}`")
+
+
+@pytest.mark.parametrize(
+    ("model", "node"),
+    [("Pick", "Pack"), ("MoveTo1", "MoveTo2"), ("MoveBaseToDock", "MoveBaseToDesk"), ("Grasp", "Release")],
+)
+def test_models_of_the_file_alone_are_no_palette(model: str, node: str) -> None:
+    assert_clean(f"Action {model}\n{tree(node)}")
+
+
+def test_with_a_palette_a_missing_model_is_told_once() -> None:
+    text = """
+        TreeNodesModel
+            Action Grasp
+        BehaviorTree Main
+            ->
+                Grasp
+                Release
+                Release
+                Action Wait
+        """
+    assert_problems(
+        text,
+        "6:9 warning unknown-node «Release» unknown node `Release`",
+        "8:16 warning unknown-node «Wait» unknown node `Wait`",
+    )
+    assert_fix(text, "Declare it: `Action Release`", text.replace("Behavior", "Action Release\n        Behavior"))
+
+
+def test_a_palette_of_subtrees_says_nothing_of_nodes() -> None:
+    assert_clean("TreeNodesModel\n    SubTree Main\n" + tree("Release"))
+
+
+def test_models_that_nobody_can_see_are_not_missed() -> None:
+    """What an XML file declares is not read, nor what a ROS package holds."""
+    assert_clean('include "skills.btq" (ros_pkg = "robot")\nTreeNodesModel\n    Action Grasp\n' + tree("Release"))
+
+
+def test_a_tree_called_as_a_node() -> None:
+    pick = "BehaviorTree Pick\n    X\n"
+    for node in ("Pick", "Action Pick", "Pick First (object = cup)"):
+        column = 16 if node.startswith("Action") else 9
+        assert_problems(tree(node) + pick, f"3:{column} error unknown-node «Pick» `Pick` is a tree, not a node")
+    assert_fix(tree("Pick First") + pick, "Write `SubTree Pick`", tree("SubTree Pick First") + pick)
+    assert_fix(tree("Action Pick") + pick, "Write `SubTree Pick`", tree("SubTree Pick") + pick)
+
+
+def test_an_explicit_form_without_an_id() -> None:
+    assert_problems(tree("Action"), "3:9 error unknown-node «Action» this Action has no ID: `Action <ID>`")
+    assert_problems(
+        tree('Condition ""'), "3:9 error unknown-node «Condition» this Condition has no ID: `Condition <ID>`"
+    )
+    assert_problems(
+        tree("Action (ID = )"),
+        "3:22 error syntax-error «)» expected a value: a string, a name, a number, a quantity or {key}, found `)`",
+    )
+
+
+def test_one_mistake_in_a_name_is_told_once() -> None:
+    palette = "TreeNodesModel\n    Action Grasp\n"
+    assert_problems(
+        palette + tree("Root"),
+        "5:9 error forbidden-name «Root» the engine refuses the node name `Root`: `Root` is a reserved name",
+    )
+    assert_problems(
+        palette + tree("keeps"),
+        "5:9 warning clause-as-node «keeps» `keeps` begins a clause of a requirement, but here it is a node",
+    )
+    assert_problems(
+        palette + tree("CoroAction"),
+        "5:9 warning not-an-engine-node «CoroAction» `CoroAction` is no node of the engine",
+    )
+
+
+# ---- not-an-engine-node, newer-engine-node ---------------------------------------------------------------------------
+
+
+def test_a_quoted_kind_is_the_xml_tag() -> None:
+    text = tree('"Retry" (num_attempts = 3)\n            X')
+    assert_problems(text, '3:9 warning not-an-engine-node «"Retry"» `Retry` is no node of the engine')
+    assert_fix(text, "Take off the quotes", text.replace('"', ""))
+    assert_clean(tree('"RetryUntilSuccessful" (num_attempts = 3)\n            X'))
+    assert_clean("Decorator Retry\n" + tree('"Retry"\n            X'))  # the program's own
+
+
+def test_a_word_of_version_3_is_read_as_that_of_today() -> None:
+    text = tree("SequenceStar")
+    assert_problems(
+        text,
+        "3:9 error child-count «SequenceStar» `SequenceStar` takes 1 or more children, it has none",
+        "3:9 warning not-an-engine-node «SequenceStar» `SequenceStar` is no node of the engine",
+    )
+    assert_fix(text, "Replace it by `SequenceWithMemory`", tree("SequenceWithMemory"), safe=True)
+    plus = "BehaviorTree Main\n    SubTreePlus (ID = Pick)\nBehaviorTree Pick\n    X\n"
+    assert_problems(plus, "2:5 warning not-an-engine-node «SubTreePlus» `SubTreePlus` is no node of the engine")
+    assert_fix(plus, "Replace it by `SubTree`", plus.replace("Plus", ""))
+
+
+def test_a_model_makes_a_word_a_node() -> None:
+    assert_clean("Action PopFromQueue\n" + tree("PopFromQueue"))
+
+
+@pytest.mark.parametrize(
+    ("engines", "problem"),
+    [
+        (("4.10",), None),
+        (("4.9", "4.10"), None),
+        (
+            ("4.8",),
+            "error newer-engine-node «TryCatch» `TryCatch` came with BehaviorTree.CPP 4.9; 4.8 does not have it",
+        ),
+        (
+            ("4.6", "4.10"),
+            "error newer-engine-node «TryCatch» `TryCatch` came with BehaviorTree.CPP 4.9; 4.6 does not have it",
+        ),
+    ],
+)
+def test_the_engines_that_a_project_names(engines: tuple[str, ...], problem: str | None) -> None:
+    text = tree("TryCatch\n            X\n            Y")
+    assert_problems(text, *([f"3:9 {problem}"] if problem else []), project=Project(engines=engines))
+
+
+# ---- category-mismatch -----------------------------------------------------------------------------------------------
+
+
+def test_only_what_can_stay_as_it_is_is_mended_safely() -> None:
+    fits = "Condition Open\n" + tree("Action Open")
+    assert_problems(
+        fits, "4:9 warning category-mismatch «Action» `Open` is written as Action, its model says Condition"
+    )
+    assert_fix(fits, "Replace it by `Condition`", fits.replace("        Action", "        Condition"), safe=True)
+    childless = "Decorator Slow\n" + tree("Action Slow")  # a decorator without a child would be the next mistake
+    assert_problems(
+        childless, "4:9 warning category-mismatch «Action» `Slow` is written as Action, its model says Decorator"
+    )
+    assert_fix(childless, "Replace it by `Decorator`", childless.replace("        Action", "        Decorator"))
+
+
+def test_categories_that_agree_or_that_nobody_knows() -> None:
+    assert_clean("Condition Open\n" + tree("Condition Open"))
+    assert_clean(tree("Control Sequence\n            X"))
+    assert_clean(tree("Control Own\n            X"))
+    assert_clean(
+        "SubTree Pick\n    input object : string\n" + tree("SubTree Pick (object = cup)") + "BehaviorTree Pick\n    X\n"
+    )
+
+
+# ---- clause-as-node --------------------------------------------------------------------------------------------------
+
+
+def test_a_node_may_be_called_as_a_clause() -> None:
+    assert_clean(tree('"keeps"'))
+    assert_clean(tree("Action keeps"))
+    assert_clean("Action goal\n" + tree("goal"))
+    assert_clean(tree("every\n            X"))
+    assert_fix(tree("goal"), 'Write "goal" if a node is meant', tree('"goal"'))
+
+
+def test_a_clause_that_the_parser_has_told_is_not_told_again() -> None:
+    assert_problems(
+        tree("takes at most 30 s"),
+        "3:9 error syntax-error «takes» `takes` begins a clause, and clauses stand in a requirement",
+    )
+
+
+# ---- duplicate-definition --------------------------------------------------------------------------------------------
+
+
+def test_models_with_one_interface_repeat_each_other() -> None:
+    assert_clean(
+        'Action A "one"\n    input x : int = 1 "x"\nAction A "two"\n    input x : int = 1\nBehaviorTree T\n    A\n'
+    )
+    assert_problems(
+        "Action A\n    input x : int = 1\nAction A\n    input x : int = 2\n",
+        "3:8 warning duplicate-definition «A» there are two definitions of the node model `A`",
+    )
+    assert_problems(
+        "Action A\nCondition A\n",
+        "2:11 warning duplicate-definition «A» there are two definitions of the node model `A`",
+    )
+
+
+def test_one_name_for_things_of_different_kinds() -> None:
+    assert_clean('signal load : kg\ncontext heavy : load > 3 kg\nquality load : safety\nQualityReq load "light"\n')
+
+
+def test_two_includes_that_clash_are_told_where_they_meet() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        include "a.btq"
+        include "b.btq"
+        //- a.btq
+        signal load : kg
+        Action Lift
+        //- b.btq
+        signal load : N
+        Action Lift
+        """,
+        'main.btq:2:9 error duplicate-definition «"b.btq"» this file brings a second definition of the signal `load`',
+    )
+
+
+def test_a_file_that_comes_in_two_ways_clashes_with_nothing() -> None:
+    assert_clean(
+        """
+        //- main.btq
+        include "a.btq"
+        include "b.btq"
+        include "base.btq"
+        //- a.btq
+        include "base.btq"
+        //- b.btq
+        include "base.btq"
+        //- base.btq
+        signal load : kg
+        """
+    )
+
+
+def test_a_clash_inside_an_included_file_is_told_there() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        include "other.btq"
+        include "a.btq"
+        //- a.btq
+        include "base.btq"
+        signal load : N
+        //- base.btq
+        signal load : kg
+        //- other.btq
+        signal speed : m/s
+        """,
+        "a.btq:2:8 error duplicate-definition «load» there are two definitions of the signal `load`",
+    )

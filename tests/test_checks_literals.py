@@ -1,0 +1,129 @@
+"""invalid-literal, trailing-text-in-number, quantity-on-unitless-port: what their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+from btq_lang.project import Project
+
+
+def timeout(value: str) -> str:
+    return f"BehaviorTree Main\n    Timeout (msec = {value})\n        X\n"
+
+
+@pytest.mark.parametrize(
+    "value", ["30000", '"30000"', "{limit}", '"{limit}"', "0", "30 s", "30s", "0.5 min", '"5 "', "1e3 ms"]
+)
+def test_values_that_the_engine_reads(value: str) -> None:
+    assert_clean(timeout(value))
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("fast", "`fast` is no unsigned int"),
+        ('""', "an empty text is no unsigned int"),
+        ("-1", "`-1` is out of range: unsigned int is 0 to 4294967295"),
+        ("4294967296", "`4294967296` is out of range: unsigned int is 0 to 4294967295"),
+        ("0.5 ms", "`0.5 ms` is no whole number of ms"),
+        ("-3 s", "`-3 s`: -3000 ms is out of range: unsigned int is 0 to 4294967295"),
+        ("100 d", "`100 d`: 8640000000 ms is out of range: unsigned int is 0 to 4294967295"),
+        ("1e999 s", "`1e999 s` is more than any number"),
+    ],
+)
+def test_values_that_the_engine_refuses(value: str, message: str) -> None:
+    assert_problems(timeout(value), f"2:21 error invalid-literal «{value}» {message}")
+
+
+def test_a_number_of_any_length() -> None:
+    digits = "9" * 5_000
+    message = f"`{digits}` is out of range: unsigned int is 0 to 4294967295"
+    assert_problems(timeout(digits), f"2:21 error invalid-literal «{digits}» {message}")
+    assert_problems(
+        timeout(f"{digits} s"), f"2:21 error invalid-literal «{digits} s» `{digits} s` is more than any number"
+    )
+
+
+@pytest.mark.parametrize(("written", "meant"), [('"+5"', "5"), ('" 5"', "5")])
+def test_what_the_engine_is_strict_about_is_offered_right(written: str, meant: str) -> None:
+    assert_fix(timeout(written), f"Write `{meant}`", timeout(meant))
+
+
+@pytest.mark.parametrize(
+    ("value", "reads", "fixes"),
+    [
+        ('"30 sec"', "30", {"Write the quantity `30 sec`": "30 sec", "Write what the engine reads: `30`": "30"}),
+        ('"30 apples"', "30", {"Write what the engine reads: `30`": "30"}),
+        ("1.5", "1", {"Write what the engine reads: `1`": "1"}),
+        ('"30 kg"', "30", {"Write what the engine reads: `30`": "30"}),
+    ],
+)
+def test_what_is_read_of_a_number_with_a_tail(value: str, reads: str, fixes: dict[str, str]) -> None:
+    text = value.strip('"')
+    message = f"the engine reads `{text}` as {reads} and drops the rest without a word"
+    assert_problems(timeout(value), f"2:21 warning trailing-text-in-number «{value}» {message}")
+    for title, fixed in fixes.items():
+        assert_fix(timeout(value), title, timeout(fixed))  # none is safe: what was meant is not known
+
+
+def test_a_list_keeps_its_quotes() -> None:
+    loop = 'BehaviorTree Main\n    LoopInt (queue = "1;2x;3" value = {v})\n        X\n'
+    assert_fix(loop, "Write what the engine reads: `1;2;3`", loop.replace("2x", "2"))
+
+
+def test_a_dimension_that_does_not_fit() -> None:
+    assert_problems(timeout("3 kg"), "2:21 error quantity-on-unitless-port «3 kg» `msec` takes time, `3 kg` is mass")
+
+
+def test_a_unit_that_nobody_knows_is_told_as_such_only() -> None:
+    assert_problems(timeout("30sek"), "2:23 error unknown-unit «sek» `sek` is no unit: did you mean `s`?")
+
+
+def test_the_unit_of_a_node_of_ones_own_is_not_known() -> None:
+    for model in ("", "Action Move\n    input limit : double\n"):
+        text = f"{model}BehaviorTree Main\n    Move (limit = 25 s)\n"
+        line = text.count("\n")
+        assert_problems(
+            text, f"{line}:19 error quantity-on-unitless-port «25 s» nobody knows the unit of the port `limit`"
+        )
+        assert_fix(text, "Write `25`", text.replace("25 s", "25"))
+
+
+def test_literals_for_a_model() -> None:
+    model = "Action Move\n    input n : int\n    input place : geometry_msgs::msg::Pose\n"
+    assert_problems(
+        f"{model}BehaviorTree Main\n    Move (n = many place = here)\n",
+        "5:15 error invalid-literal «many» `many` is no int",
+    )
+
+
+def test_a_tree_keeps_what_it_is_given() -> None:
+    """The engine does not convert it to the port's type, so nothing is dropped; but what reads the entry may fail."""
+    tree = "BehaviorTree Main\n    SubTree Pick (n = 2.5)\nBehaviorTree Pick\n    input n : int\n    X\n"
+    assert_problems(tree, "2:23 warning invalid-literal «2.5» `2.5` is no int")
+
+
+def test_defaults_are_values_too() -> None:
+    assert_problems(
+        'Action Move\n    input n : int = many\n    input m : int = ""\n    input limit : int = 3 s\n',
+        "2:21 warning invalid-literal «many» `many` is no int",
+        "4:25 error quantity-on-unitless-port «3 s» nobody knows the unit of the port `limit`",
+    )
+
+
+def test_autoremap_is_a_bool() -> None:
+    assert_problems(
+        "BehaviorTree Main\n    SubTree Pick (_autoremap = maybe)\nBehaviorTree Pick\n    X\n",
+        "2:32 error invalid-literal «maybe» `maybe` is no bool: true, false, 1 or 0",
+    )
+
+
+def test_versions_read_differently() -> None:
+    text = 'BehaviorTree Main\n    LoopDouble (queue = "+1.5;2" value = {v})\n        X\n'
+    assert_clean(text, Project(engines=("4.6",)))
+    assert_problems(
+        text,
+        '2:25 error invalid-literal «"+1.5;2"» `+1.5;2` has an item that is refused: `+1.5` is no double',
+        project=Project(engines=("4.10",)),
+    )

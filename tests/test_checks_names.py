@@ -1,0 +1,154 @@
+"""forbidden-name, duplicate-instance-name: what their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+from btq_lang.project import Project
+
+OLD = Project(engines=("4.6",))
+
+
+def tree(*lines: str) -> str:
+    return "".join(f"{line}\n" for line in ("BehaviorTree Main", *(f"    {line}" for line in lines)))
+
+
+# ---- forbidden-name --------------------------------------------------------------------------------------------------
+
+
+def test_a_tree_is_renamed_wherever_it_is_named() -> None:
+    text = """
+        //- main.btq
+        include "parts.btq"
+        Root "Move tubes"
+        BehaviorTree "Move tubes"
+            SubTree "3 tubes"
+        //- parts.btq
+        BehaviorTree "3 tubes"
+            X
+        """
+    assert_problems(
+        text,
+        'main.btq:3:14 warning forbidden-name «"Move tubes"» '
+        "the engine refuses the tree name `Move tubes`: it contains a blank",
+        'parts.btq:1:14 warning forbidden-name «"3 tubes"» '
+        "the engine refuses the tree name `3 tubes`: it contains a blank",
+    )
+    assert_fix(text, "Rename it to `Move_tubes` wherever it is named", text.replace('"Move tubes"', "Move_tubes"))
+    parts = '//- parts.btq\nBehaviorTree "3 tubes"\n    X\n//- main.btq\ninclude "parts.btq"\n' + tree(
+        'SubTree "3 tubes"'
+    )
+    assert_fix(parts, "Rename it to `_3_tubes` wherever it is named", parts.replace('"3 tubes"', "_3_tubes"))
+
+
+def test_a_new_name_is_not_taken() -> None:
+    text = 'Root "a b"\nBehaviorTree "a b"\n    SubTree a_b\nBehaviorTree a_b\n    X\n'
+    assert_fix(text, "Rename it to `a_b_` wherever it is named", text.replace('"a b"', "a_b_"))
+
+
+def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
+    """Not at each of its SubTrees, nor where a SubTree names a tree that is not there."""
+    assert_problems(
+        tree("->", '    SubTree "a b"', '    SubTree "a b"') + 'BehaviorTree "a b"\n    X\n',
+        '5:14 warning forbidden-name «"a b"» the engine refuses the tree name `a b`: it contains a blank',
+    )
+    assert_problems(
+        tree('SubTree "a b"'),
+        '2:13 error unknown-tree «"a b"» there is no tree `a b` in this file or in those it includes',
+    )
+    assert_problems(
+        'include "parts.xml" (ros_pkg = "robot")\n' + tree('SubTree "a b"'),
+        '3:13 warning forbidden-name «"a b"» the engine refuses the tree name `a b`: it contains a blank',
+    )
+
+
+def test_the_first_engine_takes_every_name() -> None:
+    assert_clean('BehaviorTree "a b"\n    "c d" "e\\n"\n', OLD)
+
+
+@pytest.mark.parametrize("name", ["BatteryLow?", '"Move Base"', '"a.b"'])
+def test_a_node_may_have_any_id_in_the_explicit_form(name: str) -> None:
+    shown = name.strip('"')
+    text = tree(name)
+    (why,) = [why for mark, why in ((" ", "a blank"), ("?", "`?`"), (".", "`.`")) if mark in shown]
+    assert_problems(
+        text, f"2:5 error forbidden-name «{name}» the engine refuses the node name `{shown}`: it contains {why}"
+    )
+    assert_fix(text, f"Write its category: `Action {name}`", tree(f"Action {name}"))
+    assert_clean(tree(f"Action {name}"))
+
+
+def test_the_category_follows_the_model_or_the_children() -> None:
+    model = "Condition BatteryLow?\n"
+    assert_fix(
+        model + tree("BatteryLow?"),
+        "Write its category: `Condition BatteryLow?`",
+        model + tree("Condition BatteryLow?"),
+    )
+    assert_fix(tree("Slow?", "    X"), "Write its category: `Decorator Slow?`", tree("Decorator Slow?", "    X"))
+
+
+def test_an_instance_may_be_called_anything_but_this() -> None:
+    assert_clean(tree('X "Drive to the shelf: 3 * 4 < 5?"'))
+    assert_clean(tree('X "two\\nlines"'))
+    assert_problems(
+        tree('X "a\x07b"'),
+        '2:7 error forbidden-name «"a\x07b"» '
+        "the engine refuses the instance name `a\x07b`: it contains the control character U+0007",
+    )
+
+
+def test_ports_of_a_subtrees_model() -> None:
+    """Those of other nodes' models the engine never reads."""
+    assert_problems(
+        "SubTree Pick\n    input name\nAction Move\n    input name\n",
+        "2:11 error forbidden-name «name» "
+        "the engine refuses the port name `name`: it is the name of a reserved attribute",
+    )
+
+
+def test_a_tree_without_an_id() -> None:
+    assert_clean("BehaviorTree\n    X\n")
+    assert_clean("signal a : m\nBehaviorTree\n    X\n")  # which is not in the XML
+    for other in ("Action X\n", "BehaviorTree Other\n    X\n"):
+        assert_problems(
+            f"BehaviorTree\n    X\n{other}",
+            "1:1 error forbidden-name «BehaviorTree» this tree has no ID: `BehaviorTree <ID>`",
+        )
+
+
+# ---- duplicate-instance-name -----------------------------------------------------------------------------------------
+
+
+def test_names_that_are_not_doubled() -> None:
+    assert_clean(tree("->", "    X One", "    X Two", "    X", "    X"))
+    assert_clean(tree("->", "    X X", "    X X"))  # the ID is no name: the engine adds a number
+    assert_clean(tree("->", '    X ""', '    Y ""'))
+    assert_clean(tree("->", "    X One", "    SubTree Pick One") + "BehaviorTree Pick\n    X One\n")
+
+
+def test_every_further_node_of_a_name_is_told() -> None:
+    assert_problems(
+        tree("->", "    X One", "    Y (name = One)", '    Z "One"'),
+        "4:19 hint duplicate-instance-name «One» "
+        "two nodes of this tree are called `One`: in logs both have the same path",
+        '5:11 hint duplicate-instance-name «"One"» '
+        "two nodes of this tree are called `One`: in logs both have the same path",
+    )
+
+
+def test_subtrees_without_a_name_of_their_own() -> None:
+    pick = "BehaviorTree Pick\n    X\n"
+    assert_clean(tree("->", "    SubTree Pick", "    SubTree Pick") + pick)
+    assert_problems(
+        tree("->", "    SubTree Pick Pick", "    SubTree Pick Pick") + pick,
+        "4:22 error duplicate-instance-name «Pick» "
+        "two SubTrees of this tree are called `Pick`: the engine refuses that",
+    )
+    assert_problems(
+        tree('SubTree Pick ""') + pick,
+        '2:18 error forbidden-name «""» '
+        "the engine refuses the instance name ``: it is empty, as that of the main tree is",
+    )
+    assert_clean(tree("SubTree Pick") + 'BehaviorTree Pick\n    SubTree Place ""\nBehaviorTree Place\n    X\n')

@@ -1,0 +1,154 @@
+"""unknown-requirement, conflicting-requirement, unused-requirement, requirement-without-text: what their pages do not
+show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+TREE = "BehaviorTree Main\n    X satisfies rq1\n"
+
+
+# ---- unknown-requirement ---------------------------------------------------------------------------------------------
+
+
+def test_every_way_to_name_a_requirement() -> None:
+    assert_problems(
+        """
+        apply rq1 to every X
+        BehaviorTree Main
+            satisfies rq2
+            X (satisfies QualityReq ID = "rq3")
+                satisfies rq4(limit = 3 s)
+        """,
+        "1:7 error unknown-requirement «rq1» no requirement `rq1` is defined here or in an included file",
+        "3:15 error unknown-requirement «rq2» no requirement `rq2` is defined here or in an included file",
+        '4:34 error unknown-requirement «"rq3"» no requirement `rq3` is defined here or in an included file',
+        "5:19 error unknown-requirement «rq4» no requirement `rq4` is defined here or in an included file",
+    )
+
+
+def test_a_requirement_of_a_file_that_is_not_included() -> None:
+    text = f'//- main.btq\n{TREE}//- rules.btq\nQualityReq rq1 "In time"\n'
+    assert_fix(text, "Include `rules.btq`", text.replace("BehaviorTree", 'include "rules.btq"\nBehaviorTree', 1))
+    assert_clean(text.replace("BehaviorTree", 'include "rules.btq"\nBehaviorTree', 1))
+    assert_clean(f'include "rules.xml" (ros_pkg = "robot")\n{TREE}')
+
+
+def test_a_name_that_needs_quotes() -> None:
+    text = 'QualityReq "in time" "Be quick"\nBehaviorTree Main\n    X satisfies "in tme"\n'
+    assert_fix(text, "Replace `in tme` by `in time`", text.replace("tme", "time"))
+
+
+# ---- conflicting-requirement -----------------------------------------------------------------------------------------
+
+
+def classic(*texts: str) -> str:
+    nodes = "".join(f'        X (satisfies QualityReq ID = "rq1" description = "{text}")\n' for text in texts)
+    return f"BehaviorTree Main\n    ->\n{nodes}"
+
+
+def test_one_requirement_in_several_places() -> None:
+    assert_clean(classic("In  time", "In time", "In\n        time"))
+    assert_clean(classic("In time") + "        Y satisfies rq1\n" + '        Z (satisfies QualityReq ID = "rq1")\n')
+    assert_clean('QualityReq rq1 "In time"\nBehaviorTree Main\n    satisfies QualityReq ID = "rq1"\n    X\n')
+
+
+def test_each_other_text_is_told_against_the_first() -> None:
+    told = "the requirement `rq1` says something else in another place"
+    assert_problems(
+        classic("one", "two", "one", "three"),
+        f'4:38 error conflicting-requirement «"rq1"» {told}',
+        f'6:38 error conflicting-requirement «"rq1"» {told}',
+    )
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ('"In time"', '"In time"\n    takes at most 3 s'),
+        ('"In time"\n    takes at most 3 s', '"In time"\n    takes at most 4 s'),
+        (': safety "In time"', ': security "In time"'),
+    ],
+)
+def test_clauses_and_qualities_are_part_of_what_is_said(first: str, second: str) -> None:
+    text = f"QualityReq rq1 {first}\nQualityReq rq1 {second}\n"
+    line = first.count("\n") + 2
+    assert_problems(
+        text,
+        f"{line}:12 error conflicting-requirement «rq1» the requirement `rq1` says something else in another place",
+    )
+    assert_clean(f"QualityReq rq1 {second}\nQualityReq rq1 {second}\n")
+
+
+def test_a_definition_that_says_nothing_is_told_for_that_only() -> None:
+    assert_problems(
+        'QualityReq rq1 "In time"\nQualityReq rq1\n',
+        "2:12 warning requirement-without-text «rq1» the requirement `rq1` says nothing",
+    )
+
+
+def test_two_includes_that_contradict_each_other() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        include "a.btq"
+        include "b.btq"
+        //- a.btq
+        QualityReq rq1 "one"
+        QualityReq rq2 "same"
+        //- b.btq
+        QualityReq rq1 "two"
+        QualityReq rq2 "same"
+        """,
+        'main.btq:2:9 error conflicting-requirement «"b.btq"» '
+        "this file brings a second requirement `rq1`, which says something else",
+    )
+
+
+# ---- unused-requirement ----------------------------------------------------------------------------------------------
+
+RULE = 'QualityReq rq1 "In time"\n    takes at most 30 s\n'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        RULE,  # a file of requirements
+        RULE + TREE,
+        RULE + "apply rq1 to every X\nBehaviorTree Main\n    X\n",
+        RULE.replace("takes", "mission takes") + "BehaviorTree Main\n    X\n",
+        RULE.replace("takes", "Main/X takes") + "BehaviorTree Main\n    X\n",
+        f'//- a.btq\n{RULE}BehaviorTree A\n    X\n//- main.btq\ninclude "a.btq"\nBehaviorTree Main\n    SubTree A\n',
+    ],
+)
+def test_requirements_that_somebody_uses(text: str) -> None:
+    assert_clean(text)
+
+
+def test_a_misspelt_use_is_one_mistake() -> None:
+    assert_problems(
+        RULE + TREE.replace("rq1", "rq11"),
+        "4:17 error unknown-requirement «rq11» no requirement `rq11` is defined here or in an included file",
+    )
+    assert_problems(
+        RULE + TREE.replace("satisfies", "satisfy"),
+        "4:15 error syntax-error «rq1» expected the end of the line, found `rq1`",
+    )
+
+
+# ---- requirement-without-text ----------------------------------------------------------------------------------------
+
+
+def test_what_could_not_be_read_may_be_what_is_said() -> None:
+    assert_problems(
+        "QualityReq rq1\n    take at most 30 s\n",
+        "2:5 error syntax-error «take» `take` begins no clause: did you mean `takes`?",
+    )
+
+
+def test_an_empty_text_says_nothing() -> None:
+    assert_problems(
+        'QualityReq rq1 " "\n', "1:12 warning requirement-without-text «rq1» the requirement `rq1` says nothing"
+    )
+    assert_clean("QualityReq rq1\n    verified by review\n")

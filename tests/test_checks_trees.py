@@ -1,0 +1,244 @@
+"""unknown-tree, duplicate-tree, recursive-tree, unused-tree, unreachable-tree, unknown-main-tree, tree-root-count,
+tree-named-like-node: what their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+PICK = "BehaviorTree Pick\n    X\n"
+
+
+# ---- unknown-tree ----------------------------------------------------------------------------------------------------
+
+
+def test_the_way_to_an_unknown_tree() -> None:
+    misspelt = "BehaviorTree Main\n    SubTree Pik\n" + PICK
+    assert_problems(
+        misspelt, "2:13 error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes"
+    )
+    assert_fix(misspelt, "Replace `Pik` by `Pick`", misspelt.replace("Pik\n", "Pick\n"))
+    node = "Action Pick\nBehaviorTree Main\n    SubTree Pick First\n"
+    assert_problems(node, "3:13 error unknown-tree «Pick» `Pick` is a node, not a tree")
+    assert_fix(node, "Write `Pick` alone", node.replace("SubTree ", ""))
+
+
+def test_an_include_brings_the_tree() -> None:
+    text = """
+        //- missions/main.btq
+        include "a.btq"
+        BehaviorTree Main
+            SubTree Pick
+        //- missions/a.btq
+        //- parts/pick.btq
+        BehaviorTree Pick
+            X
+        """
+    assert_problems(
+        text,
+        "missions/main.btq:3:13 error unknown-tree «Pick» there is no tree `Pick` in this file or in those it includes",
+    )
+    fixed = text.replace('include "a.btq"\n', 'include "a.btq"\n        include "../parts/pick.btq"\n')
+    assert_fix(text, "Include `../parts/pick.btq`", fixed)
+
+
+def test_an_include_goes_where_the_others_are() -> None:
+    parts = "//- parts.btq\nBehaviorTree Pick\n    X\n"
+    for head, fixed in [
+        ("", 'include "parts.btq"\n'),
+        ("\ufeff", '\ufeffinclude "parts.btq"\n'),
+        (
+            'include "a.btq" (\n    note = 1\n)  # kept\n',
+            'include "a.btq" (\n    note = 1\n)  # kept\ninclude "parts.btq"\n',
+        ),
+    ]:
+        tree = "BehaviorTree Main\n    SubTree Pick\n"
+        rest = f"//- a.btq\n{parts}"
+        assert_fix(f"//- main.btq\n{head}{tree}{rest}", "Include `parts.btq`", f"//- main.btq\n{fixed}{tree}{rest}")
+    in_root = '//- main.btq\nRoot Main\n    include "a.btq"\n    BehaviorTree Main\n        SubTree Pick\n//- a.btq\n'
+    assert_fix(
+        in_root + parts,
+        "Include `parts.btq`",
+        in_root.replace('"a.btq"\n', '"a.btq"\n    include "parts.btq"\n', 1) + parts,
+    )
+
+
+def test_a_root_names_a_tree_in_two_ways() -> None:
+    for root in ("Root Pik", "Root (main_tree_to_execute = Pik)"):
+        column = root.index("Pik") + 1
+        assert_problems(
+            f"{root}\n{PICK}",
+            f"1:{column} error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes",
+        )
+    assert_clean(f'Root (main_tree_to_execute = "")\n{PICK}')  # 4.10 runs the only tree
+
+
+def test_what_cannot_be_known_is_not_told() -> None:
+    assert_clean('include "parts.xml" (ros_pkg = "robot")\nBehaviorTree Main\n    SubTree Pick\n')
+    assert_problems(
+        'include "parts.btq"\nBehaviorTree Main\n    SubTree Pick\n',
+        '1:9 error missing-include «"parts.btq"» there is no file `parts.btq`',
+    )
+    assert_problems(
+        "BehaviorTree Main\n    SubTree Pick\nBehaviorTree = Pick\n    X\n",
+        "3:14 error syntax-error «=» expected the end of the line, found `=`",
+    )
+
+
+def test_a_subtree_without_a_name() -> None:
+    for subtree in ("SubTree", 'SubTree ""', "SubTree (speed = 1)"):
+        assert_problems(
+            f"BehaviorTree Main\n    {subtree}\n",
+            "2:5 error unknown-tree «SubTree» this SubTree names no tree: `SubTree <ID>`",
+        )
+    assert_problems(
+        "BehaviorTree Main\n    SubTree (Pick)\n",
+        "2:14 error syntax-error «Pick» expected an attribute: key = value, found `Pick`",
+    )
+
+
+# ---- duplicate-tree, recursive-tree ----------------------------------------------------------------------------------
+
+
+def test_a_tree_of_two_files() -> None:
+    assert_problems(
+        f'//- main.btq\ninclude "a.btq"\nBehaviorTree Main\n    SubTree Pick\n{PICK}//- a.btq\n{PICK}',
+        "main.btq:4:14 error duplicate-tree «Pick» there are two trees `Pick`",
+    )
+    assert_problems(
+        f'//- main.btq\ninclude "a.btq"\ninclude "b.btq"\n//- a.btq\n{PICK}//- b.btq\n{PICK}',
+        'main.btq:2:9 error duplicate-tree «"b.btq"» this file brings a second tree `Pick`',
+    )
+
+
+def test_doubled_trees_are_told_for_nothing_else() -> None:
+    assert_problems(
+        "BehaviorTree A\n    X\nBehaviorTree A\n    X\nBehaviorTree A\n    X\n",
+        "3:14 error duplicate-tree «A» there are two trees `A`",
+        "5:14 error duplicate-tree «A» there are two trees `A`",
+    )
+
+
+@pytest.mark.parametrize(
+    ("trees", "problems"),
+    [
+        ({"A": "A"}, ["2:13 error recursive-tree «A» the tree `A` contains itself"]),
+        ({"A": "B", "B": "A"}, ["2:13 error recursive-tree «B» the tree `A` contains itself: `A` → `B` → `A`"]),
+        (
+            {"A": "B", "B": "C", "C": "B"},
+            ["4:13 error recursive-tree «C» the tree `B` contains itself: `B` → `C` → `B`"],
+        ),
+        ({"A": "B", "B": ""}, []),
+    ],
+)
+def test_circles(trees: dict[str, str], problems: list[str]) -> None:
+    text = "".join(
+        f"BehaviorTree {name}\n    {f'SubTree {called}' if called else 'X'}\n" for name, called in trees.items()
+    )
+    assert_problems(text, *problems)
+
+
+def test_a_knot_of_circles_is_told_once_with_the_shortest_way() -> None:
+    assert_problems(
+        """
+        Root A
+        BehaviorTree A
+            ->
+                SubTree B
+                SubTree C
+        BehaviorTree B
+            SubTree C
+        BehaviorTree C
+            ->
+                SubTree B
+                SubTree A
+        """,
+        "5:17 error recursive-tree «C» the tree `A` contains itself: `A` → `C` → `A`",
+    )
+
+
+def test_the_same_tree_twice_is_no_circle() -> None:
+    assert_clean(
+        "BehaviorTree A\n    ->\n        SubTree B\n        SubTree C\n"
+        "BehaviorTree B\n    SubTree C\nBehaviorTree C\n    X\n"
+    )
+
+
+# ---- unused-tree, unreachable-tree, unknown-main-tree ----------------------------------------------------------------
+
+
+def test_a_library_may_hold_more_than_is_used() -> None:
+    text = (
+        f'//- main.btq\ninclude "parts.btq"\nBehaviorTree Main\n    X\n//- parts.btq\n{PICK}BehaviorTree Place\n    X\n'
+    )
+    assert_clean(text)
+
+
+def test_nothing_is_unused_where_a_name_is_unknown() -> None:
+    assert_problems(
+        "Root Main\nBehaviorTree Main\n    SubTree Pik\n" + PICK,
+        "3:13 error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes",
+    )
+    assert_problems(
+        "Root Main\nBehaviorTree Main\n    Subtree Pick\n" + PICK,
+        "3:5 warning unknown-node «Subtree» unknown node `Subtree`",
+    )
+    assert_problems(
+        "BehaviorTree Main\n    Pick\n" + PICK, "2:5 error unknown-node «Pick» `Pick` is a tree, not a node"
+    )
+    assert_problems(
+        "Root Main\nBehaviorTree Main\n    > SubTree Pick\n" + PICK,
+        "3:5 error syntax-error «>» expected a node: its kind, or a symbol: -> ? || …, found `>`",
+    )
+    assert_clean(f'include "more.xml" (ros_pkg = "robot")\nRoot Main\nBehaviorTree Main\n    X\n{PICK}')
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "BehaviorTree A\n    SubTree B\nBehaviorTree B\n    X\n",
+        "Root B\nBehaviorTree A\n    SubTree B\nBehaviorTree B\n    SubTree A\n",
+        "//- a.btq\nBehaviorTree A\n    X\nBehaviorTree B\n    X\n"
+        '//- main.btq\ninclude "a.btq"\nBehaviorTree Main\n    SubTree A\n',
+    ],
+)
+def test_the_mission_is_known(text: str) -> None:
+    problems = ["3:13 error recursive-tree «B» the tree `A` contains itself: `A` → `B` → `A`"] if "Root" in text else []
+    assert_problems(text, *problems)
+
+
+def test_naming_the_mission() -> None:
+    two = "BehaviorTree A\n    X\nBehaviorTree B\n    X\n"
+    problem = "warning unknown-main-tree «A» nothing says which tree is the mission: no tree refers to `A`, `B`"
+    assert_problems(two, f"1:14 {problem}")
+    assert_fix(two, "Make `B` the main tree", f"Root B\n{two}")
+    assert_problems(f"Root ()\n{two}", f"2:14 {problem}")
+    assert_fix(f"Root ()\n{two}", "Make `A` the main tree", f"Root A ()\n{two}")
+    with_include = f'//- main.btq\n# Both.\ninclude "c.btq"\n{two}//- c.btq\n'
+    assert_fix(with_include, "Make `A` the main tree", with_include.replace('"c.btq"\n', '"c.btq"\nRoot A\n', 1))
+
+
+# ---- tree-root-count, tree-named-like-node ---------------------------------------------------------------------------
+
+
+def test_one_diagnostic_for_all_the_nodes_too_many() -> None:
+    assert_problems(
+        "BehaviorTree A\n    X (\n        a = 1\n    )\n    Y\n    Z\n",
+        "5:5 error tree-root-count «Y» a tree has one node at its top, this one has 3",
+    )
+
+
+def test_what_counts_as_the_node_of_a_tree() -> None:
+    assert_clean('BehaviorTree A\n    xml "<X/>"\n')
+    assert_problems(
+        "BehaviorTree\n    input a : int\n", "1:1 error tree-root-count «BehaviorTree» this tree has no node"
+    )
+    assert_problems(
+        "BehaviorTree A\n    = X\n",
+        "2:5 error syntax-error «=» expected a node: its kind, or a symbol: -> ? || …, found `=`",
+    )
+
+
+def test_names_of_nodes_that_a_tree_may_have() -> None:
+    assert_clean("SubTree Pick\n    input a : int\n" + PICK)  # the tree's own model
+    assert_clean("BehaviorTree Retry\n    X\n")  # a word of the language, no tag of the engine
