@@ -73,7 +73,9 @@ def _in_order(children: Sequence[int], goes_on: int, pauses: bool, starting: boo
             child &= ~goes_on if starting else ANYTHING
         if not child & (goes_on | SKIPPED):
             return found
-    passed = goes_on if any(child & goes_on for child in children) else 0
+    # Resumed at a child that was running and is now skipped, it has forgotten that those before it were skipped too.
+    resumed = not starting and skipped & SKIPPED and any(child & RUNNING for child in children)
+    passed = goes_on if resumed or any(child & goes_on for child in children) else 0
     return found | passed | (skipped & SKIPPED)
 
 
