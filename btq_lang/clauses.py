@@ -552,13 +552,14 @@ class ClauseParser(Cursor):
             if self.raw == "=":
                 if self.group and self._nesting < 2:  # the next attribute's
                     break
-                fix = replace_fix("Write `==`", self.here(), "==", safe=True)
-                self.complain("syntax-error", self.here(), "values are compared with `==`", (), (fix,))
+                self.single_equals()
             if len(operators) == 2:
                 self.expected("at most two comparisons in a row")
                 break
             operators.append("==" if self.raw == "=" else self.raw)
             self.advance()
+            if operators[-1] == "==" and (self.at("<") or self.at(">")) and self.adjacent(self.index):
+                self.advance()  # `=<`, told as a whole
             operand = self.expr()
             if operand is None:
                 return first
@@ -566,6 +567,19 @@ class ClauseParser(Cursor):
         if not operators:
             return first
         return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
+
+    def single_equals(self) -> None:
+        """A `=` where values are compared: `==` is meant, or in `=<` and `=>` another order."""
+        span = self.here()
+        following = self.index + 1
+        if self.raws[following] in ("<", ">") and self.adjacent(following):
+            meant = f"{self.raws[following]}="
+            span = Span(span.start, span.end + 1)
+            message = f"this comparison is written `{meant}`"
+        else:
+            meant, message = "==", "values are compared with `==`"
+        fix = replace_fix(f"Write `{meant}`", span, meant, safe=True)
+        self.complain("syntax-error", span, message, (), (fix,))
 
     def ends_condition(self) -> bool:
         """Whether the next word ends the operand at hand, so that a lone `node` is a name like any other."""

@@ -170,7 +170,7 @@ class NodeParser(ClauseParser):
                 return
         rest = range(self.index, len(self.kinds))
         plain = not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
-        changes = (Change(Place(Span(start, start)), "("),)
+        changes: tuple[Change, ...] = (Change(Place(Span(start, start)), "("),)
         if closing := [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]:
             lexer.problems.remove(closing[-1])  # what is missing is the `(`
             self.forget()
@@ -392,10 +392,14 @@ class NodeParser(ClauseParser):
         start = word.start + self.base
         end = self.last_end() + self.base
         raw = self.text[start:end]
-        fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=True)
         if wrong_unit is not None:
             self.report(wrong_unit)
+        elif word.kind == STRING:
+            note = "a closing quote is probably missing further up"
+            self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
         else:
+            # A quote or a brace in it means that more went wrong than this.
+            fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=not set(raw) & set("\"'{}\\"))
             self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
         return Word(NAME, word.start, raw)
 

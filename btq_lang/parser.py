@@ -14,6 +14,8 @@ from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
 from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import NodeParser
+from btq_lang.record import replace
+from btq_lang.rules import Severity
 from btq_lang.scan import name_end, path_end
 from btq_lang.syntax import (
     Apply,
@@ -216,7 +218,7 @@ class Parser(NodeParser):
                 (shifted(problem, -self.base) for problem in found if problem.span.start < end),
                 key=lambda problem: problem.span,
             )
-        self.entries.append(Entry(self.base, item, in_root, tuple(found)))
+        self.entries.append(Entry(self.base, item, in_root, _root_cause(found)))
 
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
@@ -434,3 +436,13 @@ ITEM_WORDS: Final = (
     *("quality", "qualities", "xml"),
     *sorted(CATEGORIES),
 )
+
+
+def _root_cause(found: list[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Where a string swallows items, and what follows makes no sense, that string is the one mistake."""
+    for index, problem in enumerate(found):
+        if problem.rule == "string-over-items":
+            rest = [other for other in found[index + 1 :] if other.rule not in ("syntax-error", "unclosed-string")]
+            if len(rest) < len(found) - index - 1:
+                return (*found[:index], replace(problem, severity=Severity.ERROR), *rest)
+    return tuple(found)

@@ -143,6 +143,19 @@ CHECKS: dict[type, tuple[Check, ...]] = {
 }
 
 
+# After these mistakes nobody knows which node is whose child, so there is nothing to say of their number.
+_STRUCTURE_IS_LOST = frozenset(("inconsistent-indentation", "nested-too-deep", "string-over-items", "unclosed-string"))
+_OF_STRUCTURE: frozenset[Check] = frozenset(
+    (
+        trees.tree_root_count,
+        children.child_count,
+        children.switch_cases,
+        children.parallel_threshold,
+        unreachable.unreachable_child,
+    )
+)
+
+
 def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
@@ -159,10 +172,10 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     view = View(workspace, path)
     found: list[Diagnostic] = []
     for entry in view.file.parsed.entries:
-        diagnostics = [
-            *entry.diagnostics,
-            *(diagnostic for check in CHECKS.get(type(entry.item), ()) for diagnostic in check(view, entry)),
-        ]
+        checks = CHECKS.get(type(entry.item), ())
+        if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
+            checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
+        diagnostics = [*entry.diagnostics, *(diagnostic for each in checks for diagnostic in each(view, entry))]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
     found = list(configured(workspace.project, found))
     if found and "btq:" in view.file.text:
