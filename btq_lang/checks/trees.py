@@ -25,7 +25,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         is_nameless = seen.node.id is None or seen.node.id.text == ""
         if seen.is_subtree and word is not None and is_nameless and not is_torn(entry, seen):
             yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
-    if not isinstance(entry.item, Tree | Root) or not view.scope.complete or any(map(_has_torn_head, view.trees)):
+    if not isinstance(entry.item, Tree | Root) or not view.scope.complete or view.has_torn_tree:
         return
     for use in view.uses(entry, Kind.TREE):
         if use.name == "" or view.scope.find(Kind.TREE, use.name) is not None:
@@ -182,12 +182,6 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"`{name.text}` is a node: a tree cannot have its name",
             related=(view.defined_at(model, "the node is declared here"),),
         )
-
-
-def _has_torn_head(entry: Entry) -> bool:
-    """Whether a tree's name may be what could not be read."""
-    tree = entry.item
-    return isinstance(tree, Tree) and any(problem.span.start <= tree.end for problem in entry.diagnostics)
 
 
 def _as_node(use: Use) -> tuple[Fix, ...]:

@@ -131,6 +131,16 @@ class View:
         return all(problem.effective_severity is not Severity.ERROR for problem in problems)
 
     @cached_property
+    def has_torn_tree(self) -> bool:
+        """Whether the name of one of the file's trees may be what could not be read."""
+        return any(
+            problem.span.start <= entry.item.end
+            for entry in self.trees
+            if isinstance(entry.item, Tree)
+            for problem in entry.diagnostics
+        )
+
+    @cached_property
     def names_unknown_requirements(self) -> bool:
         """Whether the file refers to a requirement that is defined nowhere."""
         names = {use.name for summary in self.file.summaries for use in summary.uses if use.kind is Kind.REQUIREMENT}
