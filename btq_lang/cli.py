@@ -61,6 +61,9 @@ def _finish(run: Callable[[Any], int], options: object) -> int:
     except BrokenPipeError:  # the reader of our output has seen enough: `btq check | head`
         sys.stderr.close()
         return TROUBLE
+    except OSError as error:  # our own output cannot be written: a full disk
+        print(f"btq: {error.strerror}", file=sys.stderr)
+        return TROUBLE
     return code
 
 

@@ -152,6 +152,26 @@ def test_a_missing_file_is_trouble_and_the_others_are_checked(btq: Run, tmp_path
     assert "unknown-node" in done.stdout
 
 
+def test_nothing_checked_is_not_called_clean(btq: Run) -> None:
+    done = btq("check", "nowhere.btq")
+    assert (done.returncode, done.stdout) == (2, "No files were checked\n")
+
+
+def test_xml_cannot_be_checked_yet(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "tree.xml").write_text("<root/>")
+    done = btq("check", "tree.xml")
+    assert (done.returncode, done.stdout) == (2, "No files were checked\n")
+    assert done.stderr == "btq: tree.xml: XML files can be included, but not be checked by themselves yet\n"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+def test_an_output_that_cannot_be_written_is_trouble(tmp_path: Path) -> None:
+    command = f"{sys.executable} -m btq_lang explain > /dev/full"
+    done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+
+
 def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path: Path) -> None:
     file = tmp_path / "main.btq"
     file.write_bytes(b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n")

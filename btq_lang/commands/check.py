@@ -44,6 +44,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     if options.fix:
         groups, mended, trouble = _fix(groups, options, files)
         problems += trouble
+        mended = 0 if trouble else mended  # what could not be written is not mended
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
     findings: list[Finding] = []

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, find_project, load
 from btq_lang.project import Project
 from btq_lang.record import record
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import File, Workspace, is_btq
 
 STDIN = "-"
 
@@ -67,6 +67,9 @@ class Files:
             return projects[folder]
 
         for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
+            if not is_btq(path):
+                problems.append(LoadProblem(path, "XML files can be included, but not be checked by themselves yet"))
+                continue
             if path in self.overlay:
                 members.setdefault(project_of(path).path or "", {})[path] = None
                 continue

@@ -31,19 +31,21 @@ def run(options: Namespace) -> int:
                 line, column = LineIndex(text).position(done.refused.span.start)
                 place = f"{shown(path)}:{line + 1}:{column + 1}"
                 print(f"{place}: not formatted: {done.refused.message}", file=sys.stderr)
+            elif path in group.damaged:
+                refused += 1  # told as trouble already; writing it back would lose something
             elif done.text != text:
                 changed += 1
                 if options.diff:
                     _show_diff(shown(path), text, done.text, options)
                 elif options.check:
                     print(f"would format {shown(path)}")
-                elif path in group.damaged:
-                    continue  # told as trouble already; writing it back would lose something
                 elif not from_stdin:
                     try:
                         write_whole(path, done.text)
                     except OSError as error:
                         trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+                        changed -= 1
+                        refused += 1
             if from_stdin and not only_tell:
                 sys.stdout.write(done.text)
     for problem in trouble:
@@ -70,7 +72,7 @@ def _sum_up(count: int, changed: int, refused: int, only_tell: bool) -> None:
     verb = "would be formatted" if only_tell else "formatted"
     parts = [f"{files(changed)} {verb}"] if changed else []
     if refused:
-        parts.append(f"{files(refused)} with syntax errors left alone")
+        parts.append(f"{files(refused)} that cannot be formatted left alone")
     if count - changed - refused or not parts:
         parts.append(f"{files(count - changed - refused)} left as {'they are' if count != 1 else 'it is'}")
     print(", ".join(parts), file=sys.stderr)

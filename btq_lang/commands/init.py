@@ -27,6 +27,7 @@ Action MoveBase "Drive the base to a named station"
 Action Charge "Charge until the battery is full"
 
 Condition BatteryGood "True above the level that the way home needs"
+    output level : double "charge of the battery, 0 to 100"
 """
 
 _MISSION = """\
@@ -44,7 +45,7 @@ QualityReq way_home : performance-efficiency.resource-utilization "Arrive with s
 BehaviorTree Mission
     ->
         ?
-            BatteryGood
+            BatteryGood (level = {@battery_level})
             -> Recharge
                 MoveBase (station = "charger") satisfies in_time
                 Charge
