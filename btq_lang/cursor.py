@@ -261,14 +261,18 @@ class Cursor:
     def report(self, diagnostic: Diagnostic) -> None:
         """Report, if nothing was reported on this line of text yet."""
         at = diagnostic.span.start
-        if self.kinds[0] == NEWLINE:
-            return  # of a line without any token the lexer has said what is wrong
-        self._would_complain = True
-        if self._in_wake or self._silent_from <= at <= self._silent_to:
+        in_line = at <= self._line_end()  # that was cut into tokens last
+        if in_line:
+            if self.kinds[0] == NEWLINE:
+                return  # of a line without any token the lexer has said what is wrong
+            self._would_complain = True
+            if self._in_wake:
+                return
+        if self._silent_from <= at <= self._silent_to:
             return
         lower = self._silent_to if 0 <= self._silent_to < at else min(self.starts[0], at)
         self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
-        if not self._lexer_complained(at):
+        if not (in_line and self._lexer_complained(at)):
             self.problems.append(diagnostic)
 
     def _lexer_complained(self, at: int) -> bool:

@@ -6,6 +6,7 @@ What the machine invents is seeded, so that a run that fails fails again.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -167,7 +168,7 @@ def without_one_token(text: str) -> Iterator[str]:
 
 def without_one_line(text: str) -> Iterator[str]:
     starts = [0, *(end.end() for end in LINE_END.finditer(text)), len(text)]
-    return (text[:start] + text[end:] for start, end in zip(starts, starts[1:], strict=False))
+    return (text[:start] + text[end:] for start, end in pairwise(starts))
 
 
 @pytest.mark.parametrize("damage", [prefixes, without_one_token])
