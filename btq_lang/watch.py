@@ -31,7 +31,18 @@ def watch(
         now: a clock in seconds that only goes forward.
         interval: how often to look, in seconds; less often where looking itself takes long.
     """
-    before = _stamps(files, stamp)
+    # Looked at once already here, not when the first change is asked for: what changes from now on is told.
+    return _changes(_stamps(files, stamp), files, stamp, wait, now, interval)
+
+
+def _changes(
+    before: dict[str, Hashable],
+    files: Callable[[], Iterable[str]],
+    stamp: Callable[[str], Hashable],
+    wait: Callable[[float], object],
+    now: Callable[[], float],
+    interval: float,
+) -> Iterator[tuple[str, ...]]:
     pause = interval
     while True:
         wait(pause)

@@ -140,9 +140,10 @@ def _watch(options: CheckOptions, files: Files, watched: tuple[str, ...]) -> Non
         for path in options.paths:
             yield from collect([path], find_project(absolute(path)).project)[0]
 
+    changes = watch(paths, stamp, time.sleep, time.monotonic)
     print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
     try:
-        for changed in watch(paths, stamp, time.sleep, time.monotonic):
+        for changed in changes:
             names = ", ".join(shown(path) for path in changed[:3]) + (", …" if len(changed) > 3 else "")
             print(f"\n{time.strftime('%H:%M:%S')} {names} changed", file=sys.stderr)
             _, state["files"] = _check(options, files)
