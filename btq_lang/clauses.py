@@ -470,6 +470,9 @@ class ClauseParser(Cursor):
         if self.kind == STRING and is_unit(inner := unquote(word)):
             fix = replace_fix(f"Write `{inner}`", self.here(), inner, safe=True)
             self.complain("syntax-error", self.here(), "a unit stands without quotes", (), (fix,))
+        elif self.kind == STRING:
+            self.expected("a unit: s, m/s, %, 1, bool, text, …")
+            return None
         elif word not in UNITLESS and not is_unit(word):
             self.report(unknown_unit(self.text, first, end))
         while self.starts[self.index] < end and self.kind != NEWLINE:

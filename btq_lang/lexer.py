@@ -103,6 +103,7 @@ class Lexer:
         self.comments: list[tuple[int, int]] = []
         self.problems: list[Diagnostic] = []
         self.ended_early = 0
+        self._cut_until = -1  # the end of the last line that ended its brackets early
         self._indents: list[str] = [""]  # the blanks of each open block
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
         self._adopted = False  # there is such a one
@@ -157,7 +158,8 @@ class Lexer:
             else:
                 level = self._adopting_level(blanks)
                 self._adopted = True
-                self._report_indentation(blanks, indents[level])
+                if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
+                    self._report_indentation(blanks, indents[level])  # else it is what is left of the brackets
                 if level == 0:
                     aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
                 else:
@@ -222,6 +224,8 @@ class Lexer:
             end = position + (2 if text.startswith("\r\n", position) else 1)
         self._add(NEWLINE, position, end)
         self.position = end
+        if len(self.kinds) > 1 and self.kinds[-2] == CLOSE and not self.raws[-2]:
+            self._cut_until = end
         if self._is_root_line():
             self._root_level = self.level + 1
 
@@ -399,7 +403,8 @@ class Lexer:
             fix = Fix(insert.title, insert.changes, safe=True)
             self.problems.append(Diagnostic("misplaced-comment", Span(start, sign.end()), message, fixes=(fix,)))
             return self._read_comment(start)
-        fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=in_value)
+        safe = in_value and text[end : end + 1] not in _QUOTES and self._takes_strings()
+        fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=safe)
         fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
         self.problems.append(Diagnostic("misplaced-comment", Span(start, end), f"{message}: quote this", fixes=fixes))
         return self._add(NAME, start, end)
@@ -407,9 +412,15 @@ class Lexer:
     def _quote_value(self, at: int) -> int:
         """A character that begins nothing, inside a value: `a = 1;2`."""
         start, end = self._whole_word(at)
-        fix = replace_fix("Put quotes around it", Span(start, end), quoted(self.text[start:end]), safe=True)
+        safe = self.text[end : end + 1] not in _QUOTES and self._takes_strings()
+        fix = replace_fix("Put quotes around it", Span(start, end), quoted(self.text[start:end]), safe=safe)
+        self._strange = True  # more of it may follow
         self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=(fix,)))
         return self._add(NAME, start, end)
+
+    def _takes_strings(self) -> bool:
+        """Whether a value may surely be a string: those of a requirement's parameters may not."""
+        return not _WITH_PARAMETERS.intersection(self.raws)
 
     def _in_value(self, at: int) -> bool:
         """Whether what begins at `at` stands behind `key =`, or without a blank behind a word that does."""
@@ -646,4 +657,6 @@ _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
+_WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
+_QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time

@@ -137,9 +137,12 @@ class NodeParser(ClauseParser):
             attributes = self.attributes(clauses)
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             clauses.append(self.node_clause())
+        bare = self.index == 1 and self.at("=")  # `key = value` behind a forgotten bracket
         if self.kind != NEWLINE:
             self.leftover(kind, clauses)
         end = self.end_line()
+        if bare and not self.deeper(level):
+            return None
         return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
 
     def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
@@ -169,7 +172,8 @@ class NodeParser(ClauseParser):
             if is_next:
                 return
         rest = range(self.index, len(self.kinds))
-        plain = not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
+        plain = self.index > 1
+        plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
         changes: tuple[Change, ...] = (Change(Place(Span(start, start)), "("),)
         if closing := [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]:
             lexer.problems.remove(closing[-1])  # what is missing is the `(`
@@ -366,7 +370,7 @@ class NodeParser(ClauseParser):
         word = self.take()
         if whole and (self.at_key() or not self.joins()):
             return word
-        if self.kind == STRING:
+        if self.kind == STRING and word.kind != STRING:
             return self.half_quoted(word)
         return self.needs_quotes(word)
 
@@ -384,6 +388,10 @@ class NodeParser(ClauseParser):
             return False
         return self.adjacent(self.index)
 
+    def ends_value(self) -> bool:
+        """Whether what may follow a value follows."""
+        return self.kind in (NEWLINE, CLOSE) or self.raw == "," or self.raw in _ATTRIBUTE_WORDS or self.at_key()
+
     def needs_quotes(self, word: Word) -> Word:
         """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
         wrong_unit = self.wrong_unit()
@@ -399,7 +407,8 @@ class NodeParser(ClauseParser):
             self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
         else:
             # A quote or a brace in it means that more went wrong than this.
-            fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=not set(raw) & set("\"'{}\\"))
+            safe = self.ends_value() and not set(raw) & set("\"'{}\\")
+            fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=safe)
             self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
         return Word(NAME, word.start, raw)
 

@@ -14,8 +14,8 @@ END = "found the end of the line"
 def assert_node(line: str, tree: str, *problems: str) -> None:
     """One node, alone in a tree, with a node behind it; the columns of problems count from the node."""
     moved = [f"2:{int(problem[2:].split(' ', 1)[0]) + 2} {problem.split(' ', 1)[1]}" for problem in problems]
-    shown = tree.replace("\n", "\n  ")
-    assert_parse(f"BehaviorTree t\n  {line}\n  Z\n", f"tree t\n  {shown}\n  Z", *moved)
+    block = "".join(f"  {shown}\n" for shown in [*tree.splitlines(), "Z"])
+    assert_parse(f"BehaviorTree t\n  {line}\n  Z\n", f"tree t\n{block}", *moved)
 
 
 # ---- Node: Kind [ Label ] [ Attributes ] { NodeClause } -------------------------------------------------------------
@@ -133,7 +133,7 @@ def test_behind_the_first_node_a_port_word_is_a_node(word: str) -> None:
         ("X {a}", "X", "1:3 syntax-error «{a}» expected the end of the line, found `{a}`"),
         ("X (a = 1) b", "X (a=1)", "1:11 syntax-error «b» expected the end of the line, found `b`"),
         ("X a = 1", "X as a", "1:3 syntax-error «a = 1» attributes stand in brackets: `( key = value )`"),
-        ("X = 1", "X", "1:1 syntax-error «X = 1» attributes stand in brackets: `( key = value )`"),
+        ("X = 1", "", "1:1 syntax-error «X = 1» attributes stand in brackets: `( key = value )`"),
         ("X (a) = 1)", "X", "1:10 syntax-error «)» this `)` closes nothing"),
         (
             "X (a = 1) (b = 2)",

@@ -226,13 +226,31 @@ def test_what_forgotten_brackets_leave_behind_is_no_mistake_of_its_own() -> None
         tree t
           ->
             X (a=1)
-          b
           c as d
           Y
     """
     parsed = assert_parse(text, tree, "3:11 unclosed-bracket «(» this `(` has no `)`",
                           "8:7 syntax-error «3» expected the end of the line, found `3`")  # fmt: skip
     assert not any(isinstance(entry.item, Skipped) for entry in parsed.entries)
+
+
+def test_attributes_on_lines_of_their_own_without_brackets() -> None:
+    text = """
+        BehaviorTree t
+            X
+                a = 1
+                b = 2
+                satisfies c
+                Y
+    """
+    parsed = assert_parse(text, "tree t\n  X\n    satisfies c\n    Y",
+                          "3:9 syntax-error «a = 1» attributes stand in brackets: `( key = value )`")  # fmt: skip
+    assert parsed.diagnostics[0].fixes == ()
+
+
+def test_indentation_behind_forgotten_brackets_is_no_mistake_of_its_own() -> None:
+    text = "BehaviorTree t\n    ->\n        X (\n      a = 1\n      b = 2\n        )\n        Y\n"
+    assert_parse(text, "tree t\n  ->\n    X\n    Y", "3:11 unclosed-bracket «(» this `(` has no `)`")
 
 
 def test_a_quote_that_is_missing_is_said_first() -> None:
