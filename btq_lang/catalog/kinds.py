@@ -97,11 +97,11 @@ class NodeKind:
         return next((port for port in self.ports if port.name == name), None)
 
 
+@cache
 def at_least(version: str, since: str) -> bool:
     """Is `version` the version `since` or a later one?  Both are numbers with points; a `4.8` is older than 4.10."""
     return _numbers(version) >= _numbers(since)
 
 
-@cache
 def _numbers(version: str) -> tuple[int, ...]:
     return tuple(int(part) for part in version.split("."))

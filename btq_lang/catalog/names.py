@@ -73,16 +73,12 @@ def _is_plain(character: str) -> bool:
 
 
 def _forbidden_character(name: str) -> str | None:
-    found = next((character for character in name if _is_forbidden(character)), None)
-    if found is None:
+    if _REFUSED.isdisjoint(name):
         return None
+    found = next(character for character in name if character in _REFUSED)
     if found in _CONTROLS:
         return f"it contains the control character {_code(found)}"
     return "it contains a blank" if found == " " else f"it contains `{found}`"
-
-
-def _is_forbidden(character: str) -> bool:
-    return character in _FORBIDDEN or character in _CONTROLS
 
 
 def _reserved(name: str) -> str | None:
@@ -98,4 +94,5 @@ def _code(character: str) -> str:
 _RULES_SINCE: Final = "4.8"
 _FORBIDDEN: Final = " <>&\"'/\\:*?|."
 _CONTROLS: Final = "".join(map(chr, range(32))) + "\x7f"
+_REFUSED: Final = frozenset(_FORBIDDEN + _CONTROLS)
 _LETTERS: Final = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")

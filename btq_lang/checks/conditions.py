@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.symbols import Kind
+from btq_lang.symbols import Kind, requirements_at
 from btq_lang.syntax import Context, Entry, Operand, Requirement, Tree, walk
 from btq_lang.tokens import NAME
 
@@ -33,7 +33,8 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
 def _operands(entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
-        roots: tuple[object, ...] = (item.clauses, *(node.clauses for node in item.walk() if node.clauses))
+        clauses = (item.clauses, *(node.clauses for node in item.walk() if node.clauses))
+        roots: tuple[object, ...] = tuple(requirement for each in clauses for requirement in requirements_at(each))
     elif isinstance(item, Requirement | Context):
         roots = (item,)
     else:

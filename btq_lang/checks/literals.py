@@ -69,10 +69,10 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A quantity where the port's unit is unknown or of another dimension."""
-    for target, value in _values(view, entry):
-        quantity = parse_quantity(value.raw) if value.kind == QUANTITY else None
+    for target, value in _values(view, entry, QUANTITY):
+        quantity = parse_quantity(value.raw)
         if quantity is None:
-            continue  # no quantity, or an unknown unit, which is told
+            continue  # an unknown unit, which is told
         number, unit, _ = quantity
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
@@ -108,17 +108,23 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
     yield Diagnostic("invalid-literal", value.span, message, notes=notes)
 
 
-def _values(view: View, entry: Entry) -> Iterator[tuple[_Target, Word]]:
-    """Each value that goes to a port, with what it goes to, where a type or a unit is in question."""
+def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
+    """Each value (of one kind) that goes to a port, with what it goes to, where a type or a unit is in question."""
     for port in _declared_ports(entry):
-        if port.default is not None and port.default.text and (target := _declared(port, False)) is not None:
-            yield target, port.default
+        value = port.default
+        if value is None or kind not in (None, value.kind) or not value.text:
+            continue
+        if (target := _declared(port, False)) is not None:
+            yield target, value
     for seen in view.nodes(entry):
-        if is_placeholder(seen):
+        if not seen.node.attributes or is_placeholder(seen):
             continue
         for pair in seen.node.attributes:
-            if pair.value is not None and (target := _target(view, seen, pair, pair.value)) is not None:
-                yield target, pair.value
+            value = pair.value
+            if value is None or kind not in (None, value.kind):
+                continue
+            if (target := _target(view, seen, pair, value)) is not None:
+                yield target, value
 
 
 def _declared_ports(entry: Entry) -> Iterator[Port]:

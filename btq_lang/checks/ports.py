@@ -106,13 +106,13 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two values for one attribute: the first counts."""
     for pairs, said_before in _attribute_lists(entry):
-        first: dict[str, Span] = {key: word.span for key, word in said_before.items() if word is not None}
+        first: dict[str, Word | Pair] = {key: word for key, word in said_before.items() if word is not None}
         for pair in pairs:
             key = pair.key.text
             if key in first:
-                related = (Related(Place(first[key]), "the first value, which counts"),)
+                related = (Related(Place(first[key].span), "the first value, which counts"),)
                 yield Diagnostic("duplicate-attribute", pair.key.span, f"`{key}` has a value already", related=related)
-            first.setdefault(key, pair.span)
+            first.setdefault(key, pair)
 
 
 def is_placeholder(seen: SeenNode) -> bool:
@@ -244,7 +244,8 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
         for port in item.ports:
             yield port.attributes, _said(port)
         for node in item.walk():
-            yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
+            if node.attributes:
+                yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
     elif isinstance(item, Include):
         yield item.attributes, {"path": item.path}
     elif isinstance(item, Root):

@@ -98,8 +98,7 @@ def tokenize(text: str) -> Tokens:
 def _pattern() -> re.Pattern[str]:
     """One token (BehaviorTree.CPP 4.10, src/script_tokenizer.cpp); a catch-all comes last, and nothing matches blanks.
 
-    Compiled when the first script is read: it takes longer than reading a dozen of them.  One set of all the misspelt
-    signs would take a millisecond more, for what lies in more than two runs behind U+00FF becomes a table of 64 k.
+    Compiled when the first script is read: it takes longer than reading a dozen of them.
     """
     return re.compile(
         r"""
@@ -108,7 +107,7 @@ def _pattern() -> re.Pattern[str]:
                          (?P<garbage> (?: \w | \.(?!\.) )+ )? )
         | (?P<text>      '[^']*' )
         | (?P<quoted>    "[^"]*" | “[^“”]*” | ‘[^‘’]*’ | &quot;.*?&quot; | &apos;.*?&apos; )
-        | (?P<misspelt>  => | =< | <> | [!=]== | &(?:lt|gt);=? | &amp;&amp; | &amp; | [≠≤≥] | [−∧∨] | [¬×÷] )
+        | (?P<misspelt>  => | =< | <> | [!=]== | &(?:lt|gt);=? | &amp;&amp; | &amp; | [≤≥≠∧∨¬×÷−] )
         | (?P<none>      \*\* | // | << | >> )
         | (?P<operator>  [:=!<>+*/-]= | && | \|\| | \.\. | [-+*/&|^~!<>=?:();] )
         | (?P<fraction>  \.[0-9]+ (?:[eE][+-]?[0-9]+)? (?: \w | \.(?!\.) )* )
