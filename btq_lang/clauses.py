@@ -5,7 +5,7 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from btq_lang.cursor import Cursor
+from btq_lang.cursor import Cursor, shown
 from btq_lang.diagnostics import replace_fix
 from btq_lang.lexer import unknown_unit
 from btq_lang.near import near
@@ -343,8 +343,7 @@ class ClauseParser(Cursor):
             self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
         else:
             name = "/".join(word.raw for word in subject.names)
-            shown = name if len(name) < 40 else f"{name[:37]}…"
-            self.expected(f"a verb behind `{shown}` (takes, succeeds, needs, keeps, …)", (_INSTEAD_OF_A_NODE,))
+            self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (_INSTEAD_OF_A_NODE,))
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Complain of a word that begins no clause, and pass over the rest."""

@@ -222,8 +222,7 @@ class Cursor:
             return "the end of the line"
         if self.kind == CLOSE and not self.raw:
             return "the end of the brackets"
-        shown = self.raw[: line_end(self.raw, 0)]
-        return f"`{shown if len(shown) <= 40 else shown[:37] + '…'}`"
+        return f"`{shown(self.raw)}`"
 
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
@@ -304,6 +303,12 @@ class Cursor:
             elif depth == 0 and self.at_name() and self.is_operator(self.index + 1, "=") and self.group:
                 return
             self.advance()
+
+
+def shown(raw: str) -> str:
+    """A piece of the source as a message names it: its first line, and not too much of that."""
+    line = raw[: line_end(raw, 0)]
+    return line if len(line) == len(raw) <= 40 else f"{line[:37]}…"
 
 
 _QUOTES: Final = "a name of several words stands in quotes"
