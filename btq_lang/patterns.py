@@ -56,9 +56,7 @@ _NAME: Final = r"[A-Za-z_]\w*"
 _STRING: Final = r"\"[^\"\\\r\n]*\"|'[^'\\\r\n]*'"
 # `(?:…|)` and not `(?:…)?`: it means the same and costs the engine a third.
 _LABEL: Final = rf"(?: (?!satisfi|tags)({_NAME}|{_STRING})|)"
-_HEAD: Final = re.compile(
-    rf"({_NAME}|->|\?|\|\||[RAM]->|[RA]\?|All\|\|){_LABEL}{_LABEL}(?= ?\(|[\r\n])"
-).match
+_HEAD: Final = re.compile(rf"({_NAME}|->|\?|\|\||[RAM]->|[RA]\?|All\|\|){_LABEL}{_LABEL}(?= ?\(|[\r\n])").match
 # A number may have a unit; before a comma, a bracket, the line's end or the next key it has none.
 _PAIR: Final = re.compile(
     rf"({_NAME}) ?= ?({_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=))"
