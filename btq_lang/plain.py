@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import re
 
-from btq_lang.scan import braced_end, line_end, name_end, number_at, symbol_at
+from btq_lang.patterns import Head, read_head, read_pairs
+from btq_lang.scan import COMPILED, blanks_end, braced_end, line_end, line_opening, name_end, number_at, symbol_at
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -46,27 +47,9 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
         The node without what its block adds, and where the next line begins.
     """
     try:
-        category: Word | None = None
-        kind: Word | None = None
-        if symbol := symbol_at(text, start):
-            kind = Word(SYMBOL, start - base, symbol)
-            end = start + len(symbol)
-        else:
-            kind = _name(text, start, base)
-            if kind.raw in _PERHAPS_NO_NODE:
-                return None
-            end = start + len(kind.raw)
-            if kind.raw in CATEGORIES:
-                category = kind
-                at = _behind_word(text, end)
-                kind = _label(text, at, base)
-                if kind is not None:
-                    end = at + len(kind.raw)
-        at = _behind_word(text, end)
-        label = _label(text, at, base)
-        if label is not None:
-            end = at + len(label.raw)
-            at = _behind_word(text, end)
+        head = None if COMPILED else read_head(text, start, base)
+        category, kind, label, end = _head(text, start, base) if head is None else head
+        at = end + 1 if text.startswith(" (", end) else _behind_word(text, end)
         pairs: list[Pair] = []
         clauses: list[NodeClause] = []
         if text[at] == "(":
@@ -78,7 +61,8 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
             at = _line_clauses(text, at, base, clauses)
             if len(clauses) > known:
                 end = clauses[-1].end + base
-        return Node(start - base, end - base, category, kind, label, tuple(pairs), tuple(clauses), ()), at
+        inner = tuple(clauses) if clauses else ()
+        return Node(start - base, end - base, category, kind, label, tuple(pairs), inner, ()), at
     except (_Unusual, IndexError):
         return None
 
@@ -90,6 +74,27 @@ def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], i
         return clauses, _line_clauses(text, start, base, clauses)
     except (_Unusual, IndexError):
         return None
+
+
+def _head(text: str, start: int, base: int) -> Head:
+    """Kind [ Label ]: the category, the kind, the label, and where they end"""
+    if symbol := symbol_at(text, start):
+        kind = Word(SYMBOL, start - base, symbol)
+    else:
+        kind = _name(text, start, base)
+        if kind.raw in _PERHAPS_NO_NODE:
+            raise _Unusual
+    end = start + len(kind.raw)
+    at = _behind_word(text, end)
+    second = _label(text, at, base)
+    if kind.raw not in CATEGORIES:
+        return None, kind, second, end if second is None else at + len(second.raw)
+    if second is None:
+        return kind, None, None, end
+    end = at + len(second.raw)
+    at = _behind_word(text, end)
+    third = _label(text, at, base)
+    return kind, second, third, end if third is None else at + len(third.raw)
 
 
 class _Unusual(Exception):
@@ -169,28 +174,29 @@ def _string(text: str, start: int) -> str:
 def _attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]) -> int:
     """{ Attribute [ "," ] } ")", from behind the `(`"""
     while True:
+        if not COMPILED:
+            at = read_pairs(text, at, blanks, base, pairs)
         character = text[at]
+        if character == ")":
+            return at + 1
         if character in " \t\r\n#/":
             at = _gap(text, at, blanks)
-            character = text[at]
-        if character.isalpha() or character == "_":
-            end = name_end(text, at)
-            key = text[at:end]
-            start = end + 3 if text.startswith(" = ", end) else _behind_equals(text, end)
-            if start < 0:
-                at = _clause(text, at, key, blanks, base, clauses)
-            elif key in _NO_NAMES:
-                raise _Unusual
-            else:
-                value = _value(text, start, base)
-                pairs.append(Pair(Word(NAME, at - base, key), value))
-                at = start + len(value.raw)
-            if text[at] == ",":
-                at += 1
-        elif character == ")":
-            return at + 1
-        else:
+            continue
+        if not (character.isalpha() or character == "_"):
             raise _Unusual
+        end = name_end(text, at)
+        key = text[at:end]
+        start = _behind_equals(text, end)
+        if start < 0:
+            at = _clause(text, at, key, blanks, base, clauses)
+        elif key in _NO_NAMES:
+            raise _Unusual
+        else:
+            value = _value(text, start, base)
+            pairs.append(Pair(Word(NAME, at - base, key), value))
+            at = start + len(value.raw)
+        if text[at] == ",":
+            at += 1
 
 
 def _behind_equals(text: str, at: int) -> int:
@@ -207,19 +213,24 @@ def _behind_equals(text: str, at: int) -> int:
 
 def _gap(text: str, at: int, blanks: str | None) -> int:
     """Behind blanks and, in brackets, over line ends and comments"""
+    if text[at] == " ":
+        at += 1
+    if text[at] not in " \t\r\n#/":
+        return at
+    if blanks is None:
+        return blanks_end(text, at, len(text))
     line = -1
     while True:
+        start, end = line_opening(text, at)
+        if start > at:
+            line = start
+        at = end
         character = text[at]
-        if character == " " or character == "\t":
-            at += 1
-        elif blanks is None:
-            return at
-        elif character == "\n" or character == "\r":
-            at = line = at + 1
-        elif character == "#" or text.startswith("//", at):
-            at = _comment_end(text, at)
-        else:
+        if character == "/" and text[at + 1] != "/":
+            raise _Unusual
+        if character != "#" and character != "/":
             break
+        at = _comment_end(text, at)
     if line >= 0 and not text.startswith(blanks, line):
         raise _Unusual
     return at

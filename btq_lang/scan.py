@@ -65,7 +65,8 @@ def line_opening(text: str, start: int) -> tuple[int, int]:
     """Over blank lines: where the line begins whose first word or comment comes next (`start`, if it is the same
     line), and where its blanks end."""
     if not COMPILED:
-        return _OPENING(text, start).span(1)  # type: ignore[union-attr]  # it matches nothing at least
+        match = _OPENING(text, start)
+        return match.span(match.lastindex)  # type: ignore
     size = len(text)
     at = start
     while at < size:
@@ -179,7 +180,10 @@ def unit_run(text: str, start: int) -> int:
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
-_OPENING: Final = re.compile(r"(?:[ \t\r\n]*[\r\n])?([ \t]*)").match
+# Three ways to say one thing: the first two spare the engine from looking back over the blanks it has passed.
+_OPENING: Final = re.compile(
+    r"([ \t]*)(?![ \t\r\n]) | [\r\n]+([ \t]*)(?![ \t\r\n]) | (?:[ \t\r\n]*[\r\n])([ \t]*)", re.VERBOSE
+).match
 _LINE: Final = re.compile(r"[^\r\n]*").match
 _PATH: Final = re.compile(r"[^\s()\"']*").match
 _NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
