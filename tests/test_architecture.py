@@ -21,8 +21,8 @@ ROWS: tuple[frozenset[str], ...] = (
         {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "patterns", "plain", "parser", "script"}
     ),
     frozenset({"catalog"}),
-    frozenset({"toml_places", "project", "symbols", "workspace"}),
-    frozenset({"checks", "formatter", "render", "fixes"}),
+    frozenset({"toml_places", "project", "symbols", "workspace", "requirements"}),
+    frozenset({"checks", "formatter", "render", "fixes", "btcpp"}),
     frozenset({"loader", "watch", "shell", "commands", "cli", "__main__", "server"}),
 )
 ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}

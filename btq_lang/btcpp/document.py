@@ -1,0 +1,203 @@
+"""An XML document: elements, comments and texts, with the bytes of their attributes, and how it is written.
+
+One invariant: an attribute keeps its value as the file spells it (`raw`), for the engine keeps a line end inside a
+value and strict readers turn it into a blank, unless it is written `&#10;`: only the spelling says which it was.
+It does not know what the elements mean.
+"""
+
+from __future__ import annotations
+
+import re
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from typing import Final, TypeAlias
+
+
+class Attribute:
+    """`name="raw"`.
+
+    Attributes:
+        raw: what stands between the quotes, references as they are.
+        start: where the name begins in the file it was read from; -1 where it was made.
+        value_start: where `raw` begins, likewise.
+    """
+
+    __slots__ = ("name", "raw", "start", "value_start")
+
+    def __init__(self, name: str, raw: str, start: int = -1, value_start: int = -1) -> None:
+        self.name: Final = name
+        self.raw: Final = raw
+        self.start: Final = start
+        self.value_start: Final = value_start
+
+    @property
+    def value(self) -> str:
+        """What the engine reads."""
+        return unescape(self.raw) if "&" in self.raw else self.raw
+
+    def __repr__(self) -> str:
+        return f'{self.name}="{self.raw}"'
+
+
+class Element:
+    """An element.
+
+    Attributes:
+        children: what stands in it, in order.
+        start, end: its start tag in the file it was read from; -1 where it was made.
+    """
+
+    __slots__ = ("attributes", "children", "end", "start", "tag")
+
+    def __init__(
+        self,
+        tag: str,
+        attributes: Iterable[Attribute] = (),
+        children: Iterable[Content] = (),
+        start: int = -1,
+        end: int = -1,
+    ) -> None:
+        self.tag: Final = tag
+        self.attributes: Final = list(attributes)
+        self.children: Final = list(children)
+        self.start: Final = start
+        self.end: Final = end
+
+    @property
+    def elements(self) -> Iterator[Element]:
+        """The children that are elements."""
+        return (child for child in self.children if isinstance(child, Element))
+
+    def get(self, name: str) -> str | None:
+        """The value of an attribute; None where it has none of that name."""
+        for attribute in self.attributes:
+            if attribute.name == name:
+                return attribute.value
+        return None
+
+    def __repr__(self) -> str:
+        return f"<{self.tag} {self.attributes} {len(self.children)} children>"
+
+
+class Comment:
+    """`<!--text-->`.
+
+    Attributes:
+        beside: it stands on the line on which what comes before it ends.
+    """
+
+    __slots__ = ("beside", "start", "text")
+
+    def __init__(self, text: str, beside: bool = False, start: int = -1) -> None:
+        self.text: Final = text
+        self.beside: Final = beside
+        self.start: Final = start
+
+    def __repr__(self) -> str:
+        return f"<!--{self.text}-->"
+
+
+class Text:
+    """Character data that is not blank: the text of a port or a description, as it reads."""
+
+    __slots__ = ("start", "text")
+
+    def __init__(self, text: str, start: int = -1) -> None:
+        self.text: Final = text
+        self.start: Final = start
+
+    def __repr__(self) -> str:
+        return repr(self.text)
+
+
+Content: TypeAlias = "Element | Comment | Text"
+
+
+class Document:
+    """A whole file: the document element and the comments before and after it."""
+
+    __slots__ = ("contents",)
+
+    def __init__(self, contents: Iterable[Content]) -> None:
+        self.contents: Final = list(contents)
+
+    @property
+    def root(self) -> Element:
+        """The document element."""
+        return next(content for content in self.contents if isinstance(content, Element))
+
+
+def write(document: Document) -> str:
+    """The text of a document: one element a line, two blanks a level, `\\n` at line ends."""
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
+    stack: list[tuple[Iterator[Content], str]] = [(iter(document.contents), "")]
+    while stack:
+        contents, closing = stack[-1]
+        blanks = _STEP * (len(stack) - 1)
+        content = next(contents, None)
+        if content is None:
+            stack.pop()
+            if closing:
+                lines.append(f"{_STEP * (len(stack) - 1)}{closing}")
+        elif isinstance(content, Comment):
+            if content.beside:
+                lines[-1] += f" {_comment(content)}"
+            else:
+                lines.append(f"{blanks}{_comment(content)}")
+        elif isinstance(content, Text):
+            lines.append(f"{blanks}{escape_text(content.text)}")
+        elif not content.children:
+            lines.append(f"{blanks}<{_start_tag(content)}/>")
+        elif all(isinstance(child, Text) for child in content.children):  # blanks around a text would be part of it
+            text = "".join(escape_text(child.text) for child in content.children if isinstance(child, Text))
+            lines.append(f"{blanks}<{_start_tag(content)}>{text}</{content.tag}>")
+        else:
+            lines.append(f"{blanks}<{_start_tag(content)}>")
+            stack.append((iter(content.children), f"</{content.tag}>"))
+    return "\n".join(lines) + "\n"
+
+
+def _start_tag(element: Element) -> str:
+    return " ".join((element.tag, *(f'{attribute.name}="{attribute.raw}"' for attribute in element.attributes)))
+
+
+def _comment(comment: Comment) -> str:
+    return f"<!--{comment.text}-->"
+
+
+# ---- spelling values ------------------------------------------------------------------------------------------------
+
+
+def escape(value: str) -> str:
+    """A value as it stands in an attribute: line ends, tabs and what XML forbids there as references."""
+    return value.translate(_IN_ATTRIBUTE) if _SPECIAL(value) else value
+
+
+def escape_text(text: str) -> str:
+    """A text as it stands between tags."""
+    return text.translate(_IN_TEXT)
+
+
+def unescape(raw: str) -> str:
+    """What the engine reads from a value: the five names and numbers of XML; other references stay as they are."""
+    return _REFERENCE.sub(_referred, raw)
+
+
+def _referred(match: re.Match[str]) -> str:
+    name = match[1]
+    if name in _NAMED:
+        return _NAMED[name]
+    try:
+        return chr(int(name[2:], 16) if name[1] == "x" else int(name[1:]))
+    except (ValueError, OverflowError):
+        return match[0]
+
+
+_STEP: Final = "  "
+_NAMED: Final = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
+_REFERENCE: Final = re.compile(r"&(lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9A-Fa-f]{1,6});")
+_IN_TEXT: Final = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
+_IN_ATTRIBUTE: Final = _IN_TEXT | str.maketrans({'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
+_SPECIAL: Final = re.compile('[&<>"\r\n\t]').search

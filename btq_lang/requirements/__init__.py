@@ -1,0 +1,1 @@
+"""What requirements mean: their clauses resolved, with units, subjects and scopes."""
