@@ -1,7 +1,7 @@
 """The logical lines of a file with the comments between them, each with the level it belongs to.
 
 One invariant: every token and every comment of the file is in exactly one line, in order, and the lines' spans follow
-each other from the start of the file to its end.  It knows where comments belong (language.md §6), and no grammar.
+each other from the start of the file to its end.  It knows no grammar; where a comment belongs, `comments` knows.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
+from btq_lang.comments import block_of
 from btq_lang.text import LINE_END
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
 
@@ -104,7 +105,8 @@ def logical_lines(text: str, tokens: Iterable[Token], atoms: Mapping[int, int]) 
     open_lines: list[Line] = []  # the line above and those whose blocks it stands in
     for remarks, line in _gathered(text, tokens, atoms):
         for remark in remarks:
-            remark.depth = _depth(remark.blanks, open_lines, line.level)
+            owner = block_of(remark.blanks, open_lines, line.level)
+            remark.depth = line.level if owner is None else owner.level + 1
         below = max((index + 1 for index, remark in enumerate(remarks) if remark.depth > line.level), default=0)
         line.lead = remarks[below:]
         line.start = lines[-1].end if lines else 0
@@ -168,23 +170,6 @@ def _written(kind: int, raw: str) -> str:
     if kind == COMMENT and not raw.startswith("/*"):
         return raw.rstrip(" \t")
     return LINE_END.sub("\n", raw) if "\r" in raw else raw
-
-
-def _depth(blanks: str, open_lines: list[Line], level: int) -> int:
-    """The level of a comment line: one more than that of the last line above it that stands further left, but not less
-    than that of the line below it."""
-    for line in reversed(open_lines):
-        if _further_left(line.blanks, blanks):
-            return max(line.level + 1, level)
-    return level
-
-
-def _further_left(first: str, second: str) -> bool:
-    """Whether the first indentation is less than the second; where tabs and blanks do not compare, a tab goes to the
-    next multiple of four columns, as in the editor that the classic files were written in."""
-    if second.startswith(first) or first.startswith(second):
-        return len(first) < len(second)
-    return len(first.expandtabs(4)) < len(second.expandtabs(4))
 
 
 def _line_end(text: str, at: int) -> int:

@@ -1,0 +1,196 @@
+"""The comments of a file: to which element each belongs, for everything that writes a tree in another notation.
+
+One invariant: every comment of the file is in exactly one place.  An element is what begins a logical line: an item, a
+node, a port, a line of clauses, a clause in the block of a requirement.  This module knows where comments belong
+(language.md §6) and no grammar: which elements another notation has, and how it writes a comment, is the reader's
+business.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from btq_lang.parser import Parsed
+from btq_lang.record import record
+from btq_lang.text import LINE_END
+from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, Token
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Protocol, TypeVar
+
+    class CodeLine(Protocol):
+        """A logical line: how many blocks are open around it, and the blanks it begins with."""
+
+        @property
+        def level(self) -> int: ...
+        @property
+        def blanks(self) -> str: ...
+
+    L = TypeVar("L", bound=CodeLine)
+
+
+@record
+class Comment:
+    """A comment.
+
+    Attributes:
+        start: where it begins in the file.
+        raw: as it stands there, but for blanks at the end of a line comment.
+    """
+
+    start: int
+    raw: str
+
+    @property
+    def is_block(self) -> bool:
+        """Written `/* … */`, and not to the end of a line."""
+        return self.raw.startswith("/*")
+
+    @property
+    def text(self) -> str:
+        """What stands behind `#` or `//`, or between `/*` and `*/`; line ends are `\\n`."""
+        if not self.is_block:
+            return self.raw.removeprefix("//") if self.raw.startswith("/") else self.raw[1:]
+        inside = self.raw[2:-2] if len(self.raw) >= 4 and self.raw.endswith("*/") else self.raw[2:]
+        return LINE_END.sub("\n", inside)
+
+
+@record
+class Comments:
+    """The comments of an element, by place, each in the order of the file.
+
+    Attributes:
+        before: on lines of their own above it, in the block that it stands in.
+        within: on its line (or lines, where it has brackets) before its last word: in brackets, or in front.
+        behind: behind it on its line, where it has no block.
+        first: behind it on its line, where a block follows: they are the first thing in the block.
+        last: on lines of their own at the end of its block; an element without other block may have them too.
+    """
+
+    before: tuple[Comment, ...] = ()
+    within: tuple[Comment, ...] = ()
+    behind: tuple[Comment, ...] = ()
+    first: tuple[Comment, ...] = ()
+    last: tuple[Comment, ...] = ()
+
+
+NO_COMMENTS: Final = Comments()
+
+
+def comments(parsed: Parsed) -> Mapping[int, Comments]:
+    """The comments of a file by the elements they belong to; elements without comments are left out.
+
+    The key of an element is the place in the file where it begins, `entry.start + part.start`; what begins no logical
+    line, as a clause behind a node, has none.  Comments below all items that stand in no block are `before` the key
+    `len(text)`.
+    """
+    if "#" not in parsed.text and "/" not in parsed.text:
+        return {}
+    found: dict[int, dict[str, tuple[Comment, ...]]] = {}
+
+    def add(line: _Line, place: str, remarks: list[Comment]) -> None:
+        if remarks:
+            places = found.setdefault(line.start, {})
+            places[place] = (*places.get(place, ()), *remarks)
+
+    open_lines: list[_Line] = []  # the line above and those whose blocks it stands in
+    for comment_lines, line in _lines(parsed):
+        for blanks, remarks in comment_lines:
+            owner = block_of(blanks, open_lines, line.level)
+            if owner is None:
+                add(line, "before", remarks)
+            else:
+                add(owner, "last", remarks)
+        if open_lines:  # whether it has a block is known now
+            above = open_lines[-1]
+            has_block = above.level < line.level or "last" in found.get(above.start, ())
+            add(above, "first" if has_block else "behind", above.behind)
+        add(line, "within", line.within)
+        while open_lines and open_lines[-1].level >= line.level:
+            open_lines.pop()
+        open_lines.append(line)
+    return {start: Comments(**places) for start, places in found.items()}
+
+
+def block_of(blanks: str, open_lines: Sequence[L], level: int) -> L | None:
+    """The line at the end of whose block a comment line stands (language.md §6): the last one above it that stands
+    further left; None where it stands beside the line below, for it is never further out than that.
+
+    Args:
+        blanks: what the comment line begins with.
+        open_lines: the line above and those whose blocks it stands in, from the outermost on.
+        level: that of the line below.
+    """
+    for line in reversed(open_lines):
+        if _further_left(line.blanks, blanks):
+            return line if line.level >= level else None
+    return None
+
+
+def _further_left(first: str, second: str) -> bool:
+    """Whether the first indentation is less than the second; where tabs and blanks do not compare, a tab goes to the
+    next multiple of four columns, as in the editor that the classic files were written in."""
+    if second.startswith(first) or first.startswith(second):
+        return len(first) < len(second)
+    return len(first.expandtabs(4)) < len(second.expandtabs(4))
+
+
+class _Line:
+    """A logical line.
+
+    Attributes:
+        start: where its first word begins.
+        level: how many blocks are open around it.
+        blanks: what stands before it on its line of text.
+        within, behind: its comments, before its last word and behind it.
+    """
+
+    __slots__ = ("behind", "blanks", "level", "start", "within")
+
+    def __init__(self, start: int, level: int, blanks: str, within: list[Comment]) -> None:
+        self.start: Final = start
+        self.level: Final = level
+        self.blanks: Final = blanks
+        self.within: Final = within
+        self.behind: Final[list[Comment]] = []
+
+
+def _lines(parsed: Parsed) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
+    """Each logical line, and the last one is the end of the file, with the comment lines above it and their blanks."""
+    above: list[tuple[str, list[Comment]]] = []
+    line: _Line | None = None
+    level = 0
+    blanks = ""
+    begins = True  # nothing stands on this line of text yet
+    for token in parsed.tokens:
+        kind = token.kind
+        if kind == BLANK:
+            *ended, rest = LINE_END.split(token.text)
+            begins = begins or bool(ended)
+            blanks = rest if ended else blanks + rest.lstrip("\ufeff")
+        elif kind == INDENT or kind == DEDENT:
+            level += 1 if kind == INDENT else -1
+        elif kind == NEWLINE:
+            if line is not None:
+                yield above, line
+            above, line, blanks, begins = [], None, "", True
+        elif kind == COMMENT:
+            if line is not None:
+                line.behind.append(_comment(token))
+            elif begins:
+                above.append((blanks, [_comment(token)]))
+            else:
+                above[-1][1].append(_comment(token))
+            begins = False
+        elif line is None:
+            in_front = (blanks, []) if begins else above.pop()
+            line = _Line(token.start, level, *in_front)
+        else:
+            line.within.extend(line.behind)
+            line.behind.clear()
+    yield above, _Line(len(parsed.text), 0, "", [])
+
+
+def _comment(token: Token) -> Comment:
+    return Comment(token.start, token.text if token.text.startswith("/*") else token.text.rstrip(" \t"))
