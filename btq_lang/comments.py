@@ -169,7 +169,7 @@ def _lines(parsed: Parsed) -> Iterator[tuple[list[tuple[str, list[Comment]]], _L
             *ended, rest = LINE_END.split(token.text)
             begins = begins or bool(ended)
             blanks = rest if ended else blanks + rest.lstrip("\ufeff")
-        elif kind == INDENT or kind == DEDENT:
+        elif kind in (INDENT, DEDENT):
             level += 1 if kind == INDENT else -1
         elif kind == NEWLINE:
             if line is not None:
