@@ -20,6 +20,10 @@ from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
 from btq_lang.syntax import Entry, Include, Root, Tree, Word
 from btq_lang.text import LineIndex, Span
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.mentions import Mention
+
 
 @record
 class Definition:
@@ -68,6 +72,19 @@ class File:
     @cached_property
     def lines(self) -> LineIndex:
         return LineIndex(self.text)
+
+    def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
+        """Every word of one of the file's entries that names something."""
+        known = self._mentions.get(id(entry))
+        if known is None:
+            from btq_lang.mentions import mentions  # only editors ask
+
+            known = self._mentions[id(entry)] = mentions(entry.item)
+        return known
+
+    @cached_property
+    def _mentions(self) -> dict[int, tuple[Mention, ...]]:
+        return {}
 
     def start_of(self, item: object) -> int:
         """Where one of the file's items begins.

@@ -15,7 +15,7 @@ settings.register_profile("thorough", deadline=None, max_examples=2_000)
 settings.load_profile("usual")
 
 # So that what fails in them is shown as in a test.
-pytest.register_assert_rewrite("check_asserts", "syntax_asserts")
+pytest.register_assert_rewrite("check_asserts", "syntax_asserts", "feature_asserts")
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,309 @@
+"""What stands here: a word under the cursor, and what it means in its file.
+
+One invariant: two mentions mean the same if and only if their subjects are equal, in whatever files they stand.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+
+from btq_lang.catalog.nodes import lookup
+from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
+from btq_lang.mentions import Mention, What
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Model, Node, Qualities, Requirement, Root, Tree, Word
+from btq_lang.text import Span
+from btq_lang.tokens import COMMENT, NAME
+from btq_lang.workspace import Definition, Workspace
+
+ENGINE = "engine"
+STANDARD = "standard"
+ROOT_BLACKBOARD = "@"
+
+
+@record
+class Subject:
+    """What is named.
+
+    Attributes:
+        name: of a built-in node its tag, of a standard quality its id, of a file its path.
+        home: what tells it from others of its name: where it is defined; empty where it is defined nowhere, or where
+            its name alone is what it is.
+    """
+
+    what: What
+    name: str
+    home: str = ""
+
+
+@record
+class Found:
+    """A mention in a file; `entry`: where it stands, None in a comment."""
+
+    path: str
+    entry: Entry | None
+    mention: Mention
+
+    @property
+    def span(self) -> Span:
+        """The name, counted from the start of the file."""
+        return self.mention.span.shifted(self.entry.start if self.entry else 0)
+
+
+def at(workspace: Workspace, path: str, offset: int) -> Found | None:
+    """The mention that an offset is in, or that ends there.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    entry = entry_at(workspace, path, offset)
+    touching = []
+    if entry is not None:
+        inside = offset - entry.start
+        for mention in workspace.files[path].mentions_of(entry):
+            if mention.span.start <= inside <= mention.span.end:
+                touching.append(mention)
+    if touching:  # of two that touch, `{a}` and the word behind it, the one that begins here
+        best = min(touching, key=lambda mention: (mention.span.end == inside, -mention.span.start))
+        return Found(path, entry, best)
+    return _rule_at(workspace, path, offset)
+
+
+def entry_at(workspace: Workspace, path: str, offset: int) -> Entry | None:
+    """The last item that begins at an offset or before it."""
+    entries = workspace.files[path].parsed.entries
+    index = bisect_right(entries, offset, key=lambda entry: entry.start + entry.item.start)
+    return entries[index - 1] if index else None
+
+
+def subject(workspace: Workspace, found: Found) -> Subject:
+    """What a mention means."""
+    path, entry, mention = found.path, found.entry, found.mention
+    if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.ATTRIBUTE) or entry is None:
+        return Subject(mention.what, mention.name)
+    if mention.what is What.INCLUDE:
+        return Subject(What.INCLUDE, workspace.included(path, mention.name) or mention.name)
+    if mention.what is What.QUALITY:
+        return _quality(workspace, path, mention)
+    if mention.what is What.NODE:
+        return _node(workspace, path, mention)
+    if mention.what in _KINDS:
+        return _defined(workspace, path, mention.what, mention.name)
+    if mention.what is What.PARAMETER:
+        owner = mention.owner
+        name = owner.name.text if isinstance(owner, Requirement) and owner.name else owner
+        home = _defined(workspace, path, What.REQUIREMENT, name).home if isinstance(name, str) else ""
+        return Subject(What.PARAMETER, mention.name, home or f"{path}:{entry.start}")
+    if mention.what is What.VALUE:
+        return _value(workspace, path, entry, mention)
+    if mention.what is What.PLACE:
+        return _place(workspace, path, mention.name)
+    if mention.what is What.PORT:
+        return _port(workspace, found)
+    if mention.what is What.KEY:
+        return Subject(What.KEY, mention.name, _blackboard(workspace, path, entry, mention.root))
+    return Subject(mention.what, mention.name, f"{path}:{entry.start}")
+
+
+def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition | None:
+    """The definition of what has one in the symbols of a file's scope, or else anywhere in the project."""
+    kind = _KINDS.get(wanted.what)
+    if kind is None or wanted.home in (ENGINE, STANDARD):
+        return None
+    found = workspace.scope(path).find(kind, wanted.name)
+    if found is not None and home_of(found) == wanted.home:
+        return found
+    elsewhere = workspace.defined_anywhere(kind, wanted.name)
+    return next((one for one in elsewhere if not wanted.home or home_of(one) == wanted.home), None)
+
+
+def home_of(found: Definition) -> str:
+    """Where a definition is at home, as its subject says it."""
+    return f"{found.path}:{found.span.start}"
+
+
+def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | None = None) -> Iterator[Found]:
+    """Every mention of a subject, file by file, in the order of their texts.
+
+    Args:
+        paths: the files to look in; None: all.
+    """
+    spelt = wanted.name if wanted.what not in (What.QUALITY, What.INCLUDE) and not _ESCAPED.search(wanted.name) else ""
+    if wanted.home == ENGINE:  # its tag is one of its spellings
+        spelt = ""
+    for path in paths if paths is not None else sorted(workspace.files):
+        file = workspace.files[path]
+        if spelt not in file.text:
+            continue
+        for entry in file.parsed.entries:
+            for mention in file.mentions_of(entry):
+                if spelt and mention.name != spelt:
+                    continue
+                found = Found(path, entry, mention)
+                if subject(workspace, found) == wanted:
+                    yield found
+
+
+def edition(workspace: Workspace, path: str) -> str:
+    """The edition of the quality model that holds for a file."""
+    for entry in workspace.files[path].parsed.entries:
+        word = entry.item.edition if isinstance(entry.item, Qualities) else None
+        if word is not None and word.text in EDITIONS:
+            return word.text
+    return workspace.project.qualities
+
+
+def quality_match(workspace: Workspace, path: str, name: str) -> QualityMatch:
+    """What the standard's names say of a quality."""
+    return find(tuple(name.split(".")), EDITIONS[edition(workspace, path)])
+
+
+# ---- kinds of subjects ----
+
+
+def _defined(workspace: Workspace, path: str, what: What, name: str) -> Subject:
+    found = workspace.scope(path).find(_KINDS[what], name)
+    return Subject(what, name, home_of(found) if found else "")
+
+
+def _node(workspace: Workspace, path: str, mention: Mention) -> Subject:
+    node = mention.node
+    is_kind = node is not None and node.kind is not None and mention.word == node.kind
+    quoted = mention.word.quoted
+    if is_kind or (mention.defines and not quoted):
+        builtin = lookup(mention.name, quoted, len(node.nodes) if node else None)
+        if builtin is not None:
+            return Subject(What.NODE, builtin.tag, ENGINE)
+    return _defined(workspace, path, What.NODE, mention.name)
+
+
+def _quality(workspace: Workspace, path: str, mention: Mention) -> Subject:
+    own = own_quality(workspace, path, mention.name.rpartition(".")[2])
+    if own is not None:
+        return Subject(What.QUALITY, own.symbol.name, home_of(own))
+    match = quality_match(workspace, path, mention.name)
+    if match.quality is not None:
+        return Subject(What.QUALITY, match.quality.id, STANDARD)
+    return Subject(What.QUALITY, mention.name)
+
+
+def own_quality(workspace: Workspace, path: str, name: str) -> Definition | None:
+    """The declaration of a quality of one's own, compared as names of qualities are."""
+    scope = workspace.scope(path)
+    folded = fold(name)
+    for own in scope.names(Kind.QUALITY):
+        if fold(own) == folded:
+            return scope.find(Kind.QUALITY, own)
+    return None
+
+
+def _value(workspace: Workspace, path: str, entry: Entry, mention: Mention) -> Subject:
+    owner = mention.owner
+    if isinstance(owner, Requirement) and any(mention.name == one.name.text for one in owner.parameters):
+        home = _defined(workspace, path, What.REQUIREMENT, owner.name.text).home if owner.name else ""
+        return Subject(What.PARAMETER, mention.name, home or f"{path}:{entry.start}")
+    for what in (What.CONTEXT, What.SIGNAL):
+        known = _defined(workspace, path, what, mention.name)
+        if known.home:
+            return known
+    place = _place(workspace, path, mention.name)
+    return place if place.home else Subject(What.SIGNAL, mention.name)
+
+
+def _place(workspace: Workspace, path: str, name: str) -> Subject:
+    builtin = lookup(name)
+    if builtin is not None:
+        return Subject(What.NODE, builtin.tag, ENGINE)
+    for what in (What.NODE, What.TREE):
+        known = _defined(workspace, path, what, name)
+        if known.home:
+            return known
+    label = ""
+    for other in workspace.scope(path).paths:
+        file = workspace.files[other]
+        if name not in file.text:
+            continue
+        for entry in file.parsed.entries:
+            for mention in file.mentions_of(entry) if isinstance(entry.item, Tree) else ():
+                if mention.name == name and mention.what is What.NODE:
+                    return Subject(What.NODE, name)
+                if mention.name == name and mention.what is What.INSTANCE:
+                    label = label or f"{other}:{entry.start}"
+    return Subject(What.INSTANCE, name, label) if label else Subject(What.NODE, name)
+
+
+def _port(workspace: Workspace, found: Found) -> Subject:
+    mention = found.mention
+    if mention.defines:
+        name = mention.owner.name if isinstance(mention.owner, Model) else None
+        model = _defined(workspace, found.path, What.NODE, name.text if name else "")
+        return Subject(What.PORT, mention.name, model.home or found.path)
+    node = mention.node
+    assert node is not None, "a port that is not declared is used at a node"
+    name = _called(node)
+    if name is not None:
+        tree = workspace.scope(found.path).find(Kind.TREE, name.text)
+        if tree is not None:
+            return Subject(What.KEY, mention.name, _blackboard(workspace, tree.path, tree.entry, False))
+        return Subject(What.PORT, mention.name, f"tree {name.text}")
+    if node.id is None:
+        return Subject(What.PORT, mention.name)
+    kind = lookup(node.id.text, node.id.quoted, len(node.nodes))
+    if kind is not None:
+        return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
+    owner = _defined(workspace, found.path, What.NODE, node.id.text)
+    return Subject(What.PORT, mention.name, owner.home or f"node {node.id.text}")
+
+
+def _called(node: Node) -> Word | None:
+    """The tree that a SubTree runs."""
+    if node.category is not None and node.category.raw == "SubTree":
+        return node.id
+    return node.attribute("ID") if node.kind is not None and node.kind.raw == "SubTreePlus" else None
+
+
+def _blackboard(workspace: Workspace, path: str, entry: Entry, root: bool) -> str:
+    """The blackboard that a key is of: each tree has one, and the main tree's is the root's."""
+    if root or is_main(workspace, path, entry):
+        return ROOT_BLACKBOARD
+    return f"{path}:{entry.start}"
+
+
+def is_main(workspace: Workspace, path: str, entry: Entry) -> bool:
+    """Whether a tree is a mission: its file's main tree, and the file is none that is only included."""
+    main = workspace.main_tree(path)
+    if main is None or main.path != path or main.entry is not entry:
+        return False
+    named = any(isinstance(other.item, Root) for other in workspace.files[path].parsed.entries)
+    return named or path not in workspace.included_files
+
+
+def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:
+    """The name of a rule in `# btq: ignore[rule, …]`."""
+    file = workspace.files[path]
+    if "btq:" not in file.text:
+        return None
+    for token in file.parsed.tokens:
+        if token.kind == COMMENT and token.start <= offset <= token.end:
+            listed = _IGNORED.search(token.text)
+            for name in _RULE_NAME.finditer(listed[1]) if listed else ():
+                span = Span(*name.span()).shifted(token.start + (listed.start(1) if listed else 0))
+                if span.start <= offset <= span.end:
+                    return Found(path, None, Mention(What.RULE, name[0], span, Word(NAME, span.start, name[0])))
+    return None
+
+
+_KINDS = {
+    What.TREE: Kind.TREE,
+    What.NODE: Kind.MODEL,
+    What.REQUIREMENT: Kind.REQUIREMENT,
+    What.SIGNAL: Kind.SIGNAL,
+    What.CONTEXT: Kind.CONTEXT,
+    What.QUALITY: Kind.QUALITY,
+}
+_ESCAPED = re.compile(r"[\"'\\\r\n\t]")
+_IGNORED = re.compile(r"btq:\s*ignore\s*\[([^\]]*)")
+_RULE_NAME = re.compile(r"[\w-]+")

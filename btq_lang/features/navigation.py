@@ -1,0 +1,118 @@
+"""Definition, declaration, references and highlights of what stands at a place."""
+
+from __future__ import annotations
+
+from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, subject
+from btq_lang.mentions import What
+from btq_lang.record import record
+from btq_lang.syntax import Node
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+@record
+class Target:
+    """A place to go to.
+
+    Attributes:
+        span: what is to be seen there as a whole.
+        name: the word to stand on.
+        origin: the word that was asked about.
+    """
+
+    path: str
+    span: Span
+    name: Span
+    origin: Span
+
+
+@record
+class Highlight:
+    """A mention in the same file; `writes`: it gives the name or the value, and does not only use it."""
+
+    span: Span
+    writes: bool
+
+
+def goto_definition(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:
+    """Where what stands here is defined; of a name that the file cannot see, where else in the project it is.
+
+    A blackboard entry is defined where its tree declares it as a port, or else where it is written first.
+    """
+    found = at(workspace, path, offset)
+    if found is None:
+        return ()
+    wanted = subject(workspace, found)
+    if wanted.what is What.INCLUDE:
+        target = wanted.name
+        return (Target(target, Span(0, 0), Span(0, 0), found.span),) if target in workspace.files else ()
+    place = definition(workspace, path, wanted)
+    if place is not None:
+        item = place.symbol.target
+        whole = Span(item.start, item.end).shifted(place.entry.start)
+        return (Target(place.path, whole, place.span, found.span),)
+    if wanted.what in (What.KEY, What.PORT, What.PARAMETER, What.INSTANCE):
+        places = list(everywhere(workspace, wanted))
+        first = next((one for one in places if one.mention.defines), None)
+        if first is None and wanted.what is What.KEY:
+            first = next((one for one in places if writes(workspace, one)), None)
+        return (Target(first.path, first.span, first.span, found.span),) if first else ()
+    return ()
+
+
+def find_references(
+    workspace: Workspace, path: str, offset: int, include_definition: bool = True
+) -> tuple[tuple[str, Span], ...]:
+    """Every place, in every file, that names what stands here."""
+    found = at(workspace, path, offset)
+    if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
+        return ()
+    wanted = subject(workspace, found)
+    places = everywhere(workspace, wanted)
+    return tuple((one.path, one.span) for one in places if include_definition or not is_definition(workspace, one))
+
+
+def highlights(workspace: Workspace, path: str, offset: int) -> tuple[Highlight, ...]:
+    """The mentions in this file of what stands here."""
+    found = at(workspace, path, offset)
+    if found is None or found.entry is None or found.mention.what in _WITHOUT_REFERENCES:
+        return ()
+    wanted = subject(workspace, found)
+    places = everywhere(workspace, wanted, (path,))
+    return tuple(Highlight(one.span, one.mention.defines or writes(workspace, one)) for one in places)
+
+
+def is_definition(workspace: Workspace, found: Found) -> bool:
+    """Whether a mention is the definition that counts, and not one of the repeats of classic files."""
+    if not found.mention.defines:
+        return False
+    place = definition(workspace, found.path, subject(workspace, found))
+    return place is None or (place.path, place.span) == (found.path, found.span)
+
+
+def writes(workspace: Workspace, found: Found) -> bool:
+    """Whether the entry of the blackboard that is named here gets its value here."""
+    mention = found.mention
+    if mention.what not in (What.KEY, What.PORT):
+        return False
+    if mention.writes:
+        return True
+    node, pair = mention.node, mention.pair
+    if node is None or pair is None or pair.key.text.startswith("_"):
+        return False
+    return direction(workspace, found.path, node, pair.key.text) in ("output", "inout")
+
+
+def direction(workspace: Workspace, path: str, node: Node, port: str) -> str | None:
+    """Where the value of a node's port flows; None where nobody says."""
+    from btq_lang.features.ports import ports_of
+
+    return next((one.direction for one in ports_of(workspace, path, node) if one.name == port), None)
+
+
+def uses_of(workspace: Workspace, wanted: Subject) -> tuple[Found, ...]:
+    """The mentions of a subject that do not define it."""
+    return tuple(found for found in everywhere(workspace, wanted) if not found.mention.defines)
+
+
+_WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.ATTRIBUTE, What.EDITION, What.RULE))

@@ -1,0 +1,88 @@
+"""The ports of a node, whoever declares them: the engine, a model, or the tree behind a SubTree."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.nodes import lookup, port_type
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Model, Node, Port, Tree
+from btq_lang.workspace import Workspace
+
+
+@record
+class NodePort:
+    """A port that a node has.
+
+    Attributes:
+        default: the value where none is given; None: there is none.
+        unit: of a number in it, where one is known.
+        content: value, script or key.
+    """
+
+    name: str
+    direction: str
+    type: str
+    default: str | None
+    required: bool
+    doc: str
+    unit: str | None = None
+    content: str = "value"
+
+    @property
+    def signature(self) -> str:
+        """As a model declares it: `input station : string = charger`."""
+        default = f" = {self.default}" if self.default is not None else ""
+        return f"{self.direction} {self.name}{f' : {self.type}' if self.type else ''}{default}"
+
+
+def ports_of(workspace: Workspace, path: str, node: Node) -> tuple[NodePort, ...]:
+    """The ports of a node; none where nobody knows."""
+    name = node.id
+    is_subtree = node.category is not None and node.category.raw == "SubTree"
+    if is_subtree and name is not None:
+        return ports_of_tree(workspace, path, name.text)
+    if node.kind is not None and node.kind.raw == "SubTreePlus":
+        called = node.attribute("ID")
+        return ports_of_tree(workspace, path, called.text) if called is not None else ()
+    return () if name is None else ports_of_kind(workspace, path, name.text, name.quoted, len(node.nodes))
+
+
+def ports_of_kind(
+    workspace: Workspace, path: str, name: str, quoted: bool = False, child_count: int | None = None
+) -> tuple[NodePort, ...]:
+    """The ports of a built-in or of a model in scope."""
+    kind = lookup(name, quoted, child_count)
+    if kind is not None:
+        version = workspace.project.target
+        return tuple(
+            NodePort(
+                *(port.name, port.direction, port_type(port, version), port.default, port.required, port.doc),
+                *(port.unit, port.content),
+            )
+            for port in kind.ports
+        )
+    found = workspace.scope(path).find(Kind.MODEL, name)
+    if found is None or not isinstance(found.symbol.target, Model):
+        return ()
+    return tuple(_declared(port) for port in found.symbol.target.ports)
+
+
+def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[NodePort, ...]:
+    """The ports that a tree declares, in its block or in a model of its own."""
+    for kind in (Kind.TREE, Kind.MODEL):
+        found = workspace.scope(path).find(kind, name)
+        if found is not None and isinstance(target := found.symbol.target, Tree | Model) and target.ports:
+            return tuple(_declared(port) for port in target.ports)
+    return ()
+
+
+def _declared(port: Port) -> NodePort:
+    name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
+    return NodePort(
+        name.text if name else "",
+        port.direction.raw,
+        port.type.text if port.type else "",
+        port.default.text if port.default else None,
+        port.direction.raw == "input" and port.default is None,
+        port.text.text if port.text else "",
+    )

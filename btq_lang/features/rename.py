@@ -1,0 +1,193 @@
+"""Renaming what stands here: in every file, or not at all and with the reason.
+
+One invariant: after a rename every word that meant the thing means it still, and no other word has come to mean it;
+where that cannot be had, nothing is renamed.  The proof is made on the texts themselves, after the edits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.names import instance_name_problem, is_port_name, model_name_problem
+from btq_lang.catalog.nodes import lookup
+from btq_lang.catalog.qualities import fold
+from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
+from btq_lang.mentions import Mention, What
+from btq_lang.record import record
+from btq_lang.syntax import is_name, quote
+from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.workspace import Workspace, is_btq
+
+
+@record
+class Renamable:
+    """A name that can be changed: where it stands, and what it says now."""
+
+    span: Span
+    name: str
+
+
+@record
+class Refusal:
+    """Why something is not renamed, as a sentence."""
+
+    reason: str
+
+
+@record
+class Renaming:
+    """What to change in which file."""
+
+    edits: dict[str, tuple[Edit, ...]]
+
+
+def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | Refusal:
+    """Whether what stands here can be renamed."""
+    found = at(workspace, path, offset)
+    if found is None:
+        return Refusal("there is no name here")
+    wanted = subject(workspace, found)
+    reason = _refusal(workspace, wanted, found)
+    return Refusal(reason) if reason else Renamable(found.span, found.mention.name)
+
+
+def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming | Refusal:
+    """The edits that give what stands here another name.
+
+    Args:
+        name: as it is meant; quotes are put where the place asks for them.
+    """
+    ready = prepare_rename(workspace, path, offset)
+    found = at(workspace, path, offset)
+    if isinstance(ready, Refusal) or found is None:
+        return ready if isinstance(ready, Refusal) else Refusal("there is no name here")
+    wanted = subject(workspace, found)
+    reason = _unfit(wanted, name)
+    if reason:
+        return Refusal(reason)
+    places = tuple(everywhere(workspace, wanted))
+    reasons: list[str] = []
+    for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
+        edits: dict[str, tuple[Edit, ...]] = {}
+        for place in places:
+            edits[place.path] = (*edits.get(place.path, ()), *_edits(place, wanted, name, in_quotes))
+        reasons.append(_changes_meaning(workspace, path, found, places, edits, name))
+        if not reasons[-1]:
+            return Renaming(edits)
+        if wanted.what in _PLAIN or wanted.what is What.KEY:
+            break
+    return Refusal(reasons[0])
+
+
+def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
+    """Why a subject is renamed by nobody; empty where it can be."""
+    mention = found.mention
+    if wanted.what in _FIXED:
+        return f"{_FIXED[wanted.what]} cannot be renamed"
+    if wanted.home == STANDARD:
+        return f"`{wanted.name}` is a name of the quality model"
+    if wanted.home.startswith(ENGINE):
+        return f"`{wanted.name}` is a name of the engine"
+    place = definition(workspace, found.path, wanted)
+    if place is not None and not is_btq(place.path):
+        return f"`{wanted.name}` is defined in {place.path}, which is no .btq file"
+    if place is not None and not wanted.home:
+        return f"`{wanted.name}` is defined in {place.path}, which this file does not include"
+    unresolved = (What.TREE, What.REQUIREMENT, What.SIGNAL, What.CONTEXT, What.QUALITY, What.PARAMETER)
+    if wanted.what in unresolved and place is None and wanted.what is not What.PARAMETER:
+        return f"`{wanted.name}` is defined nowhere"
+    if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
+        return "`_autoremap` gives the other tree every entry under its own name"
+    for path in workspace.scope(found.path).paths:
+        file = workspace.files[path]
+        if not is_btq(path) and wanted.name in file.text:
+            return f"{path} may name it too, and is no .btq file"
+    return ""
+
+
+def _unfit(wanted: Subject, name: str) -> str:
+    """Why a name cannot be one of such a thing; empty where it can."""
+    if not name.strip() or "\n" in name or "\r" in name:
+        return "a name has at least one character and stands on one line"
+    if wanted.what in _PLAIN and not is_name(name):
+        return f"a {wanted.what.value} is a plain name: letters, digits and `_`"
+    if wanted.what is What.KEY and any(character in "{}\"'@= \t" for character in name):
+        return "an entry's name has no braces, quotes, blanks, `@` or `=`"
+    if wanted.what is What.PORT and (not is_port_name(name) or name in RESERVED_ATTRIBUTES):
+        return f"the engine takes no port of the name `{name}`"
+    if wanted.what in (What.TREE, What.NODE):
+        if lookup(name) is not None:
+            return f"`{name}` is a node of the engine"
+        problem = model_name_problem(name)
+        return f"the engine refuses the name: {problem}" if problem else ""
+    if wanted.what is What.INSTANCE and (problem := instance_name_problem(name)):
+        return f"the engine refuses the name: {problem}"
+    return ""
+
+
+def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool) -> Iterator[Edit]:
+    mention = place.mention
+    start = place.entry.start if place.entry else 0
+    if mention.what is What.KEY and not (mention.defines or mention.word.raw == wanted.name):
+        is_same = mention.pair is not None and mention.word.raw[mention.span.start - mention.word.start :][:1] == "="
+        if not (is_same and mention.pair is not None and mention.pair.key.text == name):
+            yield Edit(place.span, name)
+        return
+    quoted = in_quotes or mention.word.quoted or not is_name(name)
+    yield Edit(mention.word.span.shifted(start), quote(name) if quoted else name)
+    pair = mention.pair
+    value = pair.value if pair is not None else None
+    if mention.what is What.PORT and value is not None and value.text.strip("{} ") == "=":
+        # `{=}` is the entry called as the port was: the entry has not changed its name.
+        yield Edit(value.span.shifted(start), f"{{{wanted.name}}}")
+
+
+def _changes_meaning(
+    workspace: Workspace,
+    path: str,
+    found: Found,
+    places: tuple[Found, ...],
+    edits: dict[str, tuple[Edit, ...]],
+    name: str,
+) -> str:
+    """Why the texts after the edits do not mean the same; empty where they do."""
+    after = workspace
+    for changed, made in edits.items():
+        after = after.with_file(changed, apply_edits(workspace.files[changed].text, made))
+    moved = _after(found.span.start, edits[path])
+    now = at(after, path, moved)
+    if now is None or not _is_called(now.mention, name):
+        return f"`{name}` would be read as something else here"
+    meant = subject(after, now)
+    expected = {(one.path, _after(one.span.start, edits[one.path])) for one in places}
+    reached = {(one.path, one.span.start) for one in everywhere(after, meant)}
+    for taken, start in sorted(reached - expected):
+        line = after.files[taken].lines.position(start).line + 1
+        return f"`{name}` is in use already: {taken}, line {line}"
+    if expected - reached:
+        return f"`{name}` would be read as something else in another place"
+    return ""
+
+
+def _is_called(mention: Mention, name: str) -> bool:
+    return mention.name == name or (mention.what is What.QUALITY and fold(mention.name).endswith(fold(name)))
+
+
+def _after(offset: int, edits: tuple[Edit, ...]) -> int:
+    """Where an offset is after some edits."""
+    moved = offset
+    for edit in edits:
+        if edit.span.end <= offset:
+            moved += len(edit.text) - (edit.span.end - edit.span.start)
+    return moved
+
+
+_FIXED = {
+    What.ATTRIBUTE: "an attribute of the engine",
+    What.QUANTITY: "a quantity",
+    What.EDITION: "an edition",
+    What.RULE: "a rule",
+    What.INCLUDE: "a file is renamed in its folder; it",
+}
+_PLAIN = frozenset((What.SIGNAL, What.CONTEXT, What.PARAMETER))
