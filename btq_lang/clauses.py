@@ -232,7 +232,7 @@ class ClauseParser(Cursor):
             self.expect_word("by")
             method = self.one_of(METHODS)
             return How(start, self.last_end(), method)
-        if self.wrong_unit() and not self.is_verb(1):
+        if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
             self.expected(_A_CLAUSE)
             return None
         return self.claim()
@@ -279,7 +279,13 @@ class ClauseParser(Cursor):
     def one_of(self, words: tuple[str, ...]) -> Word | None:
         if self.kind == NAME and self.raw in words:
             return self.take()
-        self.expected(f"{', '.join(words[:-1])} or {words[-1]}")
+        what = f"{', '.join(words[:-1])} or {words[-1]}"
+        meant = near(self.raw, words, limit=1) or tuple(word for word in words if self.raw.startswith(word))
+        if self.kind != NAME or not meant:
+            return self.missing_word(what)
+        fix = replace_fix(f"Replace `{self.raw}` by `{meant[0]}`", self.here(), meant[0])
+        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), (fix,))
+        self.advance()
         return None
 
     # ---- claims ----
@@ -413,9 +419,18 @@ class ClauseParser(Cursor):
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
             relation = _RELATIONS.get((self.raw, self.raws[self.index + 1]))
         if relation is None:
-            self.expected("a bound: at most, at least, less than, more than or between")
-            return None
-        self.advance()
+            meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
+            if meant is None:
+                value = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
+                note = f"how much is said before the value: `at most {value}`"
+                self.expected("a bound: at most, at least, less than, more than or between", (note,))
+                return None
+            relation = _RELATIONS[meant]
+            written = " ".join(meant)
+            fix = replace_fix(f"Write `{written}`", self.here(), written, safe=True)
+            self.complain("syntax-error", self.here(), f"this bound is written `{written}`", (), (fix,))
+        else:
+            self.advance()
         self.advance()
         value = self.bounded()
         return Bound(start, self.last_end(), relation, value)
@@ -665,5 +680,15 @@ _FOLLOWED_BY: Final = {
     "on": "violation",
     "verified": "by",
     "sum": "of",
+}
+_INSTEAD_OF_BOUNDS: Final = {
+    "<=": ("at", "most"),
+    ">=": ("at", "least"),
+    "<": ("less", "than"),
+    ">": ("more", "than"),
+    "under": ("less", "than"),
+    "below": ("less", "than"),
+    "above": ("more", "than"),
+    "within": ("at", "most"),
 }
 _RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from bisect import bisect_left
 
-from btq_lang.diagnostics import Diagnostic, Fix
-from btq_lang.lexer import Lexer, unknown_unit
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related
+from btq_lang.lexer import Lexer, close_string, unknown_unit
 from btq_lang.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax import Word
 from btq_lang.text import Span
@@ -29,6 +29,7 @@ class Cursor:
         kind, raw: the token at hand.
         index: its index in `kinds`, `starts` and `raws`, the lexer's lists for this line.
         problems: what is wrong, counted from the start of the file.
+        inside_out: from here on strings are read as code and code as strings, for a quote is missing.
         known: how many problems the lexer had before this logical line.
         group: how many brackets are open around the token at hand.
         more: a further line is open (the lexer stands at its first character), not yet scanned.
@@ -47,6 +48,7 @@ class Cursor:
         self.more = False
         self.group = 0
         self.problems: list[Diagnostic] = []
+        self.inside_out = len(text) + 1
         self._silent_from = self._silent_to = -1  # the last line of text with a complaint
         self.known = 0
         self._said: list[int] | None = None  # where it found a mistake in it
@@ -227,12 +229,28 @@ class Cursor:
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
         attribute, or to the end of the line."""
-        wrong_unit = self.wrong_unit()
-        if wrong_unit is not None:
-            self.report(wrong_unit)
+        cause = self.lost_quote() or self.wrong_unit()
+        if cause is not None:
+            self.report(cause)
         else:
             self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", notes, fixes)
         self.recover()
+
+    def lost_quote(self) -> Diagnostic | None:
+        """What stands here makes no sense because the string before it lacks its closing quote, and ends at the quote
+        that should begin another string on a later line."""
+        before = self.index - 1
+        if before < 0 or self.kinds[before] != STRING or self.kind in (NEWLINE, CLOSE):
+            return None
+        start, raw = self.starts[before], self.raws[before]
+        end = line_end(self.text, start)
+        opens = raw[-2] in " \t=(," and raw[line_start(raw, 0, len(raw)) : -1].strip()
+        if end >= start + len(raw) or not (opens or self.adjacent(self.index)):
+            return None
+        message = f"a closing {raw[0]} is probably missing: this string ends at the next one, on another line"
+        at = start + len(raw) - 1
+        related = (Related(Place(Span(at, at + 1)), "the string ends here"),)
+        return Diagnostic("unclosed-string", Span(start, end), message, related, (), (close_string(self.text, start),))
 
     def wrong_unit(self) -> Diagnostic | None:
         """What is probably meant as a unit: the word behind a number, or what follows `30 m/`."""
@@ -260,6 +278,8 @@ class Cursor:
     def report(self, diagnostic: Diagnostic) -> None:
         """Report, if nothing was reported on this line of text yet."""
         at = diagnostic.span.start
+        if diagnostic.rule == "unclosed-string":
+            self.inside_out = min(self.inside_out, at + 1)
         in_line = at <= self._line_end()  # that was cut into tokens last
         if in_line:
             if self.kinds[0] == NEWLINE:

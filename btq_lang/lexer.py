@@ -285,8 +285,7 @@ class Lexer:
         if self._brackets and character not in _INSTEAD and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
         if character == "{" or character == "}":
-            self._half_braced(start, character)
-            return start + 1
+            return self._half_braced(start, character)
         end = start + 1
         while end < self.size and text[end] == character:
             end += 1
@@ -297,14 +296,15 @@ class Lexer:
             self._report("syntax-error", start, end, f"{shown} means nothing here", notes)
         return end
 
-    def _half_braced(self, start: int, character: str) -> None:
-        """A brace without the other one: `{key` or `key}`."""
+    def _half_braced(self, start: int, character: str) -> int:
+        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
+        word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
+        end = self._add(NAME, start, word.end()) if word else start + 1
         if self._strange:
-            return
+            return end
         self._strange = True
         other = "}" if character == "{" else "{"
-        word = _WHOLE_WORD.match(self.text, start + 1)
-        at = word.end() if character == "{" and word else start + 1
+        at = end
         if character == "}":
             at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
         fix = replace_fix(f"Add `{other}`", Span(at, at), other)
@@ -312,6 +312,7 @@ class Lexer:
         notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
         span = Span(start, start + 1)
         self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
+        return end
 
     def _after_operand(self, position: int) -> bool:
         """Whether a `-` here subtracts: it does behind an operand on the same line (language.md §2, NUMBER)."""
@@ -351,11 +352,10 @@ class Lexer:
 
     def _unclosed_string(self, start: int, quote: str) -> int:
         end = line_end(self.text, start)
-        said = start + 1 + len(self.text[start + 1 : end].rstrip(" \t,)"))
-        fix = replace_fix(f"Close it with {quote}", Span(said, said), quote)
         message = f"this string has no closing {quote}"
         notes = ("it is read to the end of its line",)
-        self.problems.append(Diagnostic("unclosed-string", Span(start, end), message, notes=notes, fixes=(fix,)))
+        fixes = (close_string(self.text, start),)
+        self.problems.append(Diagnostic("unclosed-string", Span(start, end), message, notes=notes, fixes=fixes))
         self._add(STRING, start, end)
         self._close_lost(start, end)
         return end
@@ -371,6 +371,7 @@ class Lexer:
                         "this string runs past a line that looks like the start of an item",
                         related=(Related(place, "this line is inside the string"),),
                         notes=("if that is not meant, a closing quote is missing",),
+                        fixes=(close_string(self.text, start),),
                     )
                 )
                 return
@@ -570,6 +571,13 @@ class Lexer:
 
 
 # ---- pieces ----
+
+
+def close_string(text: str, start: int) -> Fix:
+    """Close the string that begins at `start` on its line, before what is probably no part of it."""
+    end = line_end(text, start)
+    said = start + 1 + len(text[start + 1 : end].rstrip(" \t,)"))
+    return replace_fix(f"Close it with {text[start]}", Span(said, said), text[start])
 
 
 def unknown_unit(text: str, start: int, end: int) -> Diagnostic:

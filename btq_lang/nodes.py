@@ -8,6 +8,7 @@ from __future__ import annotations
 from btq_lang.clauses import HEADS, VERBS, ClauseParser
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.scan import line_start, path_end
 from btq_lang.syntax import (
@@ -27,6 +28,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import (
+    BRACED,
     CATEGORIES,
     CLOSE,
     DIRECTIONS,
@@ -130,9 +132,13 @@ class NodeParser(ClauseParser):
             self.end_line()
             self.skip_block(level)
             return None
-        label = self.take() if self.at_label() else None
-        attributes: tuple[Pair, ...] = ()
         clauses: list[NodeClause] = []
+        label = None
+        if self.kind == NAME and self.kinds[self.index + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
+            clauses.append(self.node_clause(meant))
+        elif self.at_label():
+            label = self.take()
+        attributes: tuple[Pair, ...] = ()
         if self.kind == OPEN:
             attributes = self.attributes(clauses)
         while self.kind == NAME and self.raw in NODE_CLAUSES:
@@ -157,6 +163,8 @@ class NodeParser(ClauseParser):
             self.expected("`,` or the end of the line")
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
             self.complain("syntax-error", self.here(), "all attributes of a node stand in one pair of brackets")
+        elif self.kind in (NUMBER, QUANTITY, BRACED):
+            self.expected("the end of the line", ("values stand in brackets, with their names: `( key = value )`",))
         else:
             return
         self.go_to(len(self.kinds) - 1)
@@ -337,17 +345,29 @@ class NodeParser(ClauseParser):
                         self.expected("`key = value` behind `parameters`")
                     continue
                 else:
-                    self.not_an_attribute()
+                    self.not_an_attribute(pairs, clauses)
             else:
-                self.not_an_attribute()
+                self.not_an_attribute(pairs, clauses)
             if self.kind == OPERATOR and self.raw == ",":
                 self.advance()
         self.group -= 1
         self.advance()
         return tuple(pairs)
 
-    def not_an_attribute(self) -> None:
+    def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
+        """Complain of what stands in brackets and is no attribute; what it is probably meant for is read as that."""
         at = self.index
+        if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
+            sign = self.starts[at + 1]
+            span = Span(sign, sign + len(self.raws[at + 1]))
+            written = "=" if self.text[sign - 1] in " \t" else " ="
+            fix = replace_fix("Write `=`", span, written, safe=True)
+            self.complain("syntax-error", span, "key and value are joined by `=`", (), (fix,))
+            pairs.append(self.pair())
+            return
+        if self.kind == NAME and self.kinds[at + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
+            clauses.append(self.node_clause(meant))
+            return
         notes: tuple[str, ...] = ()
         if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
             notes = ("a value or name of several words stands in quotes",)
@@ -379,6 +399,7 @@ class NodeParser(ClauseParser):
         span = word.span.shifted(self.base)
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
         self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
+        self.inside_out = min(self.inside_out, span.end)
         self.recover()
         return word
 
@@ -394,14 +415,14 @@ class NodeParser(ClauseParser):
 
     def needs_quotes(self, word: Word) -> Word:
         """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
-        wrong_unit = self.wrong_unit()
+        cause = self.lost_quote() or self.wrong_unit()
         while self.joins():
             self.advance()
         start = word.start + self.base
         end = self.last_end() + self.base
         raw = self.text[start:end]
-        if wrong_unit is not None:
-            self.report(wrong_unit)
+        if cause is not None:
+            self.report(cause)
         elif word.kind == STRING:
             note = "a closing quote is probably missing further up"
             self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
@@ -414,10 +435,26 @@ class NodeParser(ClauseParser):
 
     # ---- qualities and requirements on nodes ----
 
-    def node_clause(self) -> NodeClause:
-        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
+    def misspelt_clause(self) -> str | None:
+        """The word that is probably meant by the one at hand, reported: `satisfys rq1`."""
+        likely = near(self.raw, NODE_CLAUSES, limit=1) if self.raw not in _ATTRIBUTE_WORDS else ()
+        if not likely:
+            return None
+        fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
+        message = f"`{self.raw}` attaches nothing to a node: did you mean `{likely[0]}`?"
+        self.complain("syntax-error", self.here(), message, (), (fix,))
+        return likely[0]
+
+    def node_clause(self, meant: str = "") -> NodeClause:
+        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
+
+        Args:
+            meant: the word to read instead of the one at hand.
+        """
         start = self.start()
         word = self.take().raw
+        if meant:
+            word = meant
         if word == "satisfices":
             qualities = self.satisfices()
             return Satisfices(start, self.last_end(), qualities)

@@ -15,7 +15,6 @@ from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import NodeParser
 from btq_lang.record import replace
-from btq_lang.rules import Severity
 from btq_lang.scan import name_end, path_end
 from btq_lang.syntax import (
     Apply,
@@ -218,7 +217,7 @@ class Parser(NodeParser):
                 (shifted(problem, -self.base) for problem in found if problem.span.start < end),
                 key=lambda problem: problem.span,
             )
-        self.entries.append(Entry(self.base, item, in_root, _root_cause(found)))
+        self.entries.append(Entry(self.base, item, in_root, _root_causes(found, self.inside_out - self.base)))
 
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
@@ -438,11 +437,20 @@ ITEM_WORDS: Final = (
 )
 
 
-def _root_cause(found: list[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Where a string swallows items, and what follows makes no sense, that string is the one mistake."""
+def _root_causes(found: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, ...]:
+    """Where a quote is missing, and what follows makes no sense, the string that lacks it is the one mistake.
+
+    Args:
+        inside_out: where the parser has noticed that.
+    """
+    kept: list[Diagnostic] = []
     for index, problem in enumerate(found):
+        if problem.span.start >= inside_out:
+            break
         if problem.rule == "string-over-items":
-            rest = [other for other in found[index + 1 :] if other.rule not in ("syntax-error", "unclosed-string")]
-            if len(rest) < len(found) - index - 1:
-                return (*found[:index], replace(problem, severity=Severity.ERROR), *rest)
-    return tuple(found)
+            if any(other.rule in ("syntax-error", "unclosed-string") for other in found[index + 1 :]):
+                notes = ("a closing quote is missing",)
+                return (*kept, replace(problem, rule="unclosed-string", notes=notes))
+            return (*found[: index + 1], *(other for other in found[index + 1 :] if other.rule != problem.rule))
+        kept.append(problem)
+    return tuple(kept)

@@ -24,7 +24,7 @@ from btq_lang.catalog.kinds import VERSIONS, at_least
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.near import near
 from btq_lang.record import record, replace
-from btq_lang.rules import RULES, Severity
+from btq_lang.rules import RULES, UNREADABLE, Severity
 from btq_lang.text import LineIndex, Position
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -122,9 +122,11 @@ def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[
     severities = dict(project.severities)
     for diagnostic in diagnostics:
         rule = diagnostic.rule
-        if rule not in _ALWAYS and (rule in project.ignore or (project.select and rule not in project.select)):
+        if rule in UNREADABLE:
+            yield diagnostic
+        elif rule in project.ignore or (project.select and rule not in project.select):
             continue
-        if rule not in severities:
+        elif rule not in severities:
             yield diagnostic
         elif severity := severities[rule]:
             yield replace(diagnostic, severity=severity)
@@ -139,10 +141,6 @@ def include_candidates(project: Project, path: str, include: str) -> tuple[str, 
     """Where an included file may be, best first: beside the file at `path`, then in the include paths."""
     folders = (os.path.dirname(path), *project.include_paths)
     return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
-
-
-# A file that cannot be read as it stands is never passed off as clean by a selection.
-_ALWAYS = frozenset(("syntax-error",))
 
 
 @record

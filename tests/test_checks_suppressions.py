@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems
 
 RETY = "warning unknown-node «Rety» unknown node `Rety`"
 
@@ -33,7 +33,6 @@ def test_on_its_line_and_above_it(comment: str) -> None:
     [
         "# btq: ignore[unknown-port]",
         "# btq: ignore[]",
-        "# btq: ignore[unknown-node",  # not closed
         "# btq: ignored",
         "# btq: ignore-me",
         "# ignore[unknown-node]",
@@ -63,3 +62,29 @@ def test_in_brackets() -> None:
 
 def test_a_string_is_no_comment() -> None:
     assert_problems(tree('Rety (a = "# btq: ignore")'), f"3:9 {RETY}")
+
+
+def test_a_comment_that_can_silence_nothing_is_told() -> None:
+    assert_problems(
+        tree("Foo  # btq: ignore[unknown-nod, unknown-node, nonsense]", "Foo  # btq: ignore[unknown-node"),
+        "3:28 warning useless-ignore «unknown-nod» unknown rule `unknown-nod`: did you mean `unknown-node`?",
+        "3:55 warning useless-ignore «nonsense» unknown rule `nonsense`",
+        "4:16 warning useless-ignore «btq: ignore[unknown-node» this comment silences nothing: its `[` has no `]`",
+    )
+    assert_fix(
+        tree("Foo  # btq: ignore[unknown-nod]"),
+        "Replace `unknown-nod` by `unknown-node`",
+        tree("Foo  # btq: ignore[unknown-node]"),
+    )
+    assert_clean(tree("# btq: ignore[useless-ignore]", "Foo  # btq: ignore[unknown-nod]"))
+
+
+def test_errors_after_which_a_file_is_not_read_as_it_stands_are_not_silenced() -> None:
+    error = "3:13 error syntax-error «)» this `)` closes nothing"
+    assert_problems(tree("Foo )  # btq: ignore"), error)
+    assert_problems(
+        tree("Foo )  # btq: ignore[syntax-error]"),
+        error,
+        "3:30 warning useless-ignore «syntax-error» "
+        "`syntax-error` cannot be silenced: with such a mistake the file is not read as it stands",
+    )

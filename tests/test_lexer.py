@@ -675,12 +675,12 @@ def test_an_escaped_quote_does_not_close() -> None:
     assert_lex(r'a "b\"', r'NAME a | STRING "b\" | NL', r'1:3 unclosed-string «"b\"» this string has no closing "')
 
 
-def test_a_string_over_items_is_a_hint_that_shows_both_places() -> None:
+def test_a_string_over_items_shows_both_places() -> None:
     text = 'include "a\nBehaviorTree b\n    X (c = "d")\n'
     parsed = parse(text)
-    (hint, *_) = parsed.diagnostics
-    assert (hint.rule, hint.span) == ("string-over-items", (8, 9))
-    assert [text[related.place.span.start : related.place.span.end] for related in hint.related] == ["BehaviorTree b"]
+    (problem,) = parsed.diagnostics
+    assert (problem.rule, problem.span) == ("unclosed-string", (8, 9))
+    assert [text[place.place.span.start : place.place.span.end] for place in problem.related] == ["BehaviorTree b"]
 
 
 def test_a_string_over_indented_items_is_no_hint() -> None:

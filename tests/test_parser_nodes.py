@@ -324,6 +324,7 @@ def test_value(value: str, shown: str) -> None:
 
 
 EXPECTED_ATTRIBUTE = "expected an attribute: key = value"
+SATISFYS = "`satisfys` attaches nothing to a node: did you mean `satisfies`?"
 EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {key}"
 
 
@@ -337,7 +338,7 @@ EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {k
         ("X (, b = 1)", "X (b=1)", f"1:4 syntax-error «,» {EXPECTED_ATTRIBUTE}, found `,`"),
         ("X (a = 1,, b = 1)", "X (a=1 b=1)", f"1:10 syntax-error «,» {EXPECTED_ATTRIBUTE}, found `,`"),
         ("X ((a = 1) b = 1)", "X (b=1)", f"1:4 syntax-error «(» {EXPECTED_ATTRIBUTE}, found `(`"),
-        ("X (a : 1 b = 1)", "X (b=1)", f"1:4 syntax-error «a» {EXPECTED_ATTRIBUTE}, found `a`"),
+        ("X (a : 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «:» key and value are joined by `=`"),
         (
             "X (a = charging station b = 1)",
             "X (a=charging b=1)",
@@ -347,7 +348,14 @@ EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {k
         ("X (a =, b = 1)", "X (a=MISSING b=1)", f"1:7 syntax-error «,» {EXPECTED_VALUE}, found `,`"),
         ("X (a = = 1 b = 1)", "X (a=MISSING b=1)", f"1:8 syntax-error «=» {EXPECTED_VALUE}, found `=`"),
         ("X (a = (1) b = 1)", "X (a=MISSING b=1)", f"1:8 syntax-error «(» {EXPECTED_VALUE}, found `(`"),
-        ("X (a == 1 b = 1)", "X (b=1)", f"1:4 syntax-error «a» {EXPECTED_ATTRIBUTE}, found `a`"),
+        ("X (a == 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «==» key and value are joined by `=`"),
+        ("X (a: 1)", "X (a=1)", "1:5 syntax-error «:» key and value are joined by `=`"),
+        ("X (a = 1 satisfys r)", "X (a=1)\n  satisfies r", f"1:10 syntax-error «satisfys» {SATISFYS}"),
+        ("X satisfys r, s", "X\n  satisfies r, s", f"1:3 syntax-error «satisfys» {SATISFYS}"),
+        ("X (a = {@b)", "X (a={@b)", "1:8 syntax-error «{» this `{` has no `}`"),
+        ("X (a = {b c = {d)", "X (a={b c={d)", "1:8 syntax-error «{» this `{` has no `}`"),
+        ("X 3", "X", "1:3 syntax-error «3» expected the end of the line, found `3`"),
+        ("X {b}", "X", "1:3 syntax-error «{b}» expected the end of the line, found `{b}`"),
         ("X (a = b = 1)", "X (a=b)", f"1:10 syntax-error «=» {EXPECTED_ATTRIBUTE}, found `=`"),
         ("X (parameters)", "X", "1:14 syntax-error «)» expected `key = value` behind `parameters`, found `)`"),
         (

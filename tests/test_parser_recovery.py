@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from syntax_asserts import assert_invariants, assert_parse, assert_safe_fixes, show_problems
+from syntax_asserts import apply_fix, assert_invariants, assert_parse, assert_safe_fixes, show_problems
 
 from btq_lang.parser import Parsed, parse
 from btq_lang.syntax import Skipped, shape
@@ -257,8 +257,60 @@ def test_a_quote_that_is_missing_is_said_first() -> None:
     """Strings run to their closing quote (language.md §2), so what follows is read inside out."""
     text = MISSION.replace('"In time"', '"In time')
     (first, *_) = parse(text).diagnostics
-    assert (first.rule, text[first.span.start : first.span.end + 7]) == ("string-over-items", '"In time')
+    assert (first.rule, text[first.span.start : first.span.end + 7]) == ("unclosed-string", '"In time')
     text = MISSION.replace('"charger" sat', 'charger" sat')
-    (first, *_) = parse(text).diagnostics
-    assert first.message == "a quote is missing at `charger`"
-    assert [fix.title for fix in first.fixes] == ['Put " before it']
+    (only,) = parse(text).diagnostics
+    assert only.message == "a quote is missing at `charger`"
+    assert [fix.title for fix in only.fixes] == ['Put " before it']
+
+
+LOST = 'a closing " is probably missing: this string ends at the next one, on another line'
+OVER = "this string runs past a line that looks like the start of an item"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem", "mended"),
+    [
+        (
+            'BehaviorTree A\n  ->\n    B (p = "a)\n    C (p = "b")\n    D (p = "c")\n',
+            f'3:12 unclosed-string «"a)» {LOST}',
+            '"a")',
+        ),
+        ('BehaviorTree A\n  ->\n    B (p = "a)\n    C (p = "b")\n', f'3:12 unclosed-string «"a)» {LOST}', '"a")'),
+        (
+            'BehaviorTree A\n  B (p = "a)\nBehaviorTree B\n  C (p = " b")\nBehaviorTree C\n  D (p = "d")\n',
+            f'2:10 unclosed-string «"» {OVER}',
+            '"a")',
+        ),
+        (
+            'BehaviorTree A\n  -> "A\n    B (p = "b")\n    C (p = "c")\n',
+            f'2:6 unclosed-string «"A» {LOST}',
+            '"A"\n',
+        ),
+        (
+            'BehaviorTree A\n  ->\n    B (p = a")\n    C (p = "b")\n    D (p = "c")\n',
+            "3:12 syntax-error «a» a quote is missing at `a`",
+            '"a")',
+        ),
+        (
+            'QualityReq r : safety "A\n  takes at most 3 s\nQualityReq s : safety "B"\nQualityReq t : safety "C"\n',
+            f'1:23 unclosed-string «"» {OVER}',
+            '"A"\n',
+        ),
+        (
+            'QualityReq r : safety "A\n  takes at most 3 s because "so"\n',
+            f'1:23 unclosed-string «"A» {LOST}',
+            '"A"\n',
+        ),
+    ],
+)
+def test_a_quote_that_is_missing_is_one_mistake(text: str, problem: str, mended: str) -> None:
+    parsed = assert_parse(text, None, problem)
+    (fix,) = parsed.diagnostics[0].fixes
+    after = apply_fix(text, fix)
+    assert (parse(after).diagnostics, mended in after) == ((), True)
+
+
+def test_a_string_over_lines_that_is_closed_is_not_to_blame() -> None:
+    text = 'BehaviorTree A\n  B (p = "a\n  b" c)\n'
+    assert_parse(text, None, "3:6 syntax-error «c» expected an attribute: key = value, found `c`")

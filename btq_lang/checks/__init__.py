@@ -26,7 +26,7 @@ from btq_lang.checks import (
     trees,
     unreachable,
 )
-from btq_lang.checks.suppressions import suppressed_lines
+from btq_lang.checks.suppressions import Suppressions
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
 from btq_lang.project import configured
@@ -177,10 +177,10 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
             checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
         diagnostics = [*entry.diagnostics, *(diagnostic for each in checks for diagnostic in each(view, entry))]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
+    if "btq:" in view.file.text:
+        suppressions = Suppressions(view.file)
+        found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
     found = list(configured(workspace.project, found))
-    if found and "btq:" in view.file.text:
-        suppressed = suppressed_lines(view.file)
-        found = [each for each in found if not suppressed(each)]
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
 
 

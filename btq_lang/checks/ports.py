@@ -8,7 +8,7 @@ from functools import cache
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS
-from btq_lang.checks.kinds import written
+from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
@@ -55,8 +55,8 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         known = _ports(view, seen) or ()
         given = {pair.key.text for pair in seen.node.attributes}
         missing = [port for port in known if port.required and port.name not in given]
-        if not missing or (seen.is_subtree and _remaps_all(seen)):
-            continue
+        if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(entry, seen):
+            continue  # a value may be what could not be read
         slips = {likely[0] for likely in _meant(seen, known).values() if likely}  # told as unknown, with a fix
         missing = [port for port in missing if port.name not in slips]
         if not missing:

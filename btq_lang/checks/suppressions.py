@@ -2,45 +2,78 @@
 
 Such comments may follow each other: they all mean the first line behind them that is no comment.
 
-`# btq: ignore` without rules silences all of them there.
+`# btq: ignore` without rules silences all of them there.  Nothing silences an error after which the file is not read
+as it stands.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Iterator
 
-from btq_lang.diagnostics import Diagnostic
-from btq_lang.tokens import COMMENT
+from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.near import near
+from btq_lang.project import unknown_rule
+from btq_lang.rules import RULES, UNREADABLE
+from btq_lang.text import Span
+from btq_lang.tokens import COMMENT, Token
 from btq_lang.workspace import File
 
 _IGNORE = r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?"  # few files have one, so it is compiled when it is used
 
 
-def suppressed_lines(file: File) -> Callable[[Diagnostic], bool]:
-    """Whether a comment of the file silences a diagnostic, whose span counts from the start of the file."""
-    everything: set[int] = set()
-    silenced: dict[int, set[str]] = {}
-    meant: dict[int, int] = {}  # of lines that are only a comment: the line behind them that is more
-    for token in reversed(file.parsed.tokens):
-        if token.kind != COMMENT:
-            continue
-        start = file.lines.position(token.start)
-        line = start.line
-        if not file.lines.line(line)[: start.column].strip():
-            behind = file.lines.position(token.end).line + 1
-            meant[line] = meant.get(behind, behind)
-            line = meant[line]
+class Suppressions:
+    """The comments of a file that silence rules.
+
+    Attributes:
+        useless: what is wrong with them; spans count from the start of the file.
+    """
+
+    def __init__(self, file: File) -> None:
+        self._lines = file.lines
+        self._everything: set[int] = set()
+        self._silenced: dict[int, set[str]] = {}
+        self.useless: list[Diagnostic] = []
+        meant: dict[int, int] = {}  # of lines that are only a comment: the line behind them that is more
+        for token in reversed(file.parsed.tokens):
+            if token.kind != COMMENT:
+                continue
+            start = file.lines.position(token.start)
+            line = start.line
+            if not file.lines.line(line)[: start.column].strip():
+                behind = file.lines.position(token.end).line + 1
+                meant[line] = meant.get(behind, behind)
+                line = meant[line]
+            self._read(token, line)
+
+    def silence(self, diagnostic: Diagnostic) -> bool:
+        """Whether a comment silences a diagnostic, whose span counts from the start of the file."""
+        if diagnostic.rule in UNREADABLE:
+            return False
+        line = self._lines.position(diagnostic.span.start).line
+        return line in self._everything or diagnostic.rule in self._silenced.get(line, ())
+
+    def _read(self, token: Token, line: int) -> None:
         match = re.search(_IGNORE, token.text)
-        if match is None or (match[1] and not match[3]):
-            continue
-        if match[2] is None:
-            everything.add(line)
+        if match is None:
+            return
+        if match[1] and not match[3]:
+            span = Span(*match.span()).shifted(token.start)
+            message = "this comment silences nothing: its `[` has no `]`"
+            self.useless.append(Diagnostic("useless-ignore", span, message))
+        elif match[2] is None:
+            self._everything.add(line)
         else:
-            silenced.setdefault(line, set()).update(rule.strip() for rule in match[2].split(","))
+            for name in re.finditer(r"[^\s,](?:[^,]*[^\s,])?", match[2]):
+                self._silenced.setdefault(line, set()).add(name[0])
+                self.useless += _useless(name[0], Span(*name.span()).shifted(token.start + match.start(2)))
 
-    def suppressed(diagnostic: Diagnostic) -> bool:
-        line = file.lines.position(diagnostic.span.start).line
-        return line in everything or diagnostic.rule in silenced.get(line, ())
 
-    return suppressed
+def _useless(name: str, span: Span) -> Iterator[Diagnostic]:
+    if message := unknown_rule(name):
+        likely = near(name, RULES, limit=1)
+        fixes = tuple(replace_fix(f"Replace `{name}` by `{rule}`", span, rule) for rule in likely)
+        yield Diagnostic("useless-ignore", span, message, fixes=fixes)
+    elif name in UNREADABLE:
+        message = f"`{name}` cannot be silenced: with such a mistake the file is not read as it stands"
+        yield Diagnostic("useless-ignore", span, message)

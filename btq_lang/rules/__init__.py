@@ -58,6 +58,7 @@ _TABLE = (
     Rule("second-root", _E, "a Root beside or inside another"),
     Rule("duplicate-attribute", _E, "two values for one attribute"),
     Rule("tree-root-count", _E, "a tree without exactly one node at its top"),
+    Rule("useless-ignore", _W, "a comment `btq: ignore` that can silence nothing"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
     Rule("not-an-engine-node", _W, "a word of the published language that is no node of the engine"),
@@ -110,3 +111,11 @@ _TABLE = (
 )
 
 RULES = {rule.name: rule for rule in _TABLE}
+
+# After these mistakes a file is not read as it stands, so nothing silences them: no selection, no comment.
+UNREADABLE = frozenset(
+    (
+        *("syntax-error", "inconsistent-indentation", "unclosed-bracket", "unclosed-string", "unclosed-comment"),
+        *("misplaced-comment", "unknown-unit"),
+    )
+)
