@@ -421,8 +421,8 @@ class ClauseParser(Cursor):
         if relation is None:
             meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
             if meant is None:
-                value = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
-                note = f"how much is said before the value: `at most {value}`"
+                example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
+                note = f"how much is said before the value: `at most {example}`"
                 self.expected("a bound: at most, at least, less than, more than or between", (note,))
                 return None
             relation = _RELATIONS[meant]
