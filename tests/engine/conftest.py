@@ -1,0 +1,22 @@
+"""The engines that tests run files through: those of `BTQ_ENGINE`, else the one that CMake finds."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from engine_loader import Engine, NoEngine, build_engine
+
+PREFIXES = [prefix for prefix in os.environ.get("BTQ_ENGINE", "").split(os.pathsep) if prefix]
+
+
+@pytest.fixture(scope="session", params=PREFIXES or [None], ids=[Path(each).name for each in PREFIXES] or ["installed"])
+def engine(request: pytest.FixtureRequest) -> Engine:
+    """An installed BehaviorTree.CPP; every test that asks for it runs once for each of them."""
+    try:
+        return build_engine(request.param, Path(request.config.cache.mkdir("btq-engine")))
+    except NoEngine as missing:
+        if request.param:
+            raise  # somebody asked for this one
+        pytest.skip(f"{missing}: install BehaviorTree.CPP, or set BTQ_ENGINE to where it is (tests/README.md)")
