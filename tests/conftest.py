@@ -25,3 +25,13 @@ def shared() -> Path:
     if not (folder / "facts").is_dir():
         pytest.skip(f"no shared inputs at {folder}: set BTQ_SHARED to the folder that holds facts/, corpus/, original/")
     return folder
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update", action="store_true", help="write the golden files as they come out today")
+
+
+@pytest.fixture(scope="session")
+def update(request: pytest.FixtureRequest) -> bool:
+    """Whether golden files are to be written and not compared."""
+    return bool(request.config.getoption("--update"))

@@ -22,7 +22,7 @@ ROWS: tuple[frozenset[str], ...] = (
         | {"comments", "script"}
     ),
     frozenset({"catalog"}),
-    frozenset({"toml_places", "project", "symbols", "mentions", "workspace", "requirements"}),
+    frozenset({"toml_places", "project", "symbols", "mentions", "workspace", "placeholders", "requirements"}),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "features"}),
     frozenset({"loader", "watch", "shell", "commands", "cli", "__main__", "server"}),
 )

@@ -2,6 +2,9 @@
 
 document    the elements, comments and texts of one file, and how they are written
 reader      XML text to document, as the engine reads it
+export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
+            and `spelling` the parts, `fragment` looks at elements that a mission spells out
+marks       what a build puts into the XML so that an import knows it
 
 One invariant: only what stands here knows XML.
 """

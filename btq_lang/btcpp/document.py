@@ -112,7 +112,19 @@ class Text:
         return repr(self.text)
 
 
-Content: TypeAlias = "Element | Comment | Text"
+class Raw:
+    """One element as somebody has spelt it, from its `<` to its `>`; only made, never read."""
+
+    __slots__ = ("text",)
+
+    def __init__(self, text: str) -> None:
+        self.text: Final = text
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+Content: TypeAlias = "Element | Comment | Text | Raw"
 
 
 class Document:
@@ -133,38 +145,56 @@ def write(document: Document) -> str:
     """The text of a document: one element a line, two blanks a level, `\\n` at line ends."""
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     stack: list[tuple[Iterator[Content], str]] = [(iter(document.contents), "")]
+    blanks = ""
     while stack:
         contents, closing = stack[-1]
-        blanks = _STEP * (len(stack) - 1)
-        content = next(contents, None)
-        if content is None:
-            stack.pop()
-            if closing:
-                lines.append(f"{_STEP * (len(stack) - 1)}{closing}")
-        elif isinstance(content, Comment):
-            if content.beside:
-                lines[-1] += f" {_comment(content)}"
+        for content in contents:
+            if isinstance(content, Element):
+                if not content.children:
+                    lines.append(f"{blanks}<{_start_tag(content)}/>")
+                elif _has_text(content):  # blanks around a text would be part of it
+                    inside = "".join(map(_inline, content.children))
+                    lines.append(f"{blanks}<{_start_tag(content)}>{inside}</{content.tag}>")
+                else:
+                    lines.append(f"{blanks}<{_start_tag(content)}>")
+                    stack.append((iter(content.children), f"{blanks}</{content.tag}>"))
+                    blanks += _STEP
+                    break
+            elif isinstance(content, Comment) and content.beside:
+                lines[-1] += f" {_inline(content)}"
             else:
-                lines.append(f"{blanks}{_comment(content)}")
-        elif isinstance(content, Text):
-            lines.append(f"{blanks}{escape_text(content.text)}")
-        elif not content.children:
-            lines.append(f"{blanks}<{_start_tag(content)}/>")
-        elif all(isinstance(child, Text) for child in content.children):  # blanks around a text would be part of it
-            text = "".join(escape_text(child.text) for child in content.children if isinstance(child, Text))
-            lines.append(f"{blanks}<{_start_tag(content)}>{text}</{content.tag}>")
+                lines.append(f"{blanks}{_inline(content)}")
         else:
-            lines.append(f"{blanks}<{_start_tag(content)}>")
-            stack.append((iter(content.children), f"</{content.tag}>"))
+            stack.pop()
+            blanks = blanks[: -len(_STEP)]
+            if closing:
+                lines.append(closing)
     return "\n".join(lines) + "\n"
 
 
+def _has_text(element: Element) -> bool:
+    """Whether all in it stands on one line: a text, perhaps with comments."""
+    found = False
+    for child in element.children:
+        if isinstance(child, Element):
+            return False
+        found = found or isinstance(child, Text)
+    return found
+
+
+def _inline(content: Content) -> str:
+    if isinstance(content, Text):
+        return escape_text(content.text)
+    if isinstance(content, Comment):
+        return f"<!--{content.text}-->"
+    return content.text if isinstance(content, Raw) else f"<{_start_tag(content)}/>"
+
+
 def _start_tag(element: Element) -> str:
-    return " ".join((element.tag, *(f'{attribute.name}="{attribute.raw}"' for attribute in element.attributes)))
-
-
-def _comment(comment: Comment) -> str:
-    return f"<!--{comment.text}-->"
+    text = element.tag
+    for attribute in element.attributes:
+        text += f' {attribute.name}="{attribute.raw}"'
+    return text
 
 
 # ---- spelling values ------------------------------------------------------------------------------------------------

@@ -10,9 +10,9 @@ from btq_lang.catalog.literals import check_literal
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
 from btq_lang.checks.kinds import written
-from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import record
 from btq_lang.rules import Severity
@@ -117,7 +117,7 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
         if (target := _declared(port, False)) is not None:
             yield target, value
     for seen in view.nodes(entry):
-        if not seen.node.attributes or is_placeholder(seen):
+        if not seen.node.attributes or is_placeholder(seen.node):
             continue
         for pair in seen.node.attributes:
             value = pair.value

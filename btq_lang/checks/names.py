@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
 from btq_lang.checks.kinds import likely_category, written
-from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.view import SeenNode, View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Include, Model, Models, Tree, Word
@@ -48,7 +48,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         text = name.text
         if seen.node.id is not None and text == seen.node.id.text and not seen.is_subtree:
             continue  # the engine tells such nodes apart by their number
-        if is_placeholder(seen) and legal_name(text) == text:
+        if is_placeholder(seen.node) and legal_name(text) == text:
             continue  # the name becomes the ID, and no instance name is left
         other = first.setdefault((seen.is_subtree, text), name)
         if other is name:

@@ -7,11 +7,11 @@ from functools import lru_cache
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
-from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.view import SeenNode, View
 from btq_lang.clauses import HEADS, VERBS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.near import near
+from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Node, Pair, Word, is_name, quote
 from btq_lang.text import Span
@@ -26,7 +26,7 @@ _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERBS | {"xml"}
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A placeholder, with the same in the short form."""
     for seen in view.nodes(entry):
-        if not is_placeholder(seen) or seen.node.name is None or seen.node.kind is None:
+        if not is_placeholder(seen.node) or seen.node.name is None or seen.node.kind is None:
             continue
         name = _id_of(seen.node.name.text)
         if _taken(view, name) is not None:
@@ -45,7 +45,7 @@ def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that becomes an ID which another name has become already, or which is taken."""
     for seen in view.nodes(entry):
         name = seen.node.name
-        if name is None or not is_placeholder(seen):
+        if name is None or not is_placeholder(seen.node):
             continue
         legal = _id_of(name.text)
         taken = _taken(view, legal)
@@ -67,7 +67,7 @@ def first_placeholders(view: View) -> dict[str, tuple[str, Entry, Word]]:
     for path in view.scope.paths:
         for entry in view.workspace.files[path].parsed.entries:
             for seen in view.nodes(entry):
-                if is_placeholder(seen) and (name := seen.node.name) is not None:
+                if is_placeholder(seen.node) and (name := seen.node.name) is not None:
                     found.setdefault(_id_of(name.text), (path, entry, name))
     return found
 

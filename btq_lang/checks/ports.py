@@ -7,11 +7,12 @@ from functools import cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import is_port_name
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
+from btq_lang.placeholders import is_placeholder
 from btq_lang.record import record
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
@@ -115,19 +116,6 @@ def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
             first.setdefault(key, pair)
 
 
-def is_placeholder(seen: SeenNode) -> bool:
-    """Whether a script node without code stands for a skill (language.md §4, classic placeholders)."""
-    node = seen.node
-    return (
-        node.category is None
-        and node.kind is not None
-        and not node.kind.quoted
-        and node.kind.raw in PLACEHOLDERS
-        and node.name is not None
-        and not any(pair.key.text == "code" or near(pair.key.text, ("code",)) for pair in node.attributes)
-    )
-
-
 def is_case(seen: SeenNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
     is_switch = seen.kind is not None and seen.kind.tag.startswith("Switch")
@@ -145,7 +133,7 @@ class _Port:
 
 def _ports(view: View, seen: SeenNode) -> tuple[_Port, ...] | None:
     """The ports a node has; None where nobody knows."""
-    if is_placeholder(seen):
+    if is_placeholder(seen.node):
         return None
     if seen.is_subtree:
         # The engine reads `default = ""` as none, and asks for outputs, too.

@@ -7,8 +7,8 @@ the blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
-from btq_lang.checks.ports import is_placeholder
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
+from btq_lang.placeholders import is_placeholder
 from btq_lang.record import record
 from btq_lang.symbols import Kind
 
@@ -80,7 +80,7 @@ class TreeResults:
         if seen.is_subtree:
             called = self._called(seen)
             found = self._trees.get(id(called.entry), _UNKNOWN) if called else _UNKNOWN
-        elif seen.kind is not None and not is_placeholder(seen):
+        elif seen.kind is not None and not is_placeholder(seen.node):
             found = self._of_builtin(seen.kind.tag, seen.node)
         elif not seen.node.children:
             found = _CUSTOM.get(seen.category or "", _UNKNOWN_LEAF)

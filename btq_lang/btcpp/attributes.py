@@ -1,0 +1,58 @@
+"""Pairs of a file as attributes of an element: their order is kept, the first of two values counts.
+
+One invariant: no element gets two attributes of one name, or one whose name XML does not know.
+"""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.document import Attribute
+from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.spelling import in_unit, is_xml_name, spelt
+from btq_lang.catalog.kinds import NodeKind
+from btq_lang.syntax import Entry, Pair, Word
+from btq_lang.tokens import QUANTITY
+
+
+def attributes_of(
+    source: Source,
+    entry: Entry,
+    pairs: tuple[Pair, ...],
+    builtin: NodeKind | None = None,
+    label: Word | None = None,
+) -> list[Attribute]:
+    """The attributes that pairs in brackets say.
+
+    Args:
+        builtin: the node whose ports they are: it knows their units.
+        label: what is written as `name` before them.
+    """
+    attributes = [] if label is None else [Attribute("name", spelt(label))]
+    for pair in pairs:
+        value = pair.value
+        if value is None:
+            continue  # broken code, which is told
+        key = pair.key.text
+        if not (key.isascii() and key.isidentifier()) and not is_xml_name(key):
+            source.problem(entry, pair.key, f"`{key}` cannot be the name of an XML attribute")
+            continue
+        raw = spelt(value) if value.kind != QUANTITY else _quantity(source, entry, key, value, builtin)
+        attributes.append(Attribute(key, raw))
+    return only_first(attributes) if len(attributes) > 1 else attributes
+
+
+def only_first(attributes: list[Attribute]) -> list[Attribute]:
+    """The attributes without those that have a value already."""
+    first: dict[str, Attribute] = {}
+    for attribute in attributes:
+        first.setdefault(attribute.name, attribute)
+    return attributes if len(first) == len(attributes) else list(first.values())
+
+
+def _quantity(source: Source, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:
+    """A quantity as a number in the port's unit; as it stands where nobody knows that."""
+    port = builtin.port(key) if builtin is not None else None
+    number = in_unit(value, port.unit if port is not None else None)
+    if number is None:
+        source.problem(entry, value, f"`{value.raw}` cannot be written as a number of the port `{key}`")
+        return spelt(value)
+    return number

@@ -1,0 +1,196 @@
+"""A file as XML that the engine loads (language.md §6): the document, what was mended and what cannot be written.
+
+One invariant: it answers for every workspace and every file in it; without a problem, what is written is well-formed.
+It does not know the disk, nor the enforcement of requirements: `Export.elements` is where a later pass finds the
+element of each node, to put others around it.
+"""
+
+from __future__ import annotations
+
+import gc
+import posixpath
+from collections.abc import Callable, Mapping
+
+from btq_lang.btcpp.attributes import attributes_of, only_first
+from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
+from btq_lang.btcpp.models import Models, model_element
+from btq_lang.btcpp.source import Remark, Source
+from btq_lang.btcpp.spelling import spelt
+from btq_lang.btcpp.trees import Trees
+from btq_lang.comments import NO_COMMENTS
+from btq_lang.record import record
+from btq_lang.syntax import Entry, Include, Model, Node, Root, Tree, Verbatim
+from btq_lang.syntax import Models as ModelsItem
+from btq_lang.workspace import Workspace, is_btq
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+IncludedAs: TypeAlias = Callable[[str], str]
+
+
+@record
+class Export:
+    """A file as XML.
+
+    Attributes:
+        repairs: what the file says was mended, for the engine would refuse it.
+        problems: what the file says cannot be written; the document is then not what the file means.
+        elements: the element of each node of the file, by `id(node)`.
+    """
+
+    document: Document
+    repairs: tuple[Remark, ...]
+    problems: tuple[Remark, ...]
+    elements: Mapping[int, Element]
+
+    def element_of(self, node: Node) -> Element:
+        """The element of one of the file's nodes."""
+        return self.elements[id(node)]
+
+
+def export(
+    workspace: Workspace,
+    path: str,
+    *,
+    target: str | None = None,
+    verbatim: bool = False,
+    included_as: IncludedAs | None = None,
+) -> Export:
+    """A file of a workspace as XML.
+
+    Args:
+        target: the version of the engine to write for; None: the project's.
+        verbatim: write exactly what the file says: no repairs, and nothing that the file does not say.
+        included_as: what an `<include>` says for an included file, given its path in the workspace; None: its path
+            relative to this file, with `.xml` in the place of `.btq`.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    collecting = gc.isenabled()
+    gc.disable()  # nothing made here is garbage, and looking for it takes long
+    try:
+        source = Source(workspace, path, target or workspace.project.target, verbatim)
+        trees = Trees(source)
+        document = _document(source, trees, included_as or (lambda target: xml_path(path, target)))
+        source.finish()
+        return Export(document, tuple(source.repairs), tuple(source.problems), trees.elements)
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def xml_path(path: str, included: str) -> str:
+    """How the XML of the file `path` names that of an included file, where the XML files stand beside their sources."""
+    relative = posixpath.relpath(included, posixpath.dirname(path) or ".")
+    return xml_name(relative) if is_btq(included) else relative
+
+
+def xml_name(path: str) -> str:
+    """The name of the XML file that is made from a file."""
+    return posixpath.splitext(path)[0] + ".xml"
+
+
+def _document(source: Source, trees: Trees, included_as: IncludedAs) -> Document:
+    entries = source.file.parsed.entries
+    before: list[Content] = []
+    behind: list[Content] = []
+    root = Element("root")
+    contents = root.children
+    end_of_block: list[Content] = []  # comments at the end of the Root's
+    models = Models()
+    head: Entry | None = None
+    for entry in entries:
+        item = entry.item
+        around = source.around(entry, item)
+        if isinstance(item, Root):
+            if head is None:
+                head = entry
+                before += source.written((*around.before, *around.within))
+                contents += source.written((*around.first, *around.behind), beside=not contents)
+                end_of_block += source.written(around.last)
+            continue
+        if not entry.in_root:
+            contents += end_of_block
+            end_of_block = []
+        if isinstance(item, Include):
+            source.put(contents, _include(source, entry, item, included_as), around)
+        elif isinstance(item, Tree):
+            source.put(contents, trees.element(entry, item), around)
+            models.trees.append((entry, item))
+        elif isinstance(item, Model):
+            source.put(models.loose, model_element(source, entry, item), around)
+        elif isinstance(item, ModelsItem):
+            _models(source, entry, item, contents, models)
+        elif isinstance(item, Verbatim):
+            source.put(contents, source.raw(entry, item), around)
+        else:  # what it says is in no element, and so are the comments in it
+            contents += source.written(around.before)
+    contents += models.rest(source, trees.custom)
+    contents += end_of_block
+    end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)
+    has_block = any(entry.in_root for entry in entries)
+    (behind if has_block else contents).extend(end)
+    root.attributes.extend(_root_attributes(source, head))
+    return Document([*before, root, *behind])
+
+
+def _models(source: Source, entry: Entry, item: ModelsItem, contents: list[Content], models: Models) -> None:
+    """`TreeNodesModel`: the engine takes one."""
+    around = source.around(entry, item)
+    if models.palettes and not source.verbatim:
+        message = "its models are written in the first TreeNodesModel: the engine takes one"
+        source.repair(entry, item, message)
+        element = models.palettes[0]
+        contents += source.written((*around.before, *around.within, *around.behind))
+    else:
+        element = Element("TreeNodesModel")
+        models.palettes.append(element)
+        source.put(contents, element, around)
+    element.children.extend(source.written(around.first, beside=True))
+    for part in item.models:
+        made = source.raw(entry, part) if isinstance(part, Verbatim) else model_element(source, entry, part)
+        source.put(element.children, made, source.around(entry, part))
+    element.children.extend(source.written(around.last))
+
+
+def _include(source: Source, entry: Entry, include: Include, included_as: IncludedAs) -> Element:
+    attributes = []
+    if include.path is not None:
+        target = source.workspace.included_by(source.path, include)
+        text = include.path.text
+        if target is not None and not (source.verbatim and not is_btq(target)):
+            name = escape(included_as(target))
+        else:
+            name = spelt(include.path) if not text.endswith((".btq", ".qualitybtcpp")) else escape(xml_name(text))
+        attributes.append(Attribute("path", name))
+    return Element("include", only_first(attributes + attributes_of(source, entry, include.attributes)))
+
+
+def _root_attributes(source: Source, head: Entry | None) -> list[Attribute]:
+    """BTCPP_format and main_tree_to_execute: as written, and what is missing of them."""
+    item = head.item if head is not None else None
+    root = item if isinstance(item, Root) else None
+    attributes: list[Attribute] = []
+    if root is not None and root.name is not None:
+        attributes.append(Attribute("main_tree_to_execute", source.spelt_tree(root.name)))
+    if root is None or not root.bracketed:
+        attributes.insert(0, _FORMAT)
+    elif head is not None:
+        attributes = only_first(attributes + attributes_of(source, head, root.attributes))
+    if source.verbatim:
+        return attributes
+    given = {attribute.name for attribute in attributes}
+    if "BTCPP_format" not in given:
+        if root is not None and head is not None:
+            source.repair(head, root, 'BTCPP_format="4" is added to the root')
+        attributes.insert(0, _FORMAT)
+    main = source.workspace.main_tree(source.path)
+    if "main_tree_to_execute" not in given and main is not None:
+        attributes.append(Attribute("main_tree_to_execute", escape(source.tree_id(main.symbol.name))))
+    return attributes
+
+
+_FORMAT: Final = Attribute("BTCPP_format", "4")

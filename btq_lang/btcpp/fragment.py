@@ -1,0 +1,21 @@
+"""Whether a text is one XML element, well-formed: what `xml "…"` in a file must hold."""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.spelling import is_xml_name
+
+
+def fragment_problem(text: str) -> str | None:
+    """What is wrong with a text that should be one element; None: nothing.  Prefixes need no declaration."""
+    if text[:1] != "<" or not is_xml_name(text[1:2]):
+        return "`xml` takes one element: the text begins with its `<`"
+    # Here, for few files have such elements, and it takes long to import; it has no types of its own.
+    from lxml import etree  # type: ignore[import-untyped]
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
+    try:
+        etree.fromstring(text.encode("utf-8", "replace"), parser)
+    except etree.XMLSyntaxError:
+        wrong = [each for each in parser.error_log if each.domain != etree.ErrorDomains.NAMESPACE]
+        return f"this is no well-formed element: {wrong[0].message.rstrip()}" if wrong else None
+    return None

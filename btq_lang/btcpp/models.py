@@ -1,0 +1,143 @@
+"""Models as XML: what stands in `<TreeNodesModel>`, so that Groot shows and edits the nodes of a robot.
+
+The engine reads only the models of SubTrees.  One invariant: what the file declares stands there in its order, and
+what it uses but nobody declares stands behind it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.btcpp.attributes import attributes_of, only_first
+from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
+from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.spelling import spelt
+from btq_lang.btcpp.trees import CustomNode
+from btq_lang.catalog.kinds import CATEGORIES
+from btq_lang.record import replace
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def model_element(source: Source, entry: Entry, model: Model) -> Element:
+    """`Action MoveBase` with its ports."""
+    attributes = []
+    if model.name is not None:
+        is_tree = model.category.raw == "SubTree"
+        attributes.append(Attribute("ID", source.spelt_tree(model.name) if is_tree else spelt(model.name)))
+    attributes += attributes_of(source, entry, model.attributes)
+    element = Element(model.category.raw, only_first(attributes))
+    own = source.around(entry, model)
+    contents = element.children
+    contents += source.written(own.first, beside=True)
+    if model.text is not None:
+        contents.append(Element("description", (), [Text(model.text.text)] if model.text.text else []))
+    fields: Element | None = None
+    for part in model.body:
+        around = source.around(entry, part)
+        if isinstance(part, Meta):
+            made = Element("Metadata", attributes_of(source, entry, part.attributes))
+            if fields is None:
+                fields = Element("MetadataFields")
+                contents += source.written(around.before)
+                contents.append(fields)
+                source.put(fields.children, made, replace(around, before=()))
+            else:
+                source.put(fields.children, made, around)
+            continue
+        fields = None
+        made_part = source.raw(entry, part) if isinstance(part, Verbatim) else port_element(source, entry, part)
+        source.put(contents, made_part, around)
+    contents += source.written(own.last)
+    return element
+
+
+def port_element(source: Source, entry: Entry, port: Port) -> Element:
+    """`input station : string = "charger" "where to go"`."""
+    said = (("name", port.name), ("type", port.type), ("default", port.default))
+    attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
+    attributes += attributes_of(source, entry, port.attributes)
+    element = Element(f"{port.direction.raw}_port", only_first(attributes))
+    own = source.around(entry, port)
+    element.children.extend(source.written(own.first, beside=True))
+    if port.text is not None and port.text.text:
+        element.children.append(Text(port.text.text))
+    element.children.extend(source.written(own.last))
+    return element
+
+
+class Models:
+    """The models of a file, as they are found.
+
+    Attributes:
+        palettes: the elements `TreeNodesModel` of the file.
+        loose: models that stand in none of them, with their comments.
+        trees: each tree of the file and its entry.
+    """
+
+    def __init__(self) -> None:
+        self.palettes: Final[list[Element]] = []
+        self.loose: Final[list[Content]] = []
+        self.trees: Final[list[tuple[Entry, Tree]]] = []
+
+    def rest(self, source: Source, nodes: Iterable[CustomNode]) -> list[Content]:
+        """What is to be written last, in a TreeNodesModel of the file or else in one of its own.
+
+        Args:
+            nodes: the nodes that the file uses.
+        """
+        for entry, tree in self.trees:
+            self._add_ports(source, entry, tree)
+        if not source.verbatim:
+            self.loose.extend(_undeclared(each for each in nodes if source.scope.find(Kind.MODEL, each.name) is None))
+        if self.palettes:
+            self.palettes[0].children.extend(self.loose)
+            return []
+        return [Element("TreeNodesModel", (), self.loose)] if self.loose else []
+
+    def _add_ports(self, source: Source, entry: Entry, tree: Tree) -> None:
+        """The ports that a tree declares in its block: the engine asks for them at each SubTree."""
+        if not tree.ports or tree.name is None:
+            return
+        raw = source.spelt_tree(tree.name)
+        model = next((each for each in self._elements() if _declares(each, raw)), None)
+        known = {port.get("name") for port in model.elements} if model is not None else set()
+        if model is None:
+            model = Element("SubTree", [Attribute("ID", raw)])
+            self.loose.append(model)
+        for port in tree.ports:
+            if port.name is None or port.name.text not in known:
+                source.put(model.children, port_element(source, entry, port), source.around(entry, port))
+
+    def _elements(self) -> Iterator[Element]:
+        for contents in (*(palette.children for palette in self.palettes), self.loose):
+            yield from (content for content in contents if isinstance(content, Element))
+
+
+def _declares(model: Element, raw: str) -> bool:
+    return model.tag == "SubTree" and any(each.name == "ID" and each.raw == raw for each in model.attributes)
+
+
+def _undeclared(nodes: Iterable[CustomNode]) -> Iterator[Element]:
+    """A model for each node that has none, as its uses suggest it: Groot opens no tree with a node it does not know."""
+    ports: dict[str, dict[str, bool]] = {}
+    categories: dict[str, str] = {}
+    for node in nodes:
+        categories.setdefault(node.name, node.category)
+        known = ports.setdefault(node.name, {})
+        for port, is_entry in node.ports:
+            known[port] = known.get(port, False) or is_entry
+    for name, category in sorted(categories.items(), key=lambda item: (_ORDER[item[1]], item[0])):
+        # A literal can only go in; what an entry is for, nobody says.
+        children = [
+            Element("inout_port" if is_entry else "input_port", [Attribute("name", port)])
+            for port, is_entry in ports[name].items()
+        ]
+        yield Element(category, [Attribute("ID", escape(name))], children)
+
+
+_ORDER: Final[dict[str, int]] = {category: index for index, category in enumerate(CATEGORIES)}

@@ -1,0 +1,130 @@
+"""The file that is being written as XML: what all parts of an export ask, and where they say what they did.
+
+One invariant: asking changes nothing; only `repair` and `problem` remember, once a message and a place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from btq_lang.btcpp.document import Comment, Content, Raw, escape
+from btq_lang.btcpp.fragment import fragment_problem
+from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
+from btq_lang.catalog.names import legal_name, model_name_problem
+from btq_lang.comments import NO_COMMENTS, Comments, comments
+from btq_lang.comments import Comment as SourceComment
+from btq_lang.record import record
+from btq_lang.syntax import Entry, Verbatim, Word
+from btq_lang.text import Span
+from btq_lang.workspace import File, Scope, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Protocol
+
+    class Part(Protocol):
+        """A part of the tree that has a place."""
+
+        @property
+        def start(self) -> int: ...
+        @property
+        def end(self) -> int: ...
+
+
+@record
+class Remark:
+    """Something that an export has to say, and the place it is about, counted from the start of the file."""
+
+    path: str
+    span: Span
+    message: str
+
+
+class Source:
+    """One file on its way.
+
+    Attributes:
+        target: the version of the engine that it is written for.
+        verbatim: exactly what the file says is written, and nothing else.
+        comments: where the file's comments belong, by the element.
+    """
+
+    def __init__(self, workspace: Workspace, path: str, target: str, verbatim: bool) -> None:
+        self.workspace: Final = workspace
+        self.path: Final = path
+        self.target: Final = target
+        self.verbatim: Final = verbatim
+        self.file: Final[File] = workspace.files[path]
+        self.scope: Final[Scope] = workspace.scope(path)
+        self.comments: Final[Mapping[int, Comments]] = comments(self.file.parsed)
+        self.repairs: Final[dict[Remark, None]] = {}
+        self.problems: Final[dict[Remark, None]] = {}
+        self._tree_ids: dict[str, str] = {}
+        self._changed_comments: list[SourceComment] = []
+
+    def repair(self, entry: Entry, part: Part, message: str) -> None:
+        """What the file says was mended, for the engine would refuse it."""
+        self.repairs[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
+
+    def problem(self, entry: Entry, part: Part, message: str) -> None:
+        """What the file says cannot be written."""
+        self.problems[Remark(self.path, Span(part.start, part.end).shifted(entry.start), message)] = None
+
+    def tree_id(self, name: str) -> str:
+        """The ID under which a tree is written, wherever it is named, in every file."""
+        known = self._tree_ids.get(name)
+        if known is None:
+            refused = not self.verbatim and model_name_problem(name, self.target) is not None
+            known = self._tree_ids[name] = legal_name(name) if refused else name
+        return known
+
+    def spelt_tree(self, name: Word) -> str:
+        """A tree's name as the value of an attribute."""
+        tree_id = self.tree_id(name.text)
+        return spelt(name) if tree_id == name.text else escape(tree_id)
+
+    def around(self, entry: Entry, part: Part) -> Comments:
+        """The comments of an element."""
+        return self.comments.get(entry.start + part.start, NO_COMMENTS)
+
+    def raw(self, entry: Entry, verbatim: Verbatim) -> Raw:
+        """An element that the file spells out."""
+        text = verbatim.text.text.strip() if verbatim.text is not None else ""
+        if problem := fragment_problem(text):
+            self.problem(entry, verbatim, problem)
+        return Raw(text)
+
+    def put(self, contents: list[Content], element: Content, around: Comments) -> None:
+        """An element with the comments before and behind it."""
+        contents += self.written(around.before)
+        contents += self.written(around.within)
+        contents.append(element)
+        contents += self.written(around.behind, beside=True)
+
+    def written(self, remarks: tuple[SourceComment, ...], beside: bool = False) -> list[Comment]:
+        """Comments as XML has them."""
+        made = []
+        for remark in remarks:
+            text = as_comment(remark.text)
+            if "--" in remark.text:
+                self._changed_comments.append(remark)
+            if not remark.is_block and text[:1] in _BLANKS:
+                text += " "
+            made.append(Comment(text, beside))
+        return made
+
+    def finish(self) -> None:
+        """Tell what holds for the file as a whole."""
+        if self._changed_comments:
+            first = self._changed_comments[0]
+            number = len(self._changed_comments)
+            where = "a comment" if number == 1 else f"{number} comments"
+            message = f"`--` in {where} is written `- -`: XML has no place for it"
+            span = Span(first.start, first.start + len(first.raw))
+            self.repairs[Remark(self.path, span, message)] = None
+        for match in FORBIDDEN.finditer(self.file.text):
+            message = f"XML has no place for the character U+{ord(match[0]):04X}"
+            self.problems[Remark(self.path, Span(match.start(), match.end()), message)] = None
+
+
+_BLANKS: Final = (" ", "\t")

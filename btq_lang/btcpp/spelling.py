@@ -1,0 +1,89 @@
+"""How words of a `.btq` file are spelt in XML: attribute values, texts, comments, names.
+
+One invariant: a line end and a tab that stand in the source stay as they are, and `\\n` and `\\t`, the escapes, become
+`&#10;` and `&#9;`: the two are different for the readers that follow the XML standard, and alike for the engine.
+"""
+
+from __future__ import annotations
+
+import re
+
+from btq_lang.btcpp.document import escape, escape_text
+from btq_lang.quantities import parse_quantity
+from btq_lang.syntax import Word
+from btq_lang.tokens import QUANTITY, STRING
+from btq_lang.units import convert, parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def spelt(word: Word) -> str:
+    """A word as it stands between the quotes of an attribute."""
+    raw = word.raw
+    if word.kind != STRING:
+        return escape_text(raw) if _SPECIAL(raw) else raw  # a tab in `{a	b}` stays
+    inside = raw[1:-1]
+    if _SPECIAL(inside) is None and len(raw) > 1 and raw[-1] == raw[0]:
+        return inside
+    if len(raw) == 1 or raw[-1] != raw[0] or (len(inside) - len(inside.rstrip("\\"))) % 2:
+        return escape(word.text)  # it has no closing quote
+    return _IN_STRING.sub(_spelt_in_string, inside)
+
+
+def in_unit(word: Word, unit: str | None) -> str | None:
+    """A quantity as the number that a port in `unit` takes; None where it is none: the unit is another or unknown."""
+    if word.kind != QUANTITY or unit is None:
+        return None
+    quantity, wanted = parse_quantity(word.raw), parse_unit(unit)
+    if quantity is None or wanted is None or quantity[1].dimension != wanted.dimension:
+        return None
+    number = convert(quantity[0], quantity[1], wanted)
+    if not -_LARGE < number < _LARGE:
+        return None
+    return str(round(number)) if abs(number - round(number)) < _TINY * max(1.0, abs(number)) else repr(number)
+
+
+def as_comment(text: str) -> str:
+    """A text as it stands in an XML comment, where no two `-` may meet, nor one and the end."""
+    if "-" in text:
+        text = text.replace("--", "- -").replace("--", "- -")
+        text = f"{text} " if text.endswith("-") else text
+    return text
+
+
+def is_xml_name(name: str) -> bool:
+    """Whether a name can be a tag or the name of an attribute, for every reader; namespaces aside."""
+    return _XML_NAME.fullmatch(name) is not None
+
+
+def _spelt_in_string(match: re.Match[str]) -> str:
+    return _SPELT[match[0]]
+
+
+# What XML 1.0 has no place for, in whatever spelling.
+FORBIDDEN: Final = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+_LARGE: Final = 1e300
+_TINY: Final = 1e-9  # what is lost in converting; the checks call such a number whole, too
+_SPECIAL: Final = re.compile(r'[&<>"\\\r]').search
+_IN_STRING: Final = re.compile(r'\\["\'\\nt]|[&<>"]|\r\n?')
+_SPELT: Final = {
+    '\\"': "&quot;",
+    "\\'": "'",
+    "\\\\": "\\",
+    "\\n": "&#10;",
+    "\\t": "&#9;",
+    "&": "&amp;",
+    "<": "&lt;",
+    ">": "&gt;",
+    '"': "&quot;",
+    "\r\n": "\n",
+    "\r": "\n",
+}
+_NAME_START: Final = (
+    "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
+    "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
+)
+_XML_NAME: Final = re.compile(f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*")

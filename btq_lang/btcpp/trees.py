@@ -1,0 +1,269 @@
+"""Trees as XML: one element a node, in order (language.md §6).
+
+One invariant: what was changed so that the engine takes it is told as a repair, and with `verbatim` nothing is.  It
+does not know what stands around the trees, nor what a requirement asks of the engine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.btcpp.attributes import attributes_of, only_first
+from btq_lang.btcpp.descriptions import description
+from btq_lang.btcpp.document import Attribute, Element, escape
+from btq_lang.btcpp.source import Source
+from btq_lang.btcpp.spelling import is_xml_name
+from btq_lang.catalog.kinds import CATEGORIES, at_least
+from btq_lang.catalog.names import is_port_name, legal_name, model_name_problem
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, xml_tag
+from btq_lang.comments import NO_COMMENTS
+from btq_lang.placeholders import is_placeholder
+from btq_lang.record import record
+from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+_UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
+_NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence
+
+
+@record
+class CustomNode:
+    """A node that is none of the engine's, as one place uses it.
+
+    Attributes:
+        ports: each with whether a blackboard entry is given to it.
+    """
+
+    name: str
+    category: str
+    ports: tuple[tuple[str, bool], ...]
+
+
+class Trees:
+    """The trees of a file, made one after the other.
+
+    Attributes:
+        elements: the element of each node, by `id(node)`.
+        custom: the nodes that are none of the engine's, in the order in which they were met.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self.elements: Final[dict[int, Element]] = {}
+        self.custom: Final[list[CustomNode]] = []
+        self._source: Final = source
+        self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
+        self._placeholders: Final[dict[str, tuple[str, Word]]] = {}
+        self._names: set[str] = set()  # of the SubTrees of the tree that is being made
+
+    def element(self, entry: Entry, tree: Tree) -> Element:
+        """A tree with all that is in it."""
+        source = self._source
+        attributes = []
+        if tree.name is not None:
+            attributes.append(Attribute("ID", source.spelt_tree(tree.name)))
+            if source.tree_id(tree.name.text) != tree.name.text:
+                message = f"the tree `{tree.name.text}` is written as `{source.tree_id(tree.name.text)}`"
+                source.repair(entry, tree.name, message)
+        attributes += attributes_of(source, entry, tree.attributes)
+        if tree.name is None and not source.verbatim and not any(each.name == "ID" for each in attributes):
+            attributes.insert(0, Attribute("ID", "BehaviorTree_0"))  # as the engine calls it, where it stands alone
+        top = Element("BehaviorTree", only_first(attributes))
+        self._describe(entry, tree, top)
+        self._names = set()
+        waiting: list[tuple[Node | Tree, Element]] = [(tree, top)]
+        while waiting:
+            waiting += reversed(tuple(self._fill(entry, *waiting.pop())))
+        return top
+
+    def _fill(self, entry: Entry, part: Node | Tree, element: Element) -> Iterator[tuple[Node, Element]]:
+        """Put into an element what stands in the block of a part; what comes out has a block of its own."""
+        source = self._source
+        contents = element.children
+        has_comments = bool(source.comments)
+        if has_comments:
+            contents += source.written(source.around(entry, part).first, beside=True)
+            for clause in part.clauses:
+                contents += source.written(source.around(entry, clause).before)
+        for child in part.children:
+            around = source.around(entry, child) if has_comments else NO_COMMENTS
+            if isinstance(child, Verbatim):
+                source.put(contents, source.raw(entry, child), around)
+                continue
+            made = self._node(entry, child, element)
+            if around is NO_COMMENTS:
+                contents.append(made)
+            else:
+                source.put(contents, made, around)
+            if child.children or has_comments:
+                yield child, made
+        if has_comments:
+            contents += source.written(source.around(entry, part).last)
+
+    def _node(self, entry: Entry, node: Node, parent: Element) -> Element:
+        kind = node.kind
+        if node.category is not None:
+            element = self._explicit(entry, node, node.category.raw, parent)
+        elif kind is not None and kind.raw in PLACEHOLDERS and is_placeholder(node):
+            element = self._placeholder(entry, node)
+        else:
+            element = self._compact(entry, node, parent)
+        if node.clauses:
+            self._describe(entry, node, element)
+        self.elements[id(node)] = element
+        return element
+
+    def _compact(self, entry: Entry, node: Node, parent: Element) -> Element:
+        """`MoveBase (…)`."""
+        kind = node.kind
+        assert kind is not None, "a node without a category has a kind"
+        known = self._tags.get(kind.raw)
+        if known is None:
+            tag = xml_tag(kind.text, kind.quoted, len(node.children))
+            known = tag, BUILTINS.get(tag)
+            if kind.raw != "Switch":
+                self._tags[kind.raw] = known
+        tag, builtin = known
+        if tag in CATEGORIES:  # in quotes: the tag of an explicit form
+            return self._explicit(entry, node, tag, parent)
+        if tag == "SubTreePlus":
+            return Element(tag, self._subtree_attributes(entry, node))
+        attributes = attributes_of(self._source, entry, node.attributes, builtin, node.label)
+        if builtin is None:
+            category = _likely_category(node)
+            self._remember(tag, category, attributes)
+            if not is_xml_name(tag):
+                return self._as_explicit(entry, node, category, attributes, parent)
+        return Element(tag, attributes)
+
+    def _explicit(self, entry: Entry, node: Node, category: str, parent: Element) -> Element:
+        """`Action MoveBase (…)`, `SubTree PickPlace`, `SubTree (ID = PickPlace)`."""
+        source = self._source
+        if category == "SubTree":
+            return Element(category, self._subtree_attributes(entry, node))
+        word = node.id if node.category is not None else node.attribute("ID")
+        name = "" if word is None else xml_tag(word.text, word.quoted, len(node.children))
+        builtin = BUILTINS.get(name)
+        attributes = attributes_of(source, entry, node.attributes, builtin, node.label)
+        in_brackets = next((index for index, each in enumerate(attributes) if each.name == "ID"), None)
+        if in_brackets is not None:
+            attributes[in_brackets] = Attribute("ID", escape(name))
+        elif word is not None:
+            attributes.insert(0, Attribute("ID", escape(name)))
+        if builtin is None and word is not None:
+            self._remember(name, category, attributes)
+        if parent.tag != "ReactiveSequence" or source.verbatim or word is None:
+            return Element(category, attributes)
+        if not is_xml_name(name) or model_name_problem(name, source.target) is not None:
+            if at_least(source.target, _NO_EXPLICIT_SINCE):
+                self._refused_here(entry, word)
+            return Element(category, attributes)
+        message = f"`{category} {name}` is written in the short form: here the engine refuses the other one"
+        source.repair(entry, word, message)
+        return Element(name, [each for each in attributes if each.name != "ID"])
+
+    def _as_explicit(
+        self, entry: Entry, node: Node, category: str, attributes: list[Attribute], parent: Element
+    ) -> Element:
+        """A node whose ID cannot be a tag."""
+        source = self._source
+        name = node.head.text
+        if source.verbatim:
+            source.problem(entry, node.head, f"`{name}` cannot be an XML tag: write `{category} {node.head.raw}`")
+        elif parent.tag == "ReactiveSequence" and at_least(source.target, _NO_EXPLICIT_SINCE):
+            self._refused_here(entry, node.head)
+        else:
+            source.repair(entry, node.head, f"`{name}` is written as `{category} {name}`: it cannot be an XML tag")
+        return Element(category, [Attribute("ID", escape(name)), *attributes])
+
+    def _refused_here(self, entry: Entry, name: Word) -> None:
+        message = f"the engine refuses `{name.text}` directly in a ReactiveSequence: put it in a Sequence of its own"
+        self._source.problem(entry, name, message)
+
+    def _placeholder(self, entry: Entry, node: Node) -> Element:
+        """`ScriptAction (name = "MoveBase")`: the custom node whose ID the name becomes."""
+        source = self._source
+        name = node.name
+        assert name is not None, "a placeholder has a name"
+        tag = legal_name(name.text)
+        _, first = self._placeholders.setdefault(tag, (tag, name))
+        if first.text != name.text:
+            source.problem(entry, name, f"`{first.text}` and `{name.text}` both become the node ID `{tag}`")
+        elif tag in BUILTINS:
+            source.problem(entry, name, f"`{name.text}` becomes the node ID `{tag}`, which is a node of the engine")
+        attributes = attributes_of(source, entry, node.attributes, None, node.label)
+        if tag == name.text:
+            attributes = [each for each in attributes if each.name != "name"]
+        self._remember(tag, PLACEHOLDERS[node.head.raw], attributes)
+        return Element(tag, attributes)
+
+    def _subtree_attributes(self, entry: Entry, node: Node) -> list[Attribute]:
+        source = self._source
+        attributes = attributes_of(source, entry, node.attributes, BUILTINS["SubTree"], node.label)
+        name = node.id if node.category is not None else node.attribute("ID")
+        if name is not None:
+            raw = source.spelt_tree(name)
+            in_brackets = next((index for index, each in enumerate(attributes) if each.name == "ID"), None)
+            if in_brackets is None:
+                attributes.insert(0, Attribute("ID", raw))
+            else:
+                attributes[in_brackets] = Attribute("ID", raw)
+        if not source.verbatim and node.name is not None and at_least(source.target, _UNIQUE_SINCE):
+            return self._with_unique_name(entry, node.name, attributes)
+        return attributes
+
+    def _with_unique_name(self, entry: Entry, name: Word, attributes: list[Attribute]) -> list[Attribute]:
+        """The engine refuses a second SubTree of one name in a tree, and one whose name is empty."""
+        text = name.text
+        if text and text not in self._names:
+            self._names.add(text)
+            return attributes
+        if not text:
+            self._source.repair(entry, name, "the empty name of this SubTree is left out: the engine refuses it")
+            return [each for each in attributes if each.name != "name"]
+        number = 2
+        while f"{text}_{number}" in self._names:
+            number += 1
+        unique = f"{text}_{number}"
+        self._names.add(unique)
+        message = f"the second SubTree `{text}` of this tree is written as `{unique}`: the engine refuses two"
+        self._source.repair(entry, name, message)
+        return [Attribute("name", escape(unique)) if each.name == "name" else each for each in attributes]
+
+    def _describe(self, entry: Entry, part: Node | Tree, element: Element) -> None:
+        """Put what the clauses of a part say into the element's `_description`."""
+        if self._source.verbatim or not part.clauses:
+            return
+        attributes = element.attributes
+        index = next((index for index, each in enumerate(attributes) if each.name == "_description"), None)
+        own = None if index is None else attributes[index].raw
+        raw = description(self._source, entry, part.clauses, own)
+        if raw is None:
+            return
+        if index is None:
+            attributes.append(Attribute("_description", raw))
+        else:
+            attributes[index] = Attribute("_description", raw)
+
+    def _remember(self, name: str, category: str, attributes: Iterable[Attribute]) -> None:
+        if self._source.verbatim or not name:
+            return
+        ports = tuple(
+            (each.name, each.raw.startswith("{"))
+            for each in attributes
+            if each.name not in _NO_PORTS and is_port_name(each.name)
+        )
+        self.custom.append(CustomNode(name, category, ports))
+
+
+def _likely_category(node: Node) -> str:
+    """The category of a custom node, as the number of its children suggests where nothing says it."""
+    kind = node.kind
+    if kind is not None and not kind.quoted and kind.raw in KNOWN_WORDS:
+        return KNOWN_WORDS[kind.raw].category
+    return ("Action", "Decorator", "Control")[min(len(node.children), 2)]
+
+
+_NO_PORTS: Final = frozenset(("ID", "name"))

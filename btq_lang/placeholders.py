@@ -1,0 +1,22 @@
+"""Classic placeholders: the script nodes without code that stand for a skill (language.md §4).
+
+One invariant: only the unquoted words are placeholders.  The published language has no custom nodes, so its files write
+skills as `ScriptAction (name = "MoveBase")`.
+"""
+
+from __future__ import annotations
+
+from btq_lang.catalog.nodes import PLACEHOLDERS
+from btq_lang.near import near
+from btq_lang.syntax import Node
+
+
+def is_placeholder(node: Node) -> bool:
+    """Whether a script node without code stands for a skill; a misspelt `code` is no skill's port."""
+    return (
+        node.kind is not None
+        and node.kind.raw in PLACEHOLDERS
+        and node.category is None
+        and node.name is not None
+        and not any(pair.key.text == "code" or near(pair.key.text, ("code",)) for pair in node.attributes)
+    )
