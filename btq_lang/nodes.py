@@ -157,6 +157,8 @@ class NodeParser(ClauseParser):
             message = f"`{kind.raw}` begins a clause, and clauses stand in a requirement"
             note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
+        elif self.at(",") and kind is not None and kind.kind == NAME and (meant := meant_clause(kind.raw)):
+            self.attaches_nothing(kind.span.shifted(self.base), meant)
         elif self.at("=") and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
             self.bare_attributes()
         elif clauses and self.at_name():
@@ -437,13 +439,17 @@ class NodeParser(ClauseParser):
 
     def misspelt_clause(self) -> str | None:
         """The word that is probably meant by the one at hand, reported: `satisfys rq1`."""
-        likely = near(self.raw, NODE_CLAUSES, limit=1) if self.raw not in _ATTRIBUTE_WORDS else ()
-        if not likely:
-            return None
-        fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
-        message = f"`{self.raw}` attaches nothing to a node: did you mean `{likely[0]}`?"
-        self.complain("syntax-error", self.here(), message, (), (fix,))
-        return likely[0]
+        meant = meant_clause(self.raw) if self.raw not in _ATTRIBUTE_WORDS else None
+        if meant is not None:
+            self.attaches_nothing(self.here(), meant)
+        return meant
+
+    def attaches_nothing(self, span: Span, meant: str) -> None:
+        """Complain of a misspelt satisfices, satisfies or tags."""
+        word = self.text[span.start : span.end]
+        fix = replace_fix(f"Replace `{word}` by `{meant}`", span, meant)
+        message = f"`{word}` attaches nothing to a node: did you mean `{meant}`?"
+        self.complain("syntax-error", span, message, (), (fix,))
 
     def node_clause(self, meant: str = "") -> NodeClause:
         """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
@@ -555,6 +561,13 @@ class NodeParser(ClauseParser):
         message = "this line is indented, but the line above it opens no block"
         self.complain("syntax-error", Span(at, self.lexer.line_end()), message, (_MEANINGFUL,))
         self.skip_block(level)
+
+
+def meant_clause(word: str) -> str | None:
+    """Which of satisfices, satisfies and tags is probably meant by another word."""
+    if likely := near(word, NODE_CLAUSES, limit=1):
+        return likely[0]
+    return "satisfies" if word.startswith("satisf") else None
 
 
 _ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}

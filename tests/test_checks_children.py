@@ -127,3 +127,13 @@ def test_without_children_that_is_the_mistake() -> None:
     assert_problems(
         tree("|| (success_count = 2)"), "2:5 error child-count «||» `||` takes 1 or more children, it has none"
     )
+
+
+@pytest.mark.parametrize(
+    "parent", ["Parallel (success_count = 3)", "Switch2 (variable = {x} case_1 = 1 case_2 = 2)", "Inverter"]
+)
+def test_nothing_is_said_of_children_that_forgotten_brackets_may_have_swallowed(parent: str) -> None:
+    assert_problems(
+        f"BehaviorTree Main\n    {parent}\n        X (x = 1\n        Y\n        Z\n",
+        "3:11 error unclosed-bracket «(» this `(` has no `)`",
+    )

@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
+from btq_lang.checks import check
+from btq_lang.workspace import Workspace
+
 PICK = """\
 BehaviorTree Pick
     input object : string
@@ -188,3 +191,9 @@ def test_three_values_are_two_too_many() -> None:
         "3:18 error duplicate-attribute «a» `a` has a value already",
         "3:24 error duplicate-attribute «a» `a` has a value already",
     )
+
+
+@pytest.mark.parametrize("line", ["Retry 3", "Retry (num_attempts 3)", "Retry (num_attempts: 3)", "Retry (3)"])
+def test_a_port_whose_value_could_not_be_read_is_not_missing(line: str) -> None:
+    found = check(Workspace.of({"main.btq": f"BehaviorTree Main\n    {line}\n        X\n"}), "main.btq")
+    assert [problem.rule for problem in found] == ["syntax-error"]

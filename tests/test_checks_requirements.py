@@ -133,7 +133,7 @@ def test_a_misspelt_use_is_one_mistake() -> None:
     )
     assert_problems(
         RULE + TREE.replace("satisfies", "satisfy"),
-        "4:15 error syntax-error «rq1» expected the end of the line, found `rq1`",
+        "4:7 error syntax-error «satisfy» `satisfy` attaches nothing to a node: did you mean `satisfies`?",
     )
 
 
@@ -152,3 +152,65 @@ def test_an_empty_text_says_nothing() -> None:
         'QualityReq rq1 " "\n', "1:12 warning requirement-without-text «rq1» the requirement `rq1` says nothing"
     )
     assert_clean("QualityReq rq1\n    verified by review\n")
+
+
+# ---- the other word --------------------------------------------------------------------------------------------------
+
+
+def test_a_requirement_where_a_quality_is_meant_to_stand() -> None:
+    message = "`rq1` is a requirement, not a quality"
+    text = RULE + "BehaviorTree Main\n    X satisfices {}\n"
+    assert_problems(text.format("rq1"), f"4:18 warning unknown-quality «rq1» {message}")
+    assert_fix(text.format("rq1"), "Replace `satisfices` by `satisfies`", RULE + TREE, safe=True)
+    assert_problems(text.format("safety, rq1"), f"4:26 warning unknown-quality «rq1» {message}")
+    assert_problems(
+        RULE + "BehaviorTree Main\n    satisfices rq1\n    X\n", f"4:16 warning unknown-quality «rq1» {message}"
+    )
+
+
+def test_a_quality_where_a_requirement_is_meant_to_stand() -> None:
+    text = "quality gentle : safety\nBehaviorTree Main\n    X satisfies {}\n"
+    message = "error unknown-requirement «{0}» `{0}` is a quality, not a requirement"
+    for quality, safe in (("safety", True), ("gentle", True), ("performance", False)):
+        assert_problems(text.format(quality), f"3:17 {message.format(quality)}")
+        fixed = text.format(quality).replace("satisfies", "satisfices")
+        assert_fix(text.format(quality), "Replace `satisfies` by `satisfices`", fixed, safe=safe)
+    assert_problems("apply safety to X\nBehaviorTree Main\n    X\n", f"1:7 {message.format('safety')}")
+
+
+def test_a_requirement_of_another_file_may_be_called_as_a_quality() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        BehaviorTree Main
+            X satisfies safety
+        //- rules.btq
+        QualityReq safety "Carefully"
+        """,
+        "main.btq:2:17 error unknown-requirement «safety» "
+        "no requirement `safety` is defined here or in an included file",
+    )
+
+
+# ---- a clause that is misspelt ---------------------------------------------------------------------------------------
+
+MEANT = "did you mean `satisfies`?"
+
+
+@pytest.mark.parametrize("parent", ["Action X", "->", "Inverter", "X"])
+def test_a_misspelt_clause_line_is_read_as_a_node(parent: str) -> None:
+    text = f"{RULE}BehaviorTree Main\n    {parent}\n        satisfys rq1\n"
+    assert_problems(text, f"5:9 warning clause-as-node «satisfys» `satisfys` is a node here: {MEANT}")
+    if "X" in parent:
+        assert_fix(text, "Replace `satisfys` by `satisfies`", text.replace("satisfys", "satisfies"))
+
+
+def test_a_misspelt_clause_line_with_a_list() -> None:
+    text = f"{RULE}BehaviorTree Main\n    Action X\n        satisfys rq1, rq2\n"
+    assert_problems(text, f"5:9 error syntax-error «satisfys» `satisfys` attaches nothing to a node: {MEANT}")
+
+
+def test_nodes_that_look_like_clauses() -> None:
+    nodes = ("Satisfied a", "satisfied", "satisfy (a = 1)", 'satisfy "b"')
+    assert_clean("BehaviorTree Main\n    ->\n" + "".join(f"        {node}\n" for node in nodes))
+    assert_clean("Action satisfy\nBehaviorTree Main\n    satisfy hunger\n")

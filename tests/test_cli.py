@@ -55,6 +55,22 @@ def test_help_says_what_there_is(btq: Run) -> None:
     assert "exit codes: 0 clean, 1 findings, 2 usage or I/O" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("check", "--watch", "-"), "check: --watch cannot wait for standard input to change"),
+        (("check", ""), "check: a path is empty; `.` is this folder"),
+        (("check", "--color", "never", ""), "check: a path is empty; `.` is this folder"),
+        (("check", "--jobs", "-1"), "check: --jobs -1: a number of processes, or 0 for as many as it is worth"),
+        (("check", "--select", "unknown-nod"), "check: unknown rule `unknown-nod`: did you mean `unknown-node`?"),
+        (("format", ""), "format: a path is empty; `.` is this folder"),
+    ],
+)
+def test_usage_errors(btq: Run, arguments: tuple[str, ...], message: str) -> None:
+    done = btq(*arguments)
+    assert (done.stdout, done.stderr, done.returncode) == ("", f"btq {message}\n", 2)
+
+
 def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     assert btq().returncode == 2
     assert btq("chekc").returncode == 2
@@ -276,6 +292,20 @@ def test_format_of_standard_input(btq: Run) -> None:
 def test_explain(btq: Run, name: str, first_line: str) -> None:
     done = btq("explain", name)
     assert (done.returncode, done.stdout.splitlines()[0]) == (0, first_line)
+
+
+def test_explain_of_several_names(btq: Run) -> None:
+    done = btq("explain", "unknown-port", "Retry", "->")
+    headings = [line for line in done.stdout.splitlines() if line.startswith("# ")]
+    assert headings == ["# unknown-port", "# RetryUntilSuccessful (Decorator)", "# Sequence (Control)"]
+    assert done.returncode == 0
+    assert btq("explain", "time", "behaviour").stdout == btq("explain", "time-behaviour").stdout.replace(
+        "`time-behaviour`", "`time behaviour`"
+    )
+    done = btq("explain", "Retry", "nonsense")
+    assert done.stdout == btq("explain", "Retry").stdout
+    assert done.stderr == "btq explain: `nonsense` is no rule, node or quality; `btq explain` lists all there is\n"
+    assert done.returncode == 2
 
 
 def test_explain_of_something_unknown(btq: Run) -> None:

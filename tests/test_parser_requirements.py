@@ -417,6 +417,11 @@ def test_clause(clause: str, shown: str) -> None:
             "on violation MISSING",
             "1:14 syntax-error «stop» expected fail, halt, warn or log, found `stop`",
         ),
+        (
+            "on violation fails goal 3 s",
+            "on violation MISSING\n  goal 3s",
+            "1:14 syntax-error «fails» expected fail, halt, warn or log, found `fails`",
+        ),
         ("on failure warn", "on violation MISSING", "1:4 syntax-error «failure» expected `violation`, found `failure`"),
         ("goal", "goal MISSING", f"1:5 syntax-error «» expected {A_VALUE}, {END}"),
         ("because", "because MISSING", f"1:8 syntax-error «» expected the reason in quotes, {END}"),
@@ -536,6 +541,24 @@ def test_what_other_languages_write_can_be_replaced() -> None:
     assert_fix("context a : b && c", "Write `and`", "context a : b and c", safe=True)
     assert_fix("context a : b and !c", "Write `not`", "context a : b and not c", safe=True)
     assert_fix("context a : b = c", "Write `==`", "context a : b == c", safe=True)
+
+
+@pytest.mark.parametrize(
+    ("sign", "words"),
+    [("<", "less than"), ("<=", "at most"), (">", "more than"), (">=", "at least"), ("under", "less than")],
+)
+def test_a_bound_as_others_write_it(sign: str, words: str) -> None:
+    text = "QualityReq a\n    takes {} 3 s"
+    assert_parse(text.format(sign), None, f"2:11 syntax-error «{sign}» this bound is written `{words}`")
+    assert_fix(text.format(sign), f"Write `{words}`", text.format(words), safe=True)
+
+
+def test_a_word_of_few_that_is_misspelt() -> None:
+    text = "QualityReq a\n    {}"
+    for wrong, right in (("fails", "fail"), ("failure", "fail"), ("halts", "halt"), ("warning", "warn")):
+        line = f"on violation {wrong}"
+        assert_fix(text.format(line), f"Replace `{wrong}` by `{right}`", text.format(f"on violation {right}"))
+    assert_fix(text.format("verified by tests"), "Replace `tests` by `test`", text.format("verified by test"))
 
 
 def test_brackets_in_brackets_have_an_end() -> None:

@@ -144,7 +144,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
 
 
 # After these mistakes nobody knows which node is whose child, so there is nothing to say of their number.
-_STRUCTURE_IS_LOST = frozenset(("inconsistent-indentation", "nested-too-deep", "string-over-items", "unclosed-string"))
+_STRUCTURE_IS_LOST = frozenset(
+    ("inconsistent-indentation", "nested-too-deep", "string-over-items", "unclosed-string", "unclosed-bracket")
+)
 _OF_STRUCTURE: frozenset[Check] = frozenset(
     (
         trees.tree_root_count,

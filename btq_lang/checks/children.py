@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.view import SeenNode, View, misspelt_clause
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
@@ -30,6 +30,8 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         count = len(seen.node.children)
         if least <= count and (most is None or count <= most):
             continue
+        if any(misspelt_clause(child) for child in seen.node.nodes):
+            continue  # of a child that is meant for a clause, that is told
         if count == 0 and entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.file.text)
             if any(seen.node.start <= problem.span.start < after for problem in entry.diagnostics):

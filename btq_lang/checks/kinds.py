@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.names import model_name_problem
 from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.view import SeenNode, View, misspelt_clause
 from btq_lang.clauses import HEADS, VERBS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance
@@ -43,7 +43,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield _tree_as_node(view, seen, name)
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
             continue  # no node of the engine, which is told
-        elif not (_is_refused(view, seen, name) or _is_clause(seen)):
+        elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, entry, seen, name)
 
 
@@ -103,10 +103,16 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node called `keeps`."""
     for seen in view.nodes(entry):
         name = seen.node.kind
-        if name is None or not _is_clause(seen) or seen.definition:
+        meant = misspelt_clause(seen.node)
+        if name is None or not (meant or _is_clause(seen)) or seen.definition:
             continue
         if any(problem.span.start == name.start for problem in entry.diagnostics):
             continue  # the parser has said so already
+        if meant:
+            message = f"`{name.text}` is a node here: did you mean `{meant}`?"
+            fix = replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, meant)
+            yield Diagnostic("clause-as-node", name.span, message, fixes=(fix,))
+            continue
         yield Diagnostic(
             "clause-as-node",
             name.span,

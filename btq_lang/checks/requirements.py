@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.checks.attached import other_word
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.checks.view import View
@@ -20,6 +21,11 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if view.scope.find(Kind.REQUIREMENT, use.name) is not None:
             continue
         elsewhere = view.workspace.defined_anywhere(Kind.REQUIREMENT, use.name)
+        quality = view.quality(use.name)
+        if not elsewhere and (quality is None or quality.kind != "unknown"):
+            is_exact = quality is None or quality.kind == "exact"
+            yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
+            continue
         fixes = tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
         fixes += tuple(
             replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
@@ -63,6 +69,8 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return  # its user may be what could not be read, or misspells it
     definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
     if definition is None or not view.is_this(definition, entry) or view.workspace.references(definition):
+        return
+    if requirement.name.text in view.meant_as_requirements:
         return
     yield Diagnostic(
         "unused-requirement",

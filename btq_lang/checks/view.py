@@ -14,6 +14,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks.calls import Calls
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
+from btq_lang.nodes import meant_clause
 from btq_lang.record import record
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
@@ -145,6 +146,16 @@ class View:
         """Whether the file refers to a requirement that is defined nowhere."""
         names = {use.name for summary in self.file.summaries for use in summary.uses if use.kind is Kind.REQUIREMENT}
         return any(self.scope.find(Kind.REQUIREMENT, name) is None for name in names)
+
+    @cached_property
+    def meant_as_requirements(self) -> frozenset[str]:
+        """Names that seem to be requirements, but stand where a quality or a node does; each is told."""
+        uses = (use for summary in self.file.summaries for use in summary.uses)
+        found = {use.name for use in uses if use.kind is Kind.QUALITY}
+        for entry in self.trees:
+            nodes = (seen.node for seen in self.nodes(entry))
+            found.update(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
+        return frozenset(found)
 
     @cached_property
     def has_palette(self) -> bool:
@@ -293,6 +304,16 @@ def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
         if definition is not None and isinstance(target := definition.symbol.target, Tree | Model) and target.ports:
             return target.ports
     return ()
+
+
+def misspelt_clause(node: Node) -> str | None:
+    """What is probably meant by a node that reads `satisfys rq1`: satisfices or satisfies."""
+    kind = node.kind
+    if kind is None or not kind.raw.startswith("sa") or node.label is None or node.label.quoted:
+        return None
+    if node.category or node.attributes or node.clauses or node.children:
+        return None
+    return meant_clause(kind.raw)
 
 
 def called(node: Node) -> str:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
-from btq_lang.commands.files import STDIN, Files, Group
+from btq_lang.commands.files import STDIN, Files, Group, usage_problem
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import LoadProblem, shown, write_whole
@@ -25,15 +25,23 @@ _ROUNDS = 10  # of fixing: a fix may make room for another
 
 def run(options: CheckOptions) -> int:
     """Check once, or again and again with `--watch`."""
-    for rule in _rules(options.select) + _rules(options.ignore):
-        if trouble := unknown_rule(rule):
-            print(f"btq check: {trouble}", file=sys.stderr)
-            return 2
+    if problem := _usage_problem(options):
+        print(f"btq check: {problem}", file=sys.stderr)
+        return 2
     files = Files()
     code, watched = _check(options, files)
-    if options.watch and STDIN not in options.paths:
+    if options.watch:
         _watch(options, files, watched)
     return code
+
+
+def _usage_problem(options: CheckOptions) -> str | None:
+    if options.watch and STDIN in options.paths:
+        return "--watch cannot wait for standard input to change"
+    if options.jobs < 0:
+        return f"--jobs {options.jobs}: a number of processes, or 0 for as many as it is worth"
+    rules = _rules(options.select) + _rules(options.ignore)
+    return usage_problem(options.paths) or next(filter(None, map(unknown_rule, rules)), None)
 
 
 def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:

@@ -15,18 +15,24 @@ from btq_lang.rules import RULES, page
 
 
 def run(options: Namespace) -> int:
-    """Print all that goes by the name; without a name, the names there are."""
-    name = " ".join(options.subject).strip()
-    pages = list(_pages(name)) if name else ["\n".join(_overview())]
-    if not pages:
+    """Print all that goes by the names; without a name, the names there are."""
+    names = [name for word in options.subject if (name := word.strip())]
+    pages = list(_pages(" ".join(names)))  # a name of several words, as `time behaviour`
+    unknown = []
+    if not names:
+        pages = ["\n".join(_overview())]
+    elif not pages:
+        by_name = {name: list(_pages(name)) for name in names}
+        pages = [text for found in by_name.values() for text in found]
+        unknown = [name for name, found in by_name.items() if not found]
+    for name in unknown:
         likely = near(name, _names())
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all there is"
         print(f"btq explain: `{name}` is no rule, node or quality{meant}", file=sys.stderr)
-        return 2
     bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for number, text in enumerate(pages):
         print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
-    return 0
+    return 2 if unknown else 0
 
 
 def _pages(name: str) -> Iterator[str]:

@@ -33,6 +33,11 @@ class Group:
     project_file: str | None
 
 
+def usage_problem(paths: Iterable[str]) -> str | None:
+    """What is wrong with the paths of a command line, before any is looked at."""
+    return "a path is empty; `.` is this folder" if "" in paths else None
+
+
 class Files:
     """What was read so far; asked again, it parses only what changed.
 

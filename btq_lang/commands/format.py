@@ -6,7 +6,7 @@ import os
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files
+from btq_lang.commands.files import Files, usage_problem
 from btq_lang.formatter import format_text
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.render.colour import painter, wants_colour
@@ -15,6 +15,9 @@ from btq_lang.text import LineIndex
 
 def run(options: Namespace) -> int:
     """Format, or with `--check` and `--diff` only say what would change."""
+    if misuse := usage_problem(options.paths):
+        print(f"btq format: {misuse}", file=sys.stderr)
+        return 2
     files = Files()
     groups, problems = files.groups(options.paths, options.stdin_filename)
     trouble = list(problems)

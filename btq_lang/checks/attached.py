@@ -1,0 +1,37 @@
+"""What is attached to a node with the other word: a requirement with `satisfices`, a quality with `satisfies`."""
+
+from __future__ import annotations
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.symbols import Use
+from btq_lang.syntax import Entry, Satisfices, Satisfies, Tree
+from btq_lang.text import Span
+
+_WORDS = ("satisfices", "satisfies")
+
+
+def other_word(view: View, entry: Entry, use: Use, rule: str, *, requirement: bool, safe: bool = True) -> Diagnostic:
+    """The name of a requirement stands where that of a quality does, or the other way round.
+
+    Args:
+        requirement: whether it is one.
+        safe: whether nothing else is to say of the name behind the other word.
+    """
+    is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
+    word, other = _WORDS if requirement else _WORDS[::-1]
+    span = _alone(view, entry, use, word)
+    fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` by `{other}`", span, other, safe=safe),) if span else ()
+    message = f"`{use.name}` is a {is_}, not a {is_not}"
+    notes = ("a node satisfices qualities, and satisfies requirements",)
+    return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
+
+
+def _alone(view: View, entry: Entry, use: Use, word: str) -> Span | None:
+    """The word of the clause that holds a name and nothing else."""
+    clauses = use.node.clauses if use.node is not None else entry.item.clauses if isinstance(entry.item, Tree) else ()
+    for clause in clauses:
+        if isinstance(clause, Satisfices | Satisfies) and clause.start < use.span.start and clause.end == use.span.end:
+            before = view.file.text[entry.start + clause.start : entry.start + use.span.start]
+            return Span(clause.start, clause.start + len(word)) if before.strip() == word else None
+    return None
