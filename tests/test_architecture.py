@@ -71,6 +71,19 @@ def test_only_the_edges_open_files(module: str, path: Path) -> None:
     assert not opened or module in READS_THE_DISK
 
 
+def test_a_file_without_clauses_needs_no_requirements() -> None:
+    text = 'QualityReq rq1 "In time"\nBehaviorTree Main\n    Action Drive satisfies rq1\n'
+    program = (
+        "import sys; from btq_lang.checks import check; from btq_lang.workspace import Workspace\n"
+        f"assert check(Workspace.of({{'a.btq': {text!r}}}), 'a.btq') == ()\n"
+        "print([name for name in sys.modules if name.startswith('btq_lang.requirements')])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
+    )
+    assert run.stdout == "[]\n"
+
+
 def test_every_module_has_a_row() -> None:
     assert {module for module, _ in modules()} - {"__init__"} <= set(ROW_OF)
 

@@ -14,6 +14,7 @@ from btq_lang.checks import (
     includes,
     kinds,
     literals,
+    measures,
     names,
     placeholders,
     ports,
@@ -105,6 +106,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.one_shot_monitor,
         preconditions.while_skip_is_success,
         unreachable.unreachable_child,
+        measures.unresolved,
     ),
     Model: (
         kinds.duplicate_definition,
@@ -120,8 +122,8 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.quantity_on_unitless_port,
         names.forbidden_name,
     ),
-    Signal: (kinds.duplicate_definition,),
-    Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks),
+    Signal: (kinds.duplicate_definition, measures.unresolved),
+    Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks, measures.unresolved),
     Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
@@ -131,8 +133,10 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         qualities.ambiguous_quality,
         conditions.subtraction_without_blanks,
         prose.prose_constraint,
+        measures.unresolved,
+        measures.requirement_without_subject,
     ),
-    Apply: (requirements.unknown_requirement,),
+    Apply: (requirements.unknown_requirement, measures.unresolved),
     Qualities: (qualities.unknown_quality,),
     QualityDecl: (
         kinds.duplicate_definition,

@@ -18,12 +18,26 @@ from btq_lang.nodes import meant_clause
 from btq_lang.record import record
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
-from btq_lang.syntax import Entry, Include, Model, Models, Node, Port, Qualities, Tree, Word, is_name
+from btq_lang.syntax import (
+    Apply,
+    Entry,
+    Include,
+    Model,
+    Models,
+    Node,
+    Port,
+    Qualities,
+    Requirement,
+    Tree,
+    Word,
+    is_name,
+)
 from btq_lang.workspace import Definition, File, Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.checks.results import TreeResults
+    from btq_lang.requirements import Requirements
 
 
 @record
@@ -216,6 +230,26 @@ class View:
         return TreeResults(self)
 
     @cached_property
+    def requirements(self) -> Requirements | None:
+        """The requirements in scope, resolved; None where none has a clause and nothing is declared for one."""
+        if not self._has_clauses:
+            return None
+        from btq_lang.requirements import requirements  # most files have no use for it, and it is large
+
+        return requirements(self.workspace, self.path)
+
+    @cached_property
+    def _has_clauses(self) -> bool:
+        if self.scope.names(Kind.SIGNAL) or self.scope.names(Kind.CONTEXT):
+            return True
+        found = (self.scope.find(Kind.REQUIREMENT, name) for name in self.scope.names(Kind.REQUIREMENT))
+        if any(
+            isinstance(each.symbol.target, Requirement) and _is_measurable(each.symbol.target) for each in found if each
+        ):
+            return True
+        return any(isinstance(entry.item, Apply) for entry in self.file.parsed.entries)
+
+    @cached_property
     def placeholders(self) -> dict[str, tuple[str, Entry, Word]]:
         """The first placeholder in scope that becomes each ID: its file, its tree and its name."""
         from btq_lang.checks.placeholders import first_placeholders  # it asks views, too
@@ -320,6 +354,10 @@ def called(node: Node) -> str:
     """A node as a message names it among others: its kind and its instance name."""
     name = node.name
     return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
+
+
+def _is_measurable(requirement: Requirement) -> bool:
+    return bool(requirement.clauses or requirement.parameters)
 
 
 def _is_of_node(item: object) -> bool:

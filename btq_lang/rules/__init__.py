@@ -102,6 +102,17 @@ _TABLE = (
     Rule("ambiguous-quality", _W, "a quality name that means several things"),
     Rule("prose-constraint", _H, "SuccessIf or FailureIf in prose that no tool can check"),
     Rule("subtraction-without-blanks", _H, "`a-b` read as one name where `a` and `b` exist"),
+    # What requirements demand.
+    Rule("unit-mismatch", _E, "two values that measure different things"),
+    Rule("number-without-unit", _E, "a bare number where a quantity is needed"),
+    Rule("unknown-signal", _E, "a name in a condition or a bound that nothing declares"),
+    Rule("cyclic-context", _E, "a context that speaks of itself"),
+    Rule("unmatched-path", _E, "a subject or a selector that names no node"),
+    Rule("ambiguous-path", _E, "a path that names several nodes"),
+    Rule("wrong-argument", _E, "an argument that the requirement does not take, or one that is missing"),
+    Rule("ambiguous-application", _E, "two values of one requirement for one node, and none more specific"),
+    Rule("impossible-odds", _E, "a probability or a number of experiments that is none"),
+    Rule("requirement-without-subject", _W, "a claim that is about no node"),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
     Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),

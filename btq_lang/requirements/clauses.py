@@ -1,0 +1,325 @@
+"""The clauses of a requirement, resolved: what each verb asks for, and what holds for all its claims.
+
+One invariant: a claim that could not be understood as a whole is left out, and a problem says why; what is left can be
+checked, enforced and judged without looking back.  Scopes, odds and the rest belong to the requirement, so they hold
+for all of its claims, wherever they stand between them.
+"""
+
+from __future__ import annotations
+
+from btq_lang.record import replace
+from btq_lang.requirements.model import (
+    NO_DIMENSION,
+    Bounded,
+    Claim,
+    Event,
+    Every,
+    Limit,
+    Mission,
+    Odds,
+    Parameter,
+    Requirement,
+    Scope,
+    Signal,
+    Span,
+    Subject,
+    Target,
+    Total,
+    Value,
+    Window,
+)
+from btq_lang.requirements.reader import COUNT, PERCENT, TIME, Reader, Wanted
+from btq_lang.syntax import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
+from btq_lang.syntax import Claim as WrittenClaim
+from btq_lang.syntax import Clause as WrittenClause
+from btq_lang.syntax import Event as WrittenEvent
+from btq_lang.syntax import Every as WrittenEvery
+from btq_lang.syntax import Mission as WrittenMission
+from btq_lang.syntax import Odds as WrittenOdds
+from btq_lang.syntax import Parameter as WrittenParameter
+from btq_lang.syntax import Requirement as WrittenRequirement
+from btq_lang.syntax import Scope as WrittenScope
+from btq_lang.syntax import Signal as WrittenSignal
+from btq_lang.syntax import Subject as WrittenSubject
+from btq_lang.syntax import Window as WrittenWindow
+from btq_lang.text import Span as TextSpan
+from btq_lang.units import Dimension, Unit, dimension_name, parse_unit
+from btq_lang.workspace import Definition
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.requirements.model import Sort
+
+
+def resolve(reader: Reader, definition: Definition, written: WrittenRequirement, quality: str | None) -> Requirement:
+    """A requirement as it is defined; its parameters stay in it.
+
+    Args:
+        quality: the one that encloses it, where it names none itself.
+    """
+    reader.begin(definition.path, definition.entry)
+    parameters: dict[str, Parameter] = {}
+    for each in written.parameters:
+        parameter = _parameter(reader, each)
+        parameters.setdefault(parameter.name, parameter)
+    reader.begin(definition.path, definition.entry, parameters)
+    if written.quality is not None:
+        quality = ".".join(name.text for name in written.quality.names)
+    found = Requirement(
+        definition.symbol.name,
+        definition.path,
+        definition.entry,
+        reader.place(definition.symbol.span),
+        quality,
+        written.text.text if written.text is not None else None,
+        False,
+        tuple(parameters.values()),
+        (),
+    )
+    return with_clauses(reader, found, written.clauses)
+
+
+def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[WrittenClause, ...]) -> Requirement:
+    """A requirement with what these clauses say; of what can be said once only, the first counts."""
+    claims: list[Claim] = []
+    scopes: list[Scope] = []
+    once: dict[str, object] = {}
+    reasons: list[str] = []
+    goals: list[Goal] = []
+    for clause in clauses:
+        found: dict[str, object] = {}
+        if isinstance(clause, WrittenClaim):
+            claim = claim_of(reader, clause)
+            claims += [claim] if claim is not None else []
+        elif isinstance(clause, WrittenScope):
+            condition = reader.condition(clause.condition)
+            if condition is not None:
+                word = "while" if clause.word.raw == "while" else "when"
+                scopes.append(Scope(word, condition, reader.text(clause.start, clause.end)))  # type: ignore[arg-type]  # one of the two
+        elif isinstance(clause, WrittenOdds):
+            found["odds"] = _odds(reader, clause)
+        elif isinstance(clause, Confidence):
+            share = reader.quantity(clause.value, _SHARE)
+            found["confidence"] = share.si if share is not None else None
+        elif isinstance(clause, WrittenWindow):
+            found["window"] = _window(reader, clause)
+        elif isinstance(clause, OnViolation) and clause.action is not None:
+            found = {"action": clause.action.raw, "action_place": reader.place(clause.action.span)}
+        elif isinstance(clause, Goal):
+            goals.append(clause)
+        elif isinstance(clause, Because) and clause.text is not None:
+            reasons.append(clause.text.text)
+        elif isinstance(clause, How) and clause.method is not None:
+            found["method"] = clause.method.raw
+        for key, value in found.items():
+            if value is not None:
+                once.setdefault(key, value)
+    if goals:
+        once["goal"] = reader.bounded(goals[0].value, _of_goal(claims, "odds" in once))
+    return replace(
+        requirement,
+        claims=(*requirement.claims, *claims),
+        scopes=(*requirement.scopes, *scopes),
+        reasons=(*requirement.reasons, *reasons),
+        **once,
+    )
+
+
+def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
+    """What a claim demands, where all of it is understood."""
+    subject: Subject | None = None
+    if written.subject is not None:
+        subject = _subject(reader, written.subject)
+        if subject is None:
+            # What follows is read all the same: one mistake does not hide the next.
+            _verb(reader, written)
+            return None
+    found = _verb(reader, written)
+    return replace(found, subject=subject) if found is not None else None
+
+
+def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
+    place = reader.place(TextSpan(written.start, written.end))
+    claim = Claim(written.verb.raw, reader.text(written.start, written.end), place)  # type: ignore[arg-type]  # the parser's verbs
+    verb = written.verb.raw
+    if verb in ("needs", "keeps", "never", "leaves"):
+        condition = reader.condition(written.condition)
+        return replace(claim, condition=condition) if condition is not None else None
+    if verb == "follows":
+        event = _event(reader, written.event)
+        return replace(claim, event=event) if event is not None else None
+    if verb == "succeeds" and written.bound is None:
+        return claim
+    signal: Signal | None = None
+    wanted: Wanted | None = _DURATION if verb in _TIMED or written.every else _COUNTED
+    if verb == "uses":
+        signal, wanted = _resource(reader, written.resource)
+    limit = _limit(reader, written.bound, wanted) if wanted is not None else None
+    if limit is None:
+        return None
+    claim = replace(claim, limit=limit, signal=signal, every=written.every)
+    if verb in ("starts", "ends"):
+        event = _event(reader, written.event)
+        return replace(claim, event=event) if event is not None else None
+    per = _per(reader, written.per)
+    if written.per is not None and per is None:
+        return None
+    return replace(claim, per=per)
+
+
+def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted | None]:
+    """The signal that is used up, and what its difference over an activation is."""
+    if word is None:
+        return None, None
+    signal = reader.signals.get(word.text)
+    if signal is None:
+        reader.unknown(word, tuple(reader.signals))
+        return None, None
+    if signal.sort != "number":
+        reader.complain("unit-mismatch", word.span, f"what is used is a number, `{signal.name}` is {signal.sort}")
+        return None, None
+    if signal.unit is None:
+        return None, None
+    unit = "K" if signal.unit.offset else signal.unit.symbol
+    plain = signal.unit.dimension == NO_DIMENSION
+    what = f"{dimension_name(signal.unit)}, as `{signal.name}` measures it,"
+    return signal, Wanted(what, (signal.unit.dimension,), None if plain else unit, "difference")
+
+
+def _limit(reader: Reader, written: Bound | None, wanted: Wanted) -> Limit | None:
+    if written is None:
+        return None
+    value = reader.bounded(written.value, wanted)
+    upper = reader.bounded(written.upper, wanted)
+    if value is None or (written.relation == "between" and upper is None):
+        return None
+    return Limit(written.relation, value, upper)  # type: ignore[arg-type]  # the parser's relations
+
+
+def _per(reader: Reader, written: Path | Word | None) -> Target | Value | None:
+    if isinstance(written, Path):
+        return reader.target(written)
+    return reader.quantity(written, _DURATION) if written is not None else None
+
+
+def _event(reader: Reader, written: WrittenEvent | None) -> Event | None:
+    if written is None:
+        return None
+    if written.happening == "when":
+        condition = reader.condition(written.condition)
+        return Event("when", None, condition) if condition is not None else None
+    subject = reader.target(written.path) if written.path is not None else Mission(reader.mission)
+    return Event(written.happening, subject) if subject is not None else None  # type: ignore[arg-type]  # the parser's words
+
+
+def _subject(reader: Reader, written: WrittenSubject) -> Subject | None:
+    if isinstance(written, Path):
+        return reader.target(written)
+    if isinstance(written, WrittenMission):
+        return Mission(reader.mission)
+    if isinstance(written, WrittenEvery):
+        nodes = reader.nodes.every(written.name.text)
+        if not nodes:
+            reader.none_of(written.name)
+            return None
+        return Every(written.name.text, nodes)
+    if isinstance(written, Between):
+        first, last = _event(reader, written.first), _event(reader, written.last)
+        return Span(first, last) if first is not None and last is not None else None
+    assert isinstance(written, Sum), "the last kind of subject"
+    targets = [reader.target(path) for path in written.paths]
+    found = tuple(target for target in targets if target is not None)
+    return Total(found) if len(found) == len(targets) else None
+
+
+def _odds(reader: Reader, written: WrittenOdds) -> Odds | None:
+    share = reader.quantity(written.value, _SHARE)
+    if share is None or written.value is None:
+        return None
+    if not 0.0 < share.si <= 1.0:
+        reader.complain("impossible-odds", written.value.span, f"`{written.value.raw}` is no probability")
+        return None
+    of_runs = written.experiments is not None and written.experiments.raw == "runs"
+    text = reader.text(written.start, written.end)
+    place = reader.place(TextSpan(written.start, written.end))
+    return Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+
+
+def _window(reader: Reader, written: WrittenWindow) -> Window | None:
+    if written.size is None:
+        return None
+    text = reader.text(written.start, written.end)
+    place = reader.place(TextSpan(written.start, written.end))
+    if written.experiments is not None:
+        count = float(written.size.raw)
+        if count < 1 or count != int(count):
+            reader.complain("impossible-odds", written.size.span, f"`{written.size.raw}` is no number of experiments")
+            return None
+        of_runs = written.experiments.raw == "runs"
+        return Window(int(count), "runs" if of_runs else "activations", None, text, place)
+    duration = reader.quantity(written.size, _DURATION)
+    return Window(None, "activations", duration.si, text, place) if duration is not None else None
+
+
+def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
+    """What a goal is of: what the bounds are of, and with odds perhaps a share; None: of anything."""
+    dimensions: dict[Dimension, str | None] = {PERCENT: "%"} if has_odds else {}
+    for claim in claims:
+        if claim.limit is None:
+            return None
+        if claim.verb in _TIMED or claim.every:
+            dimensions[TIME] = "s"
+        elif claim.signal is not None and claim.signal.unit is not None:
+            dimensions[claim.signal.unit.dimension] = claim.signal.unit.symbol
+        else:
+            dimensions |= {NO_DIMENSION: None, COUNT: None}
+    unit = next(iter(dimensions.values())) if len(dimensions) == 1 else None
+    return Wanted("a goal of what the bound is of", tuple(dimensions), unit) if claims else None
+
+
+def _parameter(reader: Reader, written: WrittenParameter) -> Parameter:
+    sort, unit = sort_of(written.unit)
+    default: Bounded | None = None
+    parameter = Parameter(written.name.text, sort, unit, None)
+    if written.default is not None:
+        default = reader.argument(parameter, written.default)
+    return replace(parameter, default=default)
+
+
+def read_signal(reader: Reader, definition: Definition, item: WrittenSignal) -> Signal:
+    """A signal as it is declared."""
+    reader.begin(definition.path, definition.entry)
+    sort, unit = sort_of(item.unit)
+    fresh = reader.quantity(item.fresh, _DURATION)
+    source = item.source.text[1:-1].strip() if item.source is not None else None
+    behaviour = item.behaviour.raw if item.behaviour is not None else "gauge"
+    name = definition.symbol.name
+    place = reader.place(definition.symbol.span)
+    initially = None
+    if item.initially is not None:
+        initially = reader.argument(Parameter(name, sort, unit, None), item.initially)
+    return Signal(
+        name,
+        sort,
+        unit,
+        source or None,
+        behaviour,  # type: ignore[arg-type]  # one of the parser's three
+        fresh.si if fresh is not None else None,
+        initially,  # type: ignore[arg-type]  # an Amount is no table, and names of signals are refused here
+        place,
+    )
+
+
+def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
+    """What the word behind the `:` of a signal or a parameter says."""
+    if written is not None and written.text in ("bool", "text"):
+        return ("bool" if written.text == "bool" else "text"), None
+    return "number", parse_unit(written.text) if written is not None else None
+
+
+_TIMED: Final = frozenset(("takes", "succeeds", "starts", "ends"))
+_DURATION: Final = Wanted("a time", (TIME,), "s")
+_COUNTED: Final = Wanted("a number", (NO_DIMENSION, COUNT), None)
+_SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

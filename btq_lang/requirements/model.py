@@ -1,0 +1,482 @@
+"""What a requirement says once its words are resolved: small frozen records, values in SI beside the text as typed.
+
+One invariant: nothing in here has to be looked up again, so an export, a monitor and a report read the same records.
+It does not know how anything was written: places lead back to that.
+"""
+
+from __future__ import annotations
+
+from btq_lang.catalog.kinds import NodeKind
+from btq_lang.diagnostics import Place
+from btq_lang.record import record
+from btq_lang.syntax import Entry, Node
+from btq_lang.units import Dimension, Unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
+
+    Verb: TypeAlias = Literal[
+        "takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows"
+    ]
+    Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
+    Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
+    Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
+    Method: TypeAlias = Literal["monitor", "analysis", "test", "review"]
+    Experiments: TypeAlias = Literal["activations", "runs"]
+    Behaviour: TypeAlias = Literal["level", "counter", "gauge"]
+    Sort: TypeAlias = Literal["number", "bool", "text"]
+
+
+# ---- Nodes ----------------------------------------------------------------------------------------------------------
+
+
+class SourceNode:
+    """A node as it is written, with what is around it.  Equal to nothing but itself: its place is what it is.
+
+    Attributes:
+        path, entry: where it stands; its offsets count from the entry.
+        tree: the name of its tree; None where that is missing.
+        parent: None for a node at the top of its tree.
+        index: which child of its parent it is, verbatim XML counted.
+        kind: the built-in that it is, if it is one.
+        category: as written, or as the built-in or the model has it; None where nobody says.
+        names: every name that a path can call it by: its ID, all spellings of its kind, its label.
+    """
+
+    __slots__ = ("category", "children", "entry", "index", "kind", "names", "node", "parent", "path", "tree")
+
+    def __init__(
+        self,
+        node: Node,
+        path: str,
+        entry: Entry,
+        tree: str | None,
+        parent: SourceNode | None,
+        index: int,
+        kind: NodeKind | None,
+        category: str | None,
+        names: frozenset[str],
+    ) -> None:
+        self.node: Final = node
+        self.path: Final = path
+        self.entry: Final = entry
+        self.tree: Final = tree
+        self.parent: Final = parent
+        self.index: Final = index
+        self.kind: Final = kind
+        self.category: Final = category
+        self.names: Final = names
+        self.children: list[SourceNode] = []  # filled while the tree is read
+
+    @property
+    def shown(self) -> str:
+        """As a message names it: its kind and, where it has one, its instance name."""
+        name = self.node.name
+        head = self.node.head.text
+        return f"`{head}`" if name is None or name.text == head else f"`{head} {name.text}`"
+
+    @property
+    def place(self) -> Place:
+        """Where its head stands."""
+        return Place(self.node.head.span, self.path, self.entry.item)
+
+    @property
+    def tag(self) -> str:
+        """The built-in's tag; empty for a custom node."""
+        return self.kind.tag if self.kind is not None else ""
+
+    def __repr__(self) -> str:
+        return f"<{self.shown} in {self.tree}>"
+
+
+@record
+class Target:
+    """A node that a path names.
+
+    Attributes:
+        through: the leading names of the path that have to be found above the node's own tree, on the way through
+            SubTree nodes; empty: every instance of the node is meant.
+    """
+
+    node: SourceNode
+    through: tuple[str, ...] = ()
+
+
+@record
+class Mission:
+    """The whole run: the main tree's written root, None where nobody can say which tree runs."""
+
+    node: SourceNode | None
+
+
+# ---- Values ---------------------------------------------------------------------------------------------------------
+
+
+@record
+class Value:
+    """A quantity or a bare number.
+
+    Attributes:
+        text: as typed, with its sign.
+        si: in SI base units, rad, bit, fractions of one for percent (`units.to_si`).
+        unit: what it was typed in; `1` for a bare number.
+    """
+
+    text: str
+    si: float
+    unit: Unit
+
+
+@record
+class Flag:
+    """`true` or `false`."""
+
+    value: bool
+
+    @property
+    def text(self) -> str:
+        return "true" if self.value else "false"
+
+
+@record
+class Text:
+    """A string that a signal of text is compared with."""
+
+    value: str
+
+    @property
+    def text(self) -> str:
+        return f'"{self.value}"'
+
+
+@record
+class Signal:
+    """What can be measured.
+
+    Attributes:
+        sort: number, bool or text.
+        unit: of a number; None where it is unknown.
+        key: the blackboard entry, as it stands between the braces; None where none is named.
+        fresh: after how many seconds a sample is too old.
+        initially: before the first sample.
+    """
+
+    name: str
+    sort: Sort
+    unit: Unit | None
+    key: str | None
+    behaviour: Behaviour
+    fresh: float | None
+    initially: Value | Flag | Text | None
+    place: Place
+
+
+@record
+class Read:
+    """The last sample of a signal; of a bool signal, a condition as well."""
+
+    signal: Signal
+
+    @property
+    def text(self) -> str:
+        return self.signal.name
+
+
+@record
+class Parameter:
+    """A parameter in the definition of a requirement; in what is applied an argument stands in its place."""
+
+    name: str
+    sort: Sort
+    unit: Unit | None
+    default: Bounded | None
+
+    @property
+    def text(self) -> str:
+        return self.name
+
+
+@record
+class Aggregate:
+    """`p95(track_error)`: over the samples of an activation."""
+
+    function: str
+    signal: Signal
+
+
+@record
+class Minus:
+    """`-x`."""
+
+    operand: Number
+
+
+@record
+class Arithmetic:
+    """`a + b`; operator: `+`, `-`, `*`, `/`."""
+
+    operator: str
+    left: Number
+    right: Number
+
+
+@record
+class Case:
+    """A value and when it holds; no condition: otherwise."""
+
+    value: Simple
+    condition: Condition | None
+
+
+@record
+class Table:
+    """A value for each situation: of the first case whose condition holds."""
+
+    cases: tuple[Case, ...]
+
+    @property
+    def text(self) -> str:
+        values = [case.value.text for case in self.cases]
+        return f"{', '.join(values[:-1])} or {values[-1]}" if len(values) > 1 else "".join(values)
+
+
+Simple: TypeAlias = Value | Flag | Text | Read | Parameter
+Bounded: TypeAlias = Simple | Table
+Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
+
+
+# ---- Conditions -----------------------------------------------------------------------------------------------------
+
+
+@record
+class Compare:
+    """`a < b`, `a < b < c`: one more operand than operators; all in SI."""
+
+    operators: tuple[str, ...]
+    operands: tuple[Number, ...]
+
+
+@record
+class All:
+    """`φ and ψ`."""
+
+    conditions: tuple[Condition, ...]
+
+
+@record
+class Any:
+    """`φ or ψ`."""
+
+    conditions: tuple[Condition, ...]
+
+
+@record
+class Not:
+    """`not φ`."""
+
+    condition: Condition
+
+
+@record
+class InContext:
+    """A context by its name, and what it stands for."""
+
+    name: str
+    condition: Condition
+
+
+@record
+class Running:
+    """`node Path`: while that node runs."""
+
+    target: Target
+
+
+@record
+class Script:
+    """A script of the engine behind SuccessIf or FailureIf in a classic description."""
+
+    code: str
+
+
+Condition: TypeAlias = Compare | All | Any | Not | InContext | Running | Script | Read | Flag | Parameter
+
+
+# ---- Claims ---------------------------------------------------------------------------------------------------------
+
+
+@record
+class Limit:
+    """A bound in SI: `value`, or from `value` to `upper` where the relation is `between`."""
+
+    relation: Relation
+    value: Bounded
+    upper: Bounded | None = None
+
+
+@record
+class Event:
+    """Something that happens to a node, or to the mission; `when`: a condition becomes true."""
+
+    happening: Happening
+    subject: Target | Mission | None
+    condition: Condition | None = None
+
+
+@record
+class Span:
+    """The time from each `first` to the next `last`."""
+
+    first: Event
+    last: Event
+
+
+@record
+class Total:
+    """The durations of several nodes in one run, added up."""
+
+    targets: tuple[Target, ...]
+
+
+@record
+class Every:
+    """Each of these nodes for itself."""
+
+    name: str
+    nodes: tuple[SourceNode, ...]
+
+
+Subject: TypeAlias = Target | Mission | Every | Span | Total
+
+
+@record
+class Claim:
+    """What is demanded.
+
+    Attributes:
+        subject: the claim's own; None: whatever the requirement is attached to.
+        limit: of takes, uses, tries, runs; of `within d` and `runs every d` as `<= d`.
+        condition: of needs, keeps, never, leaves.
+        signal: of uses.
+        per: of tries a node, of runs a duration.
+        event: of starts, ends, follows.
+        every: `runs every d`.
+        text: the clause as typed, blanks folded.
+    """
+
+    verb: Verb
+    text: str
+    place: Place
+    subject: Subject | None = None
+    limit: Limit | None = None
+    condition: Condition | None = None
+    signal: Signal | None = None
+    per: Target | Value | None = None
+    event: Event | None = None
+    every: bool = False
+
+
+@record
+class Scope:
+    """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
+
+    word: Literal["while", "when"]
+    condition: Condition
+    text: str
+
+
+@record
+class Odds:
+    """`in at least 98 % of activations`.  relation: `>=` or `>`; probability: a fraction of one."""
+
+    relation: str
+    probability: float
+    experiments: Experiments
+    text: str
+    place: Place
+
+
+@record
+class Window:
+    """What counts: the last `count` experiments, or the last `seconds`."""
+
+    count: int | None
+    experiments: Experiments
+    seconds: float | None
+    text: str
+    place: Place
+
+
+@record
+class Requirement:
+    """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal hold for all claims.
+
+    Attributes:
+        path, entry, place: where it is defined; place: its name.
+        quality: as written, names joined by points; of a classic one the quality that encloses it.
+        title: its title, or the classic description.
+        classic: its claims were read from SuccessIf and FailureIf in its description.
+        action: None: nothing is said, so it is monitored.
+    """
+
+    name: str
+    path: str
+    entry: Entry
+    place: Place
+    quality: str | None
+    title: str | None
+    classic: bool
+    parameters: tuple[Parameter, ...]
+    claims: tuple[Claim, ...]
+    scopes: tuple[Scope, ...] = ()
+    odds: Odds | None = None
+    confidence: float | None = None
+    window: Window | None = None
+    action: Action | None = None
+    action_place: Place | None = None
+    goal: Bounded | None = None
+    reasons: tuple[str, ...] = ()
+    method: Method | None = None
+
+
+@record
+class Argument:
+    """What a parameter stands for: as given, or its default."""
+
+    name: str
+    value: Bounded
+
+
+@record
+class Applied:
+    """A requirement and what it holds for.
+
+    Attributes:
+        requirement: with the arguments in the place of its parameters, and only the claims that hold for `subject`.
+        subject: a node, the mission, a span or a sum.
+        place: what attached it: the reference at the node, the `apply`, or the claim that names its subject.
+        how: `subject`, `satisfies` or `apply`.
+    """
+
+    requirement: Requirement
+    subject: Target | Mission | Span | Total
+    arguments: tuple[Argument, ...]
+    place: Place
+    how: Literal["subject", "satisfies", "apply"]
+
+    @property
+    def node(self) -> SourceNode | None:
+        """The node that it holds for; None for a span, a sum, and a mission that nobody knows."""
+        return self.subject.node if isinstance(self.subject, Target | Mission) else None
+
+
+@record
+class Trace:
+    """A node that satisfies a requirement whose claims name their subjects themselves: a link, no verdict."""
+
+    requirement: str
+    node: SourceNode
+
+
+NO_DIMENSION: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0, 0)

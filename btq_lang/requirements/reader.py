@@ -1,0 +1,689 @@
+"""Reading the values and conditions of clauses: what each word means, in which unit, and what does not compare.
+
+One invariant: what cannot be understood is None and one problem, told where it stands, so that nothing is ever compared
+in two units.  It does not know verbs: `clauses` says what each of them asks for.
+"""
+
+from __future__ import annotations
+
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.near import near
+from btq_lang.quantities import parse_quantity
+from btq_lang.record import record
+from btq_lang.requirements.model import (
+    NO_DIMENSION,
+    Aggregate,
+    All,
+    Any,
+    Arithmetic,
+    Bounded,
+    Case,
+    Compare,
+    Condition,
+    Flag,
+    InContext,
+    Minus,
+    Not,
+    Number,
+    Parameter,
+    Read,
+    Running,
+    Signal,
+    Simple,
+    Table,
+    Target,
+    Text,
+    Value,
+)
+from btq_lang.requirements.nodes import Nodes, kinds
+from btq_lang.syntax import (
+    Amount,
+    Binary,
+    Call,
+    Comparison,
+    Entry,
+    Negative,
+    NodeRuns,
+    Operand,
+    Path,
+    Word,
+    is_name,
+    quote,
+)
+from btq_lang.syntax import Bounded as WrittenBounded
+from btq_lang.syntax import Condition as WrittenCondition
+from btq_lang.syntax import Not as WrittenNot
+from btq_lang.syntax import Table as WrittenTable
+from btq_lang.text import Span
+from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
+from btq_lang.units import Dimension, Unit, dimension_name, parse_unit, to_si
+from btq_lang.workspace import Scope, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
+
+    from btq_lang.requirements.model import Sort
+
+    # Of a temperature: 25 degC is a level, the difference of two levels is none, and K may be either.
+    Level: TypeAlias = Literal["level", "difference", "either"]
+
+
+@record
+class Problem:
+    """Something wrong with a requirement, and the entry that the places of the diagnostic count from."""
+
+    path: str
+    entry: Entry
+    diagnostic: Diagnostic
+
+
+@record
+class Wanted:
+    """What a verb asks for in a place.
+
+    Attributes:
+        what: in words, to stand behind "expects ".
+        dimensions: any of these.
+        unit: what a number without a unit may have meant; None: it needs none.
+        level: of temperatures, whether a difference is asked for.
+    """
+
+    what: str
+    dimensions: tuple[Dimension, ...]
+    unit: str | None
+    level: Level = "either"
+
+
+@record
+class Term:
+    """A value in an expression, with what must be known to compare it.
+
+    Attributes:
+        dimension: of a number; None where nobody can say.
+        unit: how a number beside it would be written.
+        span: where it stands, counted from the entry.
+        word: where it is a literal.
+    """
+
+    value: Number
+    sort: Sort
+    dimension: Dimension | None
+    unit: str | None
+    span: Span
+    level: Level = "either"
+    word: Word | None = None
+
+    @property
+    def is_bare(self) -> bool:
+        """A number without a unit."""
+        return self.word is not None and self.word.kind == NUMBER
+
+
+class Reader:
+    """Reads clauses of one scope; `begin` says where the next ones stand.
+
+    Attributes:
+        signals, contexts: by name; a context that could not be read is None.
+        parameters: of the requirement at hand.
+        mission: the main tree's root; None where nobody can say which tree runs.
+        problems: all found so far, each once.
+    """
+
+    def __init__(self, workspace: Workspace, path: str, scope: Scope, nodes: Nodes) -> None:
+        self.workspace = workspace
+        self.scope = scope
+        self.nodes = nodes
+        self.signals: dict[str, Signal] = {}
+        self.contexts: dict[str, Condition | None] = {}
+        self.parameters: dict[str, Parameter] = {}
+        main = workspace.main_tree(path)
+        self.mission = nodes.root_of(main.entry) if main is not None else None
+        self.problems: dict[tuple[int, Diagnostic], Problem] = {}
+        # A library's nodes may be in the files that include it, and a robot's in XML that nobody has read.
+        self.knows_all_nodes = (
+            bool(nodes.all)
+            and scope.complete
+            and path not in workspace.included_files
+            and not any(file.parsed.diagnostics for file in map(workspace.files.__getitem__, scope.paths))
+        )
+
+    def begin(self, path: str, entry: Entry, parameters: dict[str, Parameter] | None = None) -> None:
+        self.path = path
+        self.entry = entry
+        self.parameters = parameters or {}
+
+    def complain(
+        self,
+        rule: str,
+        span: Span,
+        message: str,
+        *,
+        notes: tuple[str, ...] = (),
+        fixes: tuple[Fix, ...] = (),
+        related: tuple[Related, ...] = (),
+    ) -> None:
+        diagnostic = Diagnostic(rule, span, message, related, notes, fixes)
+        self.problems.setdefault((id(self.entry), diagnostic), Problem(self.path, self.entry, diagnostic))
+
+    def place(self, span: Span) -> Place:
+        return Place(span, self.path, self.entry.item)
+
+    def text(self, start: int, end: int) -> str:
+        """What is written there, blanks folded."""
+        base = self.entry.start
+        return " ".join(self.workspace.files[self.path].text[base + start : base + end].split())
+
+    # ---- paths ----
+
+    def target(self, path: Path) -> Target | None:
+        """The one node that a path names."""
+        names = tuple(name.text for name in path.names)
+        found = self.nodes.find(names)
+        if len(found) == 1:
+            return found[0]
+        shown = "/".join(name.raw for name in path.names)
+        if found:
+            self.ambiguous(path.span, shown, found)
+        elif self.knows_all_nodes:
+            self.complain("unmatched-path", path.span, self._missing(names, shown), fixes=self._meant(path))
+        return None
+
+    def none_of(self, name: Word) -> None:
+        """Complain of `every X` where nothing is an X."""
+        if not self.knows_all_nodes:
+            return
+        known = {name for node in self.nodes.all for name in kinds(node)}
+        fixes = tuple(
+            replace_fix(f"Replace `{name.text}` by `{other}`", name.span, _written(other))
+            for other in near(name.text, known)
+        )
+        notes: tuple[str, ...] = ()
+        if self.nodes.find((name.text,)):
+            notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
+        self.complain("unmatched-path", name.span, f"no node is a `{name.text}`", notes=notes, fixes=fixes)
+
+    def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
+        """Complain of a path that names several nodes."""
+        related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
+        paths = dict.fromkeys(path for target in found if (path := self._path_to(target)) is not None)
+        self.complain(
+            "ambiguous-path",
+            span,
+            f"`{shown}` is the name of {len(found)} nodes",
+            related=related,
+            notes=("a path names one node; for all of them write `every`, in a claim or in `apply … to every …`",),
+            fixes=tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN]),
+        )
+
+    def _missing(self, names: tuple[str, ...], shown: str) -> str:
+        if len(names) > 1 and self.nodes.find(names[-1:]):
+            return f"no node `{names[-1]}` stands below `{'/'.join(names[:-1])}`"
+        return f"nothing is called `{shown}`" if len(names) == 1 else f"no node is named by `{shown}`"
+
+    def _meant(self, path: Path) -> tuple[Fix, ...]:
+        known = self.nodes.names()
+        fixes = []
+        for index, word in enumerate(path.names):
+            for name in near(word.text, known) if word.text not in known else ():
+                names = [other.text for other in path.names]
+                names[index] = name
+                if len(self.nodes.find(names)) == 1:
+                    fixes.append(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)))
+        return tuple(fixes)
+
+    def _path_to(self, target: Target) -> str | None:
+        """The shortest path that names that node alone."""
+        node = target.node
+        heads = [word.text for word in (node.node.name, node.node.id) if word is not None]
+        above = [node.parent.node.name.text] if node.parent is not None and node.parent.node.name is not None else []
+        above += [node.tree] if node.tree is not None else []
+        choices = [*([head] for head in heads), *([name, head] for head in heads for name in above)]
+        for names in choices:
+            found = self.nodes.find(names)
+            if len(found) == 1 and found[0].node is node:
+                return "/".join(map(_written, names))
+        return None
+
+    # ---- values ----
+
+    def bounded(self, written: WrittenBounded | None, wanted: Wanted | None) -> Bounded | None:
+        """A value, or a table of them, of what is wanted; None: of anything."""
+        if written is None:
+            return None
+        if isinstance(written, Amount):
+            term = self._amount(written)
+            fits = term is not None and (wanted is None or self._fits(term, wanted))
+            return _simple(term.value) if term is not None and fits else None
+        cases = []
+        for case in written.cases:
+            value = self.bounded(case.value, wanted)
+            condition = self.condition(case.condition) if case.condition is not None else None
+            if value is None or isinstance(value, Table) or (case.condition is not None and condition is None):
+                return None
+            cases.append(Case(value, condition))
+        return Table(tuple(cases)) if cases else None
+
+    def argument(self, parameter: Parameter, written: WrittenBounded) -> Bounded | None:
+        """A value for a parameter, or a first one for a signal."""
+        if parameter.sort == "number":
+            unit = parameter.unit
+            if unit is None:
+                return self.bounded(written, None)
+            plain = unit.dimension == NO_DIMENSION
+            return self.bounded(
+                written, Wanted(dimension_name(unit), (unit.dimension,), None if plain else unit.symbol)
+            )
+        found = self.bounded(written, None)
+        for value, place in _amounts(found, written):
+            if _sort_of(value) != parameter.sort:
+                what = "a text in quotes" if parameter.sort == "text" else "`true` or `false`"
+                self.complain("unit-mismatch", place, f"{what} is expected, `{self._at(place)}` is none")
+                return None
+        return found
+
+    def quantity(self, word: Word | None, wanted: Wanted) -> Value | None:
+        """A quantity or a number by itself."""
+        term = self._number(word, False) if word is not None else None
+        if term is None or not self._fits(term, wanted):
+            return None
+        return term.value if isinstance(term.value, Value) else None
+
+    def _amount(self, amount: Amount) -> Term | None:
+        if amount.word.kind in (NUMBER, QUANTITY):
+            return self._number(amount.word, amount.negative)
+        return self._named(amount.word)
+
+    def _number(self, word: Word, negative: bool) -> Term | None:
+        raw = f"-{word.raw}" if negative else word.raw
+        if word.kind == NUMBER:
+            value = Value(raw, float(raw), _ONE)
+            return Term(value, "number", NO_DIMENSION, None, word.span, word=word)
+        found = parse_quantity(raw)
+        if found is None:
+            return None  # an unknown unit, which is told
+        number, unit, unit_text = found
+        level: Level = "level" if unit.offset else "either"
+        return Term(Value(raw, to_si(number, unit), unit), "number", unit.dimension, unit_text, word.span, level, word)
+
+    def _named(self, word: Word) -> Term | None:
+        """A parameter, a signal, or a literal that looks like a name."""
+        name = word.text
+        if word.kind == STRING:
+            return Term(Text(name), "text", None, None, word.span)
+        if name in ("true", "false"):
+            return Term(Flag(name == "true"), "bool", None, None, word.span)
+        if name in self.parameters:
+            return _term(self.parameters[name], word)
+        if name in self.signals:
+            return _term(Read(self.signals[name]), word)
+        if name in self.contexts:
+            self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
+            return None
+        self.unknown(word, (*self.parameters, *self.signals))
+        return None
+
+    def unknown(self, word: Word, names: tuple[str, ...]) -> None:
+        if not self.scope.complete:
+            return
+        if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
+            return  # told as a subtraction without blanks
+        fixes = tuple(
+            replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in near(word.text, names)
+        )
+        note = f"declare it: `signal {word.text} : m from {{{word.text}}}`"
+        self.complain("unknown-signal", word.span, f"no signal `{word.text}` is declared", notes=(note,), fixes=fixes)
+
+    def _is_subtraction(self, name: str) -> bool:
+        known = {*self.parameters, *self.signals, *self.contexts}
+        return any(c == "-" and name[:at] in known and name[at + 1 :] in known for at, c in enumerate(name))
+
+    def _fits(self, term: Term, wanted: Wanted) -> bool:
+        """Whether a value is of what is wanted; else it is told."""
+        if term.sort != "number":
+            self.complain(
+                "unit-mismatch", term.span, f"{wanted.what} is expected, `{self._at(term.span)}` is {_sort(term)}"
+            )
+            return False
+        if term.dimension is None:
+            return True
+        if term.dimension in wanted.dimensions:
+            if wanted.level == "difference" and term.level == "level":
+                self._level(term)
+                return False
+            return True
+        if term.is_bare and wanted.unit is not None:
+            self._bare(term, f"{wanted.what} is expected", wanted.unit)
+        else:
+            message = f"{wanted.what} is expected, `{self._at(term.span)}` is {_measures(term.dimension)}"
+            self.complain("unit-mismatch", term.span, message)
+        return False
+
+    def _level(self, term: Term) -> None:
+        fixes: tuple[Fix, ...] = ()
+        if term.word is not None:
+            kelvin = f"{term.word.raw.removesuffix(term.unit or '').rstrip()} K"
+            fixes = (replace_fix(f"Write `{kelvin}`", term.span, kelvin),)
+        message = f"a difference of temperatures is expected, `{self._at(term.span)}` is a temperature"
+        self.complain("unit-mismatch", term.span, message, notes=("differences are written in K",), fixes=fixes)
+
+    def _bare(self, term: Term, message: str, unit: str) -> None:
+        assert term.word is not None, "the caller has looked"
+        number = term.word.raw
+        fix = replace_fix(f"Write `{number} {unit}`", term.span, f"{number} {unit}")
+        self.complain("number-without-unit", term.span, f"{message}, `{number}` has no unit", fixes=(fix,))
+
+    # ---- conditions ----
+
+    def condition(self, written: WrittenCondition | None) -> Condition | None:
+        """A condition, where all of it is understood."""
+        if isinstance(written, Operand):
+            return self._lone(written.word)
+        if isinstance(written, NodeRuns):
+            target = self.target(written.path)
+            return Running(target) if target is not None else None
+        if isinstance(written, WrittenNot):
+            operand = self.condition(written.operand)
+            return Not(operand) if operand is not None else None
+        if isinstance(written, Binary) and written.operator in ("and", "or"):
+            return self._joined(written)
+        if isinstance(written, Comparison):
+            return self._compare(written)
+        if isinstance(written, Binary) and (path := self._as_path(written)) is not None:
+            target = self.target(path)
+            return Running(target) if target is not None else None
+        if written is not None:
+            term = self._expression(written)
+            if term is not None:
+                self._no_condition(term)
+        return None
+
+    def _joined(self, written: Binary) -> Condition | None:
+        parts: list[WrittenCondition] = []
+        at: WrittenCondition = written
+        while isinstance(at, Binary) and at.operator == written.operator:
+            parts.append(at.right)
+            at = at.left
+        conditions = [self.condition(part) for part in (at, *reversed(parts))]
+        found = tuple(condition for condition in conditions if condition is not None)
+        if len(found) < len(conditions):
+            return None
+        return All(found) if written.operator == "and" else Any(found)
+
+    def _lone(self, word: Word) -> Condition | None:
+        """A context, a bool signal or parameter, `true` or `false`, or else a node that runs."""
+        name = word.text
+        if word.kind in (NUMBER, QUANTITY):
+            term = self._number(word, False)
+            if term is not None:
+                self._no_condition(term)
+            return None
+        if word.kind == NAME:
+            if name in self.contexts and name not in self.parameters and name not in self.signals:
+                condition = self.contexts[name]
+                return InContext(name, condition) if condition is not None else None
+            if name in ("true", "false"):
+                return Flag(name == "true")
+            if name in self.parameters or name in self.signals:
+                term = self._named(word)
+                if term is not None and term.sort == "bool" and isinstance(term.value, Read | Parameter):
+                    return term.value
+                if term is not None:
+                    self._no_condition(term)
+                return None
+        if self.nodes.find((name,)):
+            target = self.target(Path((word,)))
+            return Running(target) if target is not None else None
+        if word.kind == STRING:
+            if self.knows_all_nodes:
+                self.target(Path((word,)))
+            return None
+        self.unknown(word, (*self.parameters, *self.signals, *self.contexts, *self.nodes.names()))
+        return None
+
+    def _no_condition(self, term: Term) -> None:
+        if term.sort == "number" and term.dimension is None:
+            return
+        what = "a text" if term.sort == "text" else _measures(term.dimension) if term.dimension else "a value"
+        self.complain("unit-mismatch", term.span, f"a condition is expected, `{self._at(term.span)}` is {what}")
+
+    def _as_path(self, written: Binary) -> Path | None:
+        """`A/B`, which is read as a division, where no name in it is a signal."""
+        words: list[Word] = []
+        at: WrittenCondition = written
+        while isinstance(at, Binary) and at.operator == "/" and isinstance(at.right, Operand):
+            words.append(at.right.word)
+            at = at.left
+        if not isinstance(at, Operand):
+            return None
+        words.append(at.word)
+        known = (self.parameters, self.signals)
+        if all(word.kind in (NAME, STRING) and not any(word.text in names for names in known) for word in words):
+            return Path(tuple(reversed(words)))
+        return None
+
+    def _compare(self, written: Comparison) -> Condition | None:
+        terms = [self._expression(operand) for operand in written.operands]
+        found = [term for term in terms if term is not None]
+        if len(found) < len(terms):
+            return None
+        # Pairs beside each other, so that one number without a unit is told once.
+        ok = True
+        for operator, left, right in zip(written.operators, found, found[1:], strict=False):
+            ok = self._comparable(left, right, operator) and ok
+        return Compare(written.operators, tuple(term.value for term in found)) if ok else None
+
+    def _comparable(self, left: Term, right: Term, operator: str) -> bool:
+        if left.sort != right.sort:
+            message = f"`{self._at(left.span)}` is {_sort(left)}, `{self._at(right.span)}` is {_sort(right)}"
+            self.complain("unit-mismatch", Span(left.span.start, right.span.end), message)
+            return False
+        if left.sort != "number":
+            if operator in ("==", "!="):
+                return True
+            span = Span(left.span.start, right.span.end)
+            self.complain("unit-mismatch", span, f"{_sort(left)} is neither more nor less: compare with `==` or `!=`")
+            return False
+        if left.dimension is None or right.dimension is None:
+            return True
+        if left.dimension == right.dimension or _counts(left, right) or _counts(right, left):
+            return self._same_level(left, right)
+        for number, other in ((left, right), (right, left)):
+            if number.is_bare and other.unit is not None:
+                self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
+                return False
+        self._mismatch(left, right)
+        return False
+
+    def _same_level(self, left: Term, right: Term) -> bool:
+        if {left.level, right.level} != {"level", "difference"}:
+            return True
+        self._level(left if left.level == "level" else right)
+        return False
+
+    def _mismatch(self, left: Term, right: Term) -> None:
+        assert left.dimension is not None, "both are known, for they differ"
+        assert right.dimension is not None, "both are known, for they differ"
+        self.complain(
+            "unit-mismatch",
+            Span(left.span.start, right.span.end),
+            f"`{self._at(left.span)}` is {_measures(left.dimension)}, "
+            f"`{self._at(right.span)}` is {_measures(right.dimension)}",
+        )
+
+    def _at(self, span: Span) -> str:
+        return self.text(span.start, span.end)
+
+    def _expression(self, written: WrittenCondition) -> Term | None:
+        if isinstance(written, Operand):
+            word = written.word
+            return self._number(word, False) if word.kind in (NUMBER, QUANTITY) else self._named(word)
+        if isinstance(written, Negative):
+            inner = written.operand
+            if isinstance(inner, Operand) and inner.word.kind in (NUMBER, QUANTITY):
+                return self._number(inner.word, True)
+            term = self._expression(inner)
+            return term and Term(Minus(term.value), term.sort, term.dimension, term.unit, term.span, term.level)
+        if isinstance(written, Call):
+            return self._call(written)
+        if isinstance(written, Binary) and written.operator in "+-*/":
+            return self._arithmetic(written)
+        if self.condition(written) is not None:
+            span = Span(written.start, written.end)
+            self.complain("unit-mismatch", span, f"a value is expected, `{self._at(span)}` is a condition")
+        return None
+
+    def _call(self, written: Call) -> Term | None:
+        word = written.signal
+        if word is None:
+            return None
+        signal = self.signals.get(word.text)
+        if signal is None:
+            self.unknown(word, tuple(self.signals))
+            return None
+        span = Span(written.start, written.end)
+        function = written.function.text
+        value = Aggregate(function, signal)
+        if function == "count":
+            return Term(value, "number", NO_DIMENSION, None, span)
+        if signal.sort != "number":
+            message = f"`{function}` is of numbers, `{signal.name}` is {'text' if signal.sort == 'text' else 'bool'}"
+            self.complain("unit-mismatch", span, message)
+            return None
+        unit = signal.unit
+        if unit is None:
+            return Term(value, "number", None, None, span)
+        level: Level = "level" if unit.offset else "either"
+        if function in ("change", "stddev"):
+            return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
+        return Term(value, "number", unit.dimension, _symbol(unit), span, level)
+
+    def _arithmetic(self, written: Binary) -> Term | None:
+        left, right = self._expression(written.left), self._expression(written.right)
+        if left is None or right is None:
+            return None
+        span = Span(written.start, written.end)
+        for term in (left, right):
+            if term.sort != "number":
+                message = f"`{written.operator}` is for numbers, `{self._at(term.span)}` is {_sort(term)}"
+                self.complain("unit-mismatch", span, message)
+                return None
+        value = Arithmetic(written.operator, left.value, right.value)
+        if left.dimension is None or right.dimension is None:
+            return Term(value, "number", None, None, span)
+        if written.operator in "*/":
+            return self._product(value, left, right, span)
+        if left.dimension != right.dimension:
+            for number, other in ((left, right), (right, left)):
+                if number.is_bare and other.unit is not None:
+                    self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
+                    return None
+            self._mismatch(left, right)
+            return None
+        level = _sum_level(written.operator, left.level, right.level)
+        if level is None:
+            self._level(right)
+            return None
+        unit = left.unit if level != "difference" or left.level != "level" else "K"
+        return Term(value, "number", left.dimension, unit, span, level)
+
+    def _product(self, value: Arithmetic, left: Term, right: Term, span: Span) -> Term | None:
+        assert left.dimension is not None, "the caller has looked"
+        assert right.dimension is not None, "the caller has looked"
+        for term in (left, right):
+            if term.level == "level":
+                message = f"`{self._at(term.span)}` is a temperature in degC, which cannot be multiplied"
+                self.complain("unit-mismatch", term.span, message, notes=("in K it can",))
+                return None
+        sign = 1 if value.operator == "*" else -1
+        pairs = zip(left.dimension, right.dimension, strict=True)
+        dimension: Dimension = (*(a + sign * b for a, b in pairs),)  # type: ignore[assignment]  # as long as they are
+        unit = (
+            left.unit
+            if right.dimension == NO_DIMENSION
+            else right.unit
+            if sign == 1 and not any(left.dimension)
+            else None
+        )
+        return Term(value, "number", dimension, unit, span)
+
+
+def _amounts(found: Bounded | None, written: WrittenBounded) -> tuple[tuple[Simple, Span], ...]:
+    """Each value with its place."""
+    if found is None:
+        return ()
+    if isinstance(found, Table) and isinstance(written, WrittenTable):
+        pairs = zip(found.cases, written.cases, strict=True)
+        return tuple((case.value, other.value.word.span) for case, other in pairs)
+    assert not isinstance(found, Table), "a table is read from a table"
+    assert isinstance(written, Amount), "a table is read from a table"
+    return ((found, written.word.span),)
+
+
+def _sort_of(value: Simple) -> Sort:
+    if isinstance(value, Read):
+        return value.signal.sort
+    if isinstance(value, Parameter):
+        return value.sort
+    return "number" if isinstance(value, Value) else "bool" if isinstance(value, Flag) else "text"
+
+
+def _simple(value: Number) -> Simple | None:
+    return value if isinstance(value, Value | Flag | Text | Read | Parameter) else None
+
+
+def _term(value: Read | Parameter, word: Word) -> Term:
+    kind = value.signal if isinstance(value, Read) else value
+    unit = kind.unit
+    if kind.sort != "number" or unit is None:
+        return Term(value, kind.sort, None, None, word.span)
+    level: Level = "level" if unit.offset else "either"
+    return Term(value, "number", unit.dimension, _symbol(unit), word.span, level)
+
+
+def _symbol(unit: Unit) -> str | None:
+    return unit.symbol if unit.dimension != NO_DIMENSION else None
+
+
+def _sum_level(operator: str, left: Level, right: Level) -> Level | None:
+    """What a sum or a difference of temperatures is; None: there is no such thing."""
+    if left != "level" and right != "level":
+        return "difference" if "difference" in (left, right) else "either"
+    if operator == "-":
+        return None if left != "level" else "difference" if right == "level" else "level"
+    return None if left == right else "level"
+
+
+def _counts(term: Term, other: Term) -> bool:
+    """`count(…)` is a plain number and a count, as one likes."""
+    is_count = isinstance(term.value, Aggregate) and term.value.function == "count"
+    return is_count and other.dimension in (NO_DIMENSION, COUNT)
+
+
+def _sort(term: Term) -> str:
+    if term.sort != "number":
+        return "true or false" if term.sort == "bool" else "a text"
+    return _measures(term.dimension) if term.dimension is not None else "a number"
+
+
+def _measures(dimension: Dimension) -> str:
+    return dimension_name(Unit("", dimension, 1.0))
+
+
+def _written(name: str) -> str:
+    return name if is_name(name) else quote(name)
+
+
+_ONE: Final = Unit("1", NO_DIMENSION, 1.0)
+_SHOWN: Final = 5  # places and fixes of one diagnostic
+
+
+def _dimension_of(symbol: str) -> Dimension:
+    unit = parse_unit(symbol)
+    assert unit is not None, "a symbol of the table"
+    return unit.dimension
+
+
+COUNT: Final = _dimension_of("times")
+TIME: Final = _dimension_of("s")
+PERCENT: Final = _dimension_of("%")

@@ -1,0 +1,84 @@
+"""What the checks of requirements' measurable part say, and mend, that their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
+
+
+@pytest.mark.parametrize(
+    ("clause", "title", "mended"),
+    [
+        ("keeps speed <= 3", "Write `3 m/s`", "keeps speed <= 3 m/s"),
+        ("keeps speed <= -3", "Write `-3 m/s`", "keeps speed <= -3 m/s"),
+        ("takes at most 30", "Write `30 s`", "takes at most 30 s"),
+        ("keeps sped <= 3 m/s", "Replace `sped` by `speed`", "keeps speed <= 3 m/s"),
+        ("Mian/X takes at most 3 s", "Replace `Mian` by `Main`", "Main/X takes at most 3 s"),
+        ("every Y takes at most 3 s", "Replace `Y` by `X`", None),
+        ("Xylophon takes at most 3 s", "Replace `Xylophon` by `Xylophone`", "Xylophone takes at most 3 s"),
+    ],
+)
+def test_what_was_probably_meant(clause: str, title: str, mended: str | None) -> None:
+    text = SPEED + 'QualityReq rq1 "t"\n    {}\nBehaviorTree Main\n    ->\n        Action X satisfies rq1\n'
+    text += '        Script (code = "@speed := 1.0")\n        Action Xylophone\n'
+    if mended is None:
+        with pytest.raises(AssertionError):
+            assert_fix(text.replace("{}", clause), title, "")
+    else:
+        wrong, right = (text.replace("{}", each) for each in (clause, mended))
+        assert_fix(wrong, title, right)
+
+
+def test_the_names_of_several_nodes_are_offered() -> None:
+    text = 'QualityReq rq1 "t"\n    {} takes at most 3 s\nBehaviorTree A\n    ->\n        Action X\n'
+    text += "        Action X Last\n        SubTree B\nBehaviorTree B\n    Action X\n"
+    for path in ("Last", "B/X"):
+        assert_fix(text.replace("{}", "X"), f"Write `{path}`", text.replace("{}", path))
+
+
+def test_one_mistake_in_a_definition_is_told_once() -> None:
+    assert_problems(
+        SPEED
+        + 'QualityReq slow(limit : m/s = 1 m/s) "t"\n    keeps sped <= limit\n'
+        + "apply slow to every X\napply slow(limit = 3) to One\n"
+        + 'BehaviorTree Main\n    ->\n        Script (code = "@speed := 1.0")\n'
+        + "        Action X One\n        Action X Two\n",
+        "3:11 error unknown-signal «sped» no signal `sped` is declared",
+        "5:20 error number-without-unit «3» speed is expected, `3` has no unit",
+    )
+
+
+def test_what_an_included_file_says_is_told_in_it() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        include "rules.btq"
+        BehaviorTree Main
+            Action X satisfies rq1
+        //- rules.btq
+        QualityReq rq1 "t"
+            takes at most 3 m
+        """,
+        "rules.btq:2:19 error unit-mismatch «3 m» a time is expected, `3 m` is length",
+    )
+
+
+def test_a_signal_that_fits_nothing() -> None:
+    assert_problems(
+        """
+        signal a : m initially 3
+        signal b : bool initially 3
+        signal c : text initially 3 m
+        signal d : 1 fresh within 3 m
+        """,
+        "1:24 error number-without-unit «3» length is expected, `3` has no unit",
+        "2:27 error unit-mismatch «3» `true` or `false` is expected, `3` is none",
+        "3:27 error unit-mismatch «3 m» a text in quotes is expected, `3 m` is none",
+        "4:27 error unit-mismatch «3 m» a time is expected, `3 m` is length",
+    )
+
+
+def test_a_file_without_any_tree_is_for_others() -> None:
+    assert_clean('QualityReq rq1 "t"\n    Somewhere/Else takes at most 3 s\n')

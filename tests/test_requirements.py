@@ -1,0 +1,508 @@
+"""Requirements, resolved: subjects, values in SI, arguments, and what a mission with one of everything says."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, split_files
+
+from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.model import (
+    Aggregate,
+    All,
+    Applied,
+    Arithmetic,
+    Compare,
+    Flag,
+    InContext,
+    Mission,
+    Not,
+    Read,
+    Running,
+    Span,
+    Table,
+    Target,
+    Text,
+    Total,
+    Value,
+)
+from btq_lang.workspace import Workspace
+
+WORKED = """
+signal battery : % from {battery_level} level fresh within 5 s initially 100 %
+signal energy : Wh from {energy_used} counter
+signal speed : m/s from {base_speed}
+signal humans : person from {people_count}
+context humans_near : humans > 0 person
+
+QualityReq rq1 : time-behaviour "Reach the charging station in time"
+    BatteryCheck/MoveBase takes at most 30 s
+    on violation fail
+QualityReq rq4 : reliability
+    BatteryCheck/MoveBase succeeds within 30 s
+    in at least 98 % of activations
+    confidence 95 %
+    over last 200 activations
+QualityReq rq5 : energy-autonomy
+    SolidStation uses at most 0.02 kWh of energy
+    goal 15 Wh
+QualityReq rq6 : time-behaviour
+    from Pick starts to Place succeeds takes at most 45 s
+QualityReq slow(limit : m/s = 0.25 m/s) : safety.operational-constraint
+    keeps speed <= limit
+    while humans_near
+    on violation fail
+    because "movement next to people"
+apply slow to every MoveBase except BatteryCheck/MoveBase
+apply slow(limit = 0.1 m/s) to PickPlace/Place
+QualityReq fetch : time-behaviour
+    GoToFridge takes at most 20 s if not humans_near else 30 s
+QualityReq replan : time-behaviour
+    ComputePathToPose runs at least 1 per 1 s
+    while FollowPath
+QualityReq order : safety
+    Place follows CheckClear succeeds
+    on violation fail
+QualityReq calm : ergonomics "People near the robot should not be startled"
+
+Condition Sensors
+    output battery : double
+    output energy : double
+    output speed : double
+    output humans : double
+Condition BatteryLow
+Condition CheckClear
+Action MoveBase
+    input station : string
+Action Charge
+Action Pick
+Action Place
+Action GoToFridge
+Action ComputePathToPose
+Action FollowPath
+
+BehaviorTree Main
+    R->
+        Sensors (
+            battery = {@battery_level}
+            energy = {@energy_used}
+            speed = {@base_speed}
+            humans = {@people_count}
+        )
+        -> Work
+            -> BatteryCheck
+                BatteryLow
+                MoveBase (station = "charger")
+                Charge
+            -> SolidStation
+                MoveBase (station = "solid")
+                SubTree PickPlace
+            GoToFridge satisfies calm
+            ComputePathToPose
+            FollowPath
+
+BehaviorTree PickPlace
+    ->
+        Pick
+        CheckClear
+        Place
+"""
+
+
+def resolved(text: str) -> Requirements:
+    files = split_files(text)
+    return requirements(Workspace.of(files), next(iter(files)))
+
+
+def applied(found: Requirements, name: str) -> list[Applied]:
+    return [each for each in found.applied if each.requirement.name == name]
+
+
+def one(found: Requirements, name: str) -> Applied:
+    (each,) = applied(found, name)
+    return each
+
+
+def where(found: Requirements, name: str) -> list[str]:
+    """The nodes that a requirement holds for, each with its arguments."""
+    return [
+        f"{each.node.node.head.text} {each.node.node.name.text if each.node.node.name else '-'} in {each.node.tree}"
+        + "".join(f" {argument.name}={argument.value.text}" for argument in each.arguments)
+        for each in applied(found, name)
+        if each.node is not None
+    ]
+
+
+# ---- one of everything -----------------------------------------------------------------------------------------------
+
+
+def test_the_worked_examples_resolve() -> None:
+    found = resolved(WORKED)
+    assert found.problems == ()
+    assert {name: where(found, name) for name in found.all} == {
+        "rq1": ["MoveBase - in Main"],
+        "rq4": ["MoveBase - in Main"],
+        "rq5": ["-> SolidStation in Main"],
+        "rq6": [],
+        "slow": ["MoveBase - in Main limit=0.25 m/s", "Place - in PickPlace limit=0.1 m/s"],
+        "fetch": ["GoToFridge - in Main"],
+        "replan": ["ComputePathToPose - in Main"],
+        "order": ["Place - in PickPlace"],
+        "calm": ["GoToFridge - in Main"],
+    }
+
+
+def test_the_worked_examples_mean_what_they_say() -> None:
+    found = resolved(WORKED)
+    rq4 = one(found, "rq4").requirement
+    assert (rq4.odds and rq4.odds.probability, rq4.confidence, rq4.window and rq4.window.count) == (0.98, 0.95, 200)
+    rq5 = one(found, "rq5").requirement
+    (claim,) = rq5.claims
+    assert claim.limit is not None
+    assert isinstance(claim.limit.value, Value)
+    assert (claim.limit.relation, claim.limit.value.si, claim.limit.value.text) == ("<=", 72000.0, "0.02 kWh")
+    assert claim.signal is found.signals["energy"]
+    assert isinstance(rq5.goal, Value)
+    assert rq5.goal.si == 54000.0
+    span = one(found, "rq6").subject
+    assert isinstance(span, Span)
+    assert (span.first.happening, span.last.happening) == ("starts", "succeeds")
+    slow = applied(found, "slow")[1].requirement
+    humans_near = found.contexts["humans_near"]
+    assert humans_near is not None
+    assert slow.scopes[0].condition == InContext("humans_near", humans_near)
+    compare = slow.claims[0].condition
+    assert isinstance(compare, Compare)
+    assert compare.operators == ("<=",)
+    assert compare.operands[0] == Read(found.signals["speed"])
+    assert isinstance(compare.operands[1], Value)
+    assert (compare.operands[1].si, slow.action, slow.reasons) == (0.1, "fail", ("movement next to people",))
+    table = one(found, "fetch").requirement.claims[0].limit
+    assert table is not None
+    assert isinstance(table.value, Table)
+    assert [case.value.text for case in table.value.cases] == ["20 s", "30 s"]
+    assert table.value.cases[0].condition == Not(InContext("humans_near", humans_near))
+    assert table.value.cases[1].condition is None
+    scope = one(found, "replan").requirement.scopes[0].condition
+    assert isinstance(scope, Running)
+    assert scope.target.node.node.head.text == "FollowPath"
+    assert one(found, "order").requirement.claims[0].text == "Place follows CheckClear succeeds"
+
+
+def test_the_worked_examples_check_clean() -> None:
+    """All but `signal … initially`, which the page leaves out, and nothing satisfies a requirement without a claim."""
+    text = WORKED.replace("from {energy_used} counter", "from {energy_used} counter initially 0 Wh")
+    text = text.replace("from {base_speed}\n", "from {base_speed} initially 0 m/s\n")
+    assert_clean(text.replace("from {people_count}\n", "from {people_count} initially 0 person\n"))
+
+
+# ---- paths ----------------------------------------------------------------------------------------------------------
+
+PATHS = """
+QualityReq rq1 "t"
+    {path} takes at most 30 s
+BehaviorTree Main
+    -> Top
+        SubTree Leg First
+        SubTree Leg Second
+        Retry Again (num_attempts = 2)
+            SubTree Other
+        Action Alone "by itself"
+BehaviorTree Leg
+    -> Steps
+        Action Walk
+        Action Turn Left
+        Action Turn Right
+BehaviorTree Other
+    Action Turn
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "node", "through"),
+    [
+        ("Walk", "Walk -", ()),
+        ("Leg/Walk", "Walk -", ()),
+        ("Steps/Walk", "Walk -", ()),
+        ("Leg/Steps/Walk", "Walk -", ()),
+        ("Main/Walk", "Walk -", ()),  # the main tree is above every instance
+        ("First/Walk", "Walk -", ("First",)),
+        ("Main/First/Walk", "Walk -", ("Main", "First")),
+        ("Top/First/Leg/Walk", "Walk -", ("Top", "First")),
+        ("Left", "Turn Left", ()),
+        ("Other/Turn", "Turn -", ()),
+        ("Again/Turn", "Turn -", ()),
+        ("Retry/Turn", "Turn -", ()),
+        ("RetryUntilSuccessful/Turn", "Turn -", ()),
+        ("First", "Leg First", ()),
+        ("Leg", "-> Steps", ()),  # a tree's root and the SubTrees that run it are one
+        ("Steps", "-> Steps", ()),
+        ("Again/Other", "Turn -", ()),  # the only instance is every instance
+        ("Top/First/Leg", "-> Steps", ("Top", "First")),
+        ("Other", "Turn -", ()),
+        ('Main/"by itself"', "Alone by itself", ()),
+    ],
+)
+def test_a_path_names_one_node(path: str, node: str, through: tuple[str, ...]) -> None:
+    found = resolved(PATHS.replace("{path}", path).replace('Alone "by itself"', 'Alone (name = "by itself")'))
+    assert found.problems == ()
+    subject = one(found, "rq1").subject
+    assert isinstance(subject, Target)
+    name = subject.node.node.name
+    assert f"{subject.node.node.head.text} {name.text if name else '-'}" == node
+    assert subject.through == through
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("Turn", "`Turn` is the name of 3 nodes"),
+        ("Leg/Turn", "`Leg/Turn` is the name of 2 nodes"),
+        ("Walk/Leg", "no node `Leg` stands below `Walk`"),
+        ("First/Alone", "no node `Alone` stands below `First`"),
+        ("Jump", "nothing is called `Jump`"),
+        ("Leg/Leg/Leg/Walk", "no node `Walk` stands below `Leg/Leg/Leg`"),
+    ],
+)
+def test_paths_that_name_none_or_several(path: str, message: str) -> None:
+    found = resolved(PATHS.replace("{path}", path))
+    assert [problem.diagnostic.message for problem in found.problems] == [message]
+    assert found.applied == ()
+
+
+def test_other_subjects() -> None:
+    text = PATHS.replace('QualityReq rq1 "t"', 'QualityReq rq1 "t"\n    mission takes at most 1 h')
+    text = text.replace("{path} takes", "sum of Walk, Left takes") + "        Action Wave\n"
+    found = resolved(text.replace("Action Wave", "").replace("Root", ""))
+    mission, total = applied(found, "rq1")
+    assert isinstance(mission.subject, Mission)
+    assert mission.node is found.nodes.root("Main") is found.mission
+    assert isinstance(total.subject, Total)
+    assert [target.node.node.head.text for target in total.subject.targets] == ["Walk", "Turn"]
+    assert [claim.text for claim in total.requirement.claims] == ["sum of Walk, Left takes at most 30 s"]
+
+
+def test_every() -> None:
+    found = resolved(PATHS.replace("{path}", "every Turn"))
+    assert where(found, "rq1") == ["Turn Left in Leg", "Turn Right in Leg", "Turn - in Other"]
+    found = resolved(PATHS.replace("{path}", "every Sequence"))
+    assert where(found, "rq1") == ["-> Top in Main", "-> Steps in Leg"]
+    found = resolved(PATHS.replace("{path}", "every Leg"))
+    assert where(found, "rq1") == ["Leg First in Main", "Leg Second in Main"]
+
+
+def test_trees_that_run_each_other_have_no_top() -> None:
+    text = 'QualityReq rq1 "t"\n    Nowhere/X takes at most 1 s\n'
+    text += "BehaviorTree A\n    SubTree B\nBehaviorTree B\n    ->\n        SubTree A\n        X\n"
+    assert [problem.diagnostic.rule for problem in resolved(text).problems] == ["unmatched-path"]
+
+
+def test_a_library_does_not_know_whose_nodes_it_speaks_of() -> None:
+    text = '//- main.btq\nQualityReq rq1 "t"\n    X takes at most 1 s\nBehaviorTree A\n    Y\n'
+    assert len(resolved(text).problems) == 1
+    assert resolved(text + '//- other.btq\ninclude "main.btq"\n').problems == ()
+    assert resolved(text.replace("QualityReq", 'include "trees.xml"\nQualityReq', 1)).problems == ()
+
+
+# ---- who has which --------------------------------------------------------------------------------------------------
+
+APPLY = """
+QualityReq slow(limit : s = 9 s, other : m = 2 m) "t"
+    takes at most limit
+{apply}
+BehaviorTree Main
+    -> Top tags heavy
+        A One{one}
+        -> Inner
+            A Two tags heavy
+        A Three
+"""
+
+
+@pytest.mark.parametrize(
+    ("apply", "one", "expected"),
+    [
+        ("apply slow to every A", "", ["One 9 s", "Two 9 s", "Three 9 s"]),
+        ("apply slow to every A except Two, Three", "", ["One 9 s"]),
+        ("apply slow to every A under Inner", "", ["Two 9 s"]),
+        ("apply slow to every node tagged heavy", "", ["Top 9 s", "Two 9 s"]),
+        ("apply slow to every A\napply slow(limit = 1 s) to Two", "", ["One 9 s", "Two 1 s", "Three 9 s"]),
+        (
+            "apply slow(limit = 1 s) to every A under Inner\napply slow to every A",
+            "",
+            ["Two 1 s", "One 9 s", "Three 9 s"],
+        ),
+        ("apply slow(limit = 1 s) to every A under Inner\napply slow to Two", "", ["Two 9 s"]),
+        ("apply slow to One", " satisfies slow(limit = 3 s)", ["One 3 s"]),
+        ("apply slow(limit = 3000 ms) to every A under Inner, every A\napply slow(limit = 3 s) to every A", "", None),
+        ("apply slow to every A except every node tagged heavy", "", ["One 9 s", "Three 9 s"]),
+    ],
+)
+def test_the_most_specific_application_counts(apply: str, one: str, expected: list[str] | None) -> None:
+    found = resolved(APPLY.replace("{apply}", apply).replace("{one}", one))
+    assert found.problems == ()
+    got = [
+        f"{each.node.node.name.text} {each.arguments[0].value.text}"
+        for each in found.applied
+        if each.node is not None and each.node.node.name is not None
+    ]
+    # Two applications that say the same are one.
+    assert sorted(got) == sorted(expected or ["One 3000 ms", "Two 3000 ms", "Three 3000 ms"])
+
+
+def test_two_values_of_one_rank() -> None:
+    found = resolved(
+        APPLY.replace("{apply}", "apply slow to every A\napply slow(limit = 1 s) to every A").replace("{one}", "")
+    )
+    assert len(found.problems) == 3
+    assert found.problems[0].diagnostic.message == (
+        "`A One` gets two values from `slow`: limit = 9 s, other = 2 m and limit = 1 s, other = 2 m"
+    )
+    assert found.applied == ()
+
+
+def test_a_claims_own_subject_wins() -> None:
+    found = resolved(
+        'QualityReq rq1 "t"\n    B takes at most 1 s\nBehaviorTree Main\n    ->\n        A satisfies rq1\n        B\n'
+    )
+    assert where(found, "rq1") == ["B - in Main"]
+    assert [(trace.requirement, trace.node.node.head.text) for trace in found.traces] == [("rq1", "A")]
+
+
+def test_a_tree_satisfies_at_its_root() -> None:
+    found = resolved("BehaviorTree Main\n    satisfies QualityReq rq1 takes at most 1 s\n    A\n")
+    assert where(found, "rq1") == ["A - in Main"]
+
+
+def test_classic_requirements_have_the_quality_around_them() -> None:
+    found = resolved(
+        'BehaviorTree Main\n    A (satisfices Quality = performance (QualityReq ID = "rq1" description = "Quick"))\n'
+    )
+    assert [(each.name, each.quality, each.title) for each in found.all.values()] == [("rq1", "performance", "Quick")]
+
+
+# ---- values and conditions ------------------------------------------------------------------------------------------
+
+SIGNALS = """
+signal speed : km/h from {speed} gauge fresh within 200 ms initially 3.6 km/h
+signal ok : bool initially false
+signal zone : text initially "hall"
+signal heat : degC
+signal way : m counter
+signal n : 1
+context fast : speed > 1 m/s
+QualityReq rq1(low : m/s = 0.5 m/s, where : text, on : bool = true) "t"
+    keeps {condition}
+"""
+
+
+def condition(text: str) -> object:
+    found = resolved(SIGNALS.replace("{condition}", text))
+    assert found.problems == ()
+    return found.all["rq1"].claims[0].condition
+
+
+def test_signals() -> None:
+    found = resolved(SIGNALS.replace("{condition}", "ok")).signals
+    speed = found["speed"]
+    assert (speed.sort, speed.key, speed.behaviour, speed.fresh) == ("number", "speed", "gauge", 0.2)
+    assert isinstance(speed.initially, Value)
+    assert (speed.initially.si, speed.initially.text) == (1.0, "3.6 km/h")
+    assert (found["ok"].sort, found["ok"].initially, found["ok"].key) == ("bool", Flag(False), None)
+    assert (found["zone"].sort, found["zone"].initially) == ("text", Text("hall"))
+    assert [name for name, signal in found.items() if signal.behaviour == "counter"] == ["way"]
+
+
+def test_conditions() -> None:
+    found = resolved(SIGNALS.replace("{condition}", "ok")).signals
+    speed = Read(found["speed"])
+    near = condition("low <= speed < 2 m/s and not (ok or fast)")
+    assert isinstance(near, All)
+    first, second = near.conditions
+    assert isinstance(first, Compare)
+    assert first.operators == ("<=", "<")
+    assert first.operands[1] == speed
+    assert isinstance(second, Not)
+    ratio = condition("change(way) / 10 s <= mean(speed) + 2 * low")
+    assert isinstance(ratio, Compare)
+    assert isinstance(ratio.operands[0], Arithmetic)
+    assert ratio.operands[0].left == Aggregate("change", found["way"])
+    assert condition("heat <= -5 degC") == condition("heat <= - 5 degC")
+    assert condition('zone == "hall" and where != zone and on') is not None
+    assert condition("count(ok) < 3 and count(ok) < 3 times and n < 3 and heat - 5 degC < 3 K") is not None
+    assert condition("heat + 5 K < 30 degC and max(heat) < 300 K and heat - 3 K < heat") is not None
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "message"),
+    [
+        ("speed <= 3 s", "unit-mismatch", "`speed` is speed, `3 s` is time"),
+        ("speed <= 3", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
+        ("-3 <= speed", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
+        ("speed + 3 < 5 m/s", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
+        ("n < 3 m", "unit-mismatch", "`n` is a plain number, `3 m` is length"),
+        ("n < 3 %", "unit-mismatch", "`n` is a plain number, `3 %` is percentage"),
+        ("zone == 3", "unit-mismatch", "`zone` is a text, `3` is a plain number"),
+        ('zone < "a"', "unit-mismatch", "a text is neither more nor less: compare with `==` or `!=`"),
+        ("ok < 3", "unit-mismatch", "`ok` is true or false, `3` is a plain number"),
+        ("speed", "unit-mismatch", "a condition is expected, `speed` is speed"),
+        ("zone", "unit-mismatch", "a condition is expected, `zone` is a text"),
+        ("3 s", "unit-mismatch", "a condition is expected, `3 s` is time"),
+        ("speed * 2", "unit-mismatch", "a condition is expected, `speed * 2` is speed"),
+        ("ok + 1 < 2", "unit-mismatch", "`+` is for numbers, `ok` is true or false"),
+        ("max(zone) < 2", "unit-mismatch", "`max` is of numbers, `zone` is text"),
+        ("heat < 5 m", "unit-mismatch", "`heat` is temperature, `5 m` is length"),
+        ("heat + heat < 5 degC", "unit-mismatch", "a difference of temperatures is expected, `heat` is a temperature"),
+        ("heat * 2 < 5 K", "unit-mismatch", "`heat` is a temperature in degC, which cannot be multiplied"),
+        (
+            "heat - heat < 5 degC",
+            "unit-mismatch",
+            "a difference of temperatures is expected, `5 degC` is a temperature",
+        ),
+        (
+            "stddev(heat) < 5 degC",
+            "unit-mismatch",
+            "a difference of temperatures is expected, `5 degC` is a temperature",
+        ),
+        ("fast < 3", "unit-mismatch", "`fast` is a context, not a value"),
+        ("sped < 3 m/s", "unknown-signal", "no signal `sped` is declared"),
+        ("max(sped) < 3 m/s", "unknown-signal", "no signal `sped` is declared"),
+        ("(ok or fast) == 3", "unit-mismatch", "a value is expected, `ok or fast` is a condition"),
+    ],
+)
+def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> None:
+    found = resolved(SIGNALS.replace("{condition}", text))
+    assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in found.problems] == [(rule, message)]
+    assert found.all["rq1"].claims == ()
+
+
+@pytest.mark.parametrize(
+    ("clauses", "message"),
+    [
+        ("takes at most 30 m", "a time is expected, `30 m` is length"),
+        ("takes at most 30", "a time is expected, `30` has no unit"),
+        ("takes at most way", "a time is expected, `way` is length"),
+        ("takes at most ok", "a time is expected, `ok` is true or false"),
+        ("uses at most 3 s of way", "length, as `way` measures it, is expected, `3 s` is time"),
+        ("uses at most 3 degC of heat", "a difference of temperatures is expected, `3 degC` is a temperature"),
+        ("uses at most 3 of zone", "what is used is a number, `zone` is text"),
+        ("tries at most 3 s", "a number is expected, `3 s` is time"),
+        ("runs at least 3 per 1 m", "a time is expected, `1 m` is length"),
+        ("takes at most 3 s in at least 3 s of runs", "a percentage is expected, `3 s` is time"),
+        ("takes at most 3 s goal 3 m", "a goal of what the bound is of is expected, `3 m` is length"),
+        ("takes at most 3 s over last 3 m", "a time is expected, `3 m` is length"),
+        ("takes at most 3 s if fast else 4 m", "a time is expected, `4 m` is length"),
+    ],
+)
+def test_bounds_of_the_wrong_sort(clauses: str, message: str) -> None:
+    found = resolved(SIGNALS.replace("keeps {condition}", clauses))
+    assert [problem.diagnostic.message for problem in found.problems] == [message]
+
+
+def test_contexts_in_contexts() -> None:
+    chain = "".join(f"context c{n} : c{n + 1}\n" for n in range(60)) + "context c60 : true\n"
+    found = resolved(chain)
+    assert {problem.diagnostic.rule for problem in found.problems} == {"nested-too-deep"}
+    assert found.contexts["c30"] is not None
+    assert found.contexts["c0"] is None
+    found = resolved("context a : b or true\ncontext b : a\ncontext c : b or true\n")
+    assert [problem.diagnostic.message for problem in found.problems] == ["the context `b` speaks of itself"]
