@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings
+from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Model, Node, Tags, Tree
@@ -205,18 +206,6 @@ def _kind(scope: Scope, node: Node) -> tuple[NodeKind | None, str | None]:
         elif not name.quoted and name.text in KNOWN_WORDS:
             category = KNOWN_WORDS[name.text].category
     return None, category
-
-
-def is_placeholder(node: Node) -> bool:
-    """Whether a script node without code stands for a skill of a classic file (language.md §4)."""
-    return (
-        node.category is None
-        and node.kind is not None
-        and not node.kind.quoted
-        and node.kind.raw in PLACEHOLDERS
-        and node.name is not None
-        and node.attribute("code") is None
-    )
 
 
 def _names(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
