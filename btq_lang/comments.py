@@ -8,12 +8,13 @@ business.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
+from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed
 from btq_lang.record import record
 from btq_lang.text import LINE_END
-from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, Token
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
             places[place] = (*places.get(place, ()), *remarks)
 
     open_lines: list[_Line] = []  # the line above and those whose blocks it stands in
-    for comment_lines, line in _lines(parsed):
+    for comment_lines, line in _lines(parsed.text):
         for blanks, remarks in comment_lines:
             owner = block_of(blanks, open_lines, line.level)
             if owner is None:
@@ -149,48 +150,51 @@ class _Line:
     __slots__ = ("behind", "blanks", "level", "start", "within")
 
     def __init__(self, start: int, level: int, blanks: str, within: list[Comment]) -> None:
-        self.start: Final = start
+        self.start = start
         self.level: Final = level
         self.blanks: Final = blanks
         self.within: Final = within
         self.behind: Final[list[Comment]] = []
 
 
-def _lines(parsed: Parsed) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
+def _lines(text: str) -> Iterator[tuple[list[tuple[str, list[Comment]]], _Line]]:
     """Each logical line, and the last one is the end of the file, with the comment lines above it and their blanks."""
-    above: list[tuple[str, list[Comment]]] = []
-    line: _Line | None = None
-    level = 0
-    blanks = ""
-    begins = True  # nothing stands on this line of text yet
-    for token in parsed.tokens:
-        kind = token.kind
-        if kind == BLANK:
-            *ended, rest = LINE_END.split(token.text)
-            begins = begins or bool(ended)
-            blanks = rest if ended else blanks + rest.lstrip("\ufeff")
-        elif kind in (INDENT, DEDENT):
-            level += 1 if kind == INDENT else -1
-        elif kind == NEWLINE:
-            if line is not None:
-                yield above, line
-            above, line, blanks, begins = [], None, "", True
-        elif kind == COMMENT:
-            if line is not None:
-                line.behind.append(_comment(token))
-            elif begins:
-                above.append((blanks, [_comment(token)]))
-            else:
-                above[-1][1].append(_comment(token))
-            begins = False
-        elif line is None:
-            in_front = (blanks, []) if begins else above.pop()
-            line = _Line(token.start, level, *in_front)
+    lexer = Lexer(text)
+    found = lexer.comments
+    while True:
+        end, known = lexer.position, len(found)
+        opened = lexer.open_line()
+        above: list[tuple[str, list[Comment]]] = []
+        for start, comment_end in found[known:]:
+            between = text[end:start]
+            if not above or "\n" in between or "\r" in between:
+                above.append((LINE_END.split(between)[-1].lstrip("\ufeff"), []))
+            above[-1][1].append(_comment(text, start, comment_end))
+            end = comment_end
+        if not opened:
+            yield above, _Line(len(text), 0, "", [])
+            return
+        in_front = above.pop()[1] if above and lexer.line_start < end else []
+        line = _Line(lexer.position, lexer.level, lexer.blanks, in_front)
+        plain = _PLAIN.match(text, lexer.position)
+        if plain is not None:
+            lexer.position = plain.end()  # cutting it into tokens would find nothing
         else:
-            line.within.extend(line.behind)
-            line.behind.clear()
-    yield above, _Line(len(parsed.text), 0, "", [])
+            known = len(found)
+            lexer.scan()
+            line.start = lexer.starts[0]
+            last = lexer.starts[-2] if len(lexer.starts) > 1 else line.start  # the very last one is the line's end
+            for start, comment_end in found[known:]:
+                (line.within if start < last else line.behind).append(_comment(text, start, comment_end))
+        yield above, line
 
 
-def _comment(token: Token) -> Comment:
-    return Comment(token.start, token.text if token.text.startswith("/*") else token.text.rstrip(" \t"))
+def _comment(text: str, start: int, end: int) -> Comment:
+    raw = text[start:end]
+    return Comment(start, raw if raw.startswith("/*") else raw.rstrip(" \t"))
+
+
+# A line without a comment, its brackets and strings closed; a Root line is none, for the lexer remembers it.
+_INSIDE: Final = r"""[^#/"'()\\\r\n]*"""
+_QUOTED: Final = r"""(?:"[^"\\\r\n]*"|'[^'\\\r\n]*')"""
+_PLAIN: Final = re.compile(rf"(?!Root\b){_INSIDE}(?:(?:{_QUOTED}|\({_INSIDE}(?:{_QUOTED}{_INSIDE})*\)){_INSIDE})*\n")

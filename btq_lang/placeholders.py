@@ -6,6 +6,8 @@ skills as `ScriptAction (name = "MoveBase")`.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.near import near
 from btq_lang.syntax import Node
@@ -18,5 +20,10 @@ def is_placeholder(node: Node) -> bool:
         and node.kind.raw in PLACEHOLDERS
         and node.category is None
         and node.name is not None
-        and not any(pair.key.text == "code" or near(pair.key.text, ("code",)) for pair in node.attributes)
+        and not any(_means_code(pair.key.text) for pair in node.attributes)
     )
+
+
+@lru_cache(1000)
+def _means_code(key: str) -> bool:
+    return key == "code" or bool(near(key, ("code",)))

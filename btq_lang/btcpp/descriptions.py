@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
 from btq_lang.btcpp.source import Source
+from btq_lang.lexer import tokens
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
 from btq_lang.tokens import COMMENT
@@ -84,10 +85,10 @@ def _defined(source: Source, name: str, arguments: str = "") -> str:
 
 
 def _source_text(file: File, start: int, end: int) -> str:
+    """What stands between two places of a file, without comments, which brackets may hold."""
     text = file.text[start:end]
-    if "#" in text or "/" in text:  # a comment in brackets
-        tokens = file.parsed.tokens
-        text = "".join(token.text if token.kind != COMMENT else " " for token in tokens if start <= token.start < end)
+    if "#" in text or "//" in text or "/*" in text:
+        text = "".join(token.text if token.kind != COMMENT else " " for token in tokens(text))
     return text
 
 

@@ -6,7 +6,7 @@ what it uses but nobody declares stands behind it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
@@ -84,16 +84,17 @@ class Models:
         self.loose: Final[list[Content]] = []
         self.trees: Final[list[tuple[Entry, Tree]]] = []
 
-    def rest(self, source: Source, nodes: Iterable[CustomNode]) -> list[Content]:
+    def rest(self, source: Source, nodes: Mapping[str, CustomNode]) -> list[Content]:
         """What is to be written last, in a TreeNodesModel of the file or else in one of its own.
 
         Args:
-            nodes: the nodes that the file uses.
+            nodes: the nodes that the file uses and that are none of the engine's, by ID.
         """
         for entry, tree in self.trees:
             self._add_ports(source, entry, tree)
         if not source.verbatim:
-            self.loose.extend(_undeclared(each for each in nodes if source.scope.find(Kind.MODEL, each.name) is None))
+            missing = {name: node for name, node in nodes.items() if source.scope.find(Kind.MODEL, name) is None}
+            self.loose.extend(_undeclared(missing))
         if self.palettes:
             self.palettes[0].children.extend(self.loose)
             return []
@@ -122,22 +123,15 @@ def _declares(model: Element, raw: str) -> bool:
     return model.tag == "SubTree" and any(each.name == "ID" and each.raw == raw for each in model.attributes)
 
 
-def _undeclared(nodes: Iterable[CustomNode]) -> Iterator[Element]:
+def _undeclared(nodes: Mapping[str, CustomNode]) -> Iterator[Element]:
     """A model for each node that has none, as its uses suggest it: Groot opens no tree with a node it does not know."""
-    ports: dict[str, dict[str, bool]] = {}
-    categories: dict[str, str] = {}
-    for node in nodes:
-        categories.setdefault(node.name, node.category)
-        known = ports.setdefault(node.name, {})
-        for port, is_entry in node.ports:
-            known[port] = known.get(port, False) or is_entry
-    for name, category in sorted(categories.items(), key=lambda item: (_ORDER[item[1]], item[0])):
+    for name, node in sorted(nodes.items(), key=lambda item: (_ORDER[item[1].category], item[0])):
         # A literal can only go in; what an entry is for, nobody says.
-        children = [
+        ports = [
             Element("inout_port" if is_entry else "input_port", [Attribute("name", port)])
-            for port, is_entry in ports[name].items()
+            for port, is_entry in node.ports.items()
         ]
-        yield Element(category, [Attribute("ID", escape(name))], children)
+        yield Element(node.category, [Attribute("ID", escape(name))], ports)
 
 
 _ORDER: Final[dict[str, int]] = {category: index for index, category in enumerate(CATEGORIES)}

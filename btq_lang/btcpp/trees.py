@@ -18,7 +18,6 @@ from btq_lang.catalog.names import is_port_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, xml_tag
 from btq_lang.comments import NO_COMMENTS
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import record
 from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -29,17 +28,18 @@ _UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
 _NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence
 
 
-@record
 class CustomNode:
-    """A node that is none of the engine's, as one place uses it.
+    """A node that is none of the engine's, as its uses have it.
 
     Attributes:
-        ports: each with whether a blackboard entry is given to it.
+        ports: each with whether a blackboard entry is given to it somewhere.
     """
 
-    name: str
-    category: str
-    ports: tuple[tuple[str, bool], ...]
+    __slots__ = ("category", "ports")
+
+    def __init__(self, category: str) -> None:
+        self.category: Final = category
+        self.ports: Final[dict[str, bool]] = {}
 
 
 class Trees:
@@ -47,15 +47,15 @@ class Trees:
 
     Attributes:
         elements: the element of each node, by `id(node)`.
-        custom: the nodes that are none of the engine's, in the order in which they were met.
+        custom: the nodes that are none of the engine's, by ID.
     """
 
     def __init__(self, source: Source) -> None:
         self.elements: Final[dict[int, Element]] = {}
-        self.custom: Final[list[CustomNode]] = []
+        self.custom: Final[dict[str, CustomNode]] = {}
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
-        self._placeholders: Final[dict[str, tuple[str, Word]]] = {}
+        self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # what a name says and becomes, by its spelling
         self._names: set[str] = set()  # of the SubTrees of the tree that is being made
 
     def element(self, entry: Entry, tree: Tree) -> Element:
@@ -187,17 +187,23 @@ class Trees:
         source = self._source
         name = node.name
         assert name is not None, "a placeholder has a name"
-        tag = legal_name(name.text)
-        _, first = self._placeholders.setdefault(tag, (tag, name))
-        if first.text != name.text:
-            source.problem(entry, name, f"`{first.text}` and `{name.text}` both become the node ID `{tag}`")
-        elif tag in BUILTINS:
-            source.problem(entry, name, f"`{name.text}` becomes the node ID `{tag}`, which is a node of the engine")
+        text, tag = self._placeholders.get(name.raw) or self._new_placeholder(entry, name)
         attributes = attributes_of(source, entry, node.attributes, None, node.label)
-        if tag == name.text:
+        if tag == text:
             attributes = [each for each in attributes if each.name != "name"]
         self._remember(tag, PLACEHOLDERS[node.head.raw], attributes)
         return Element(tag, attributes)
+
+    def _new_placeholder(self, entry: Entry, name: Word) -> tuple[str, str]:
+        text = name.text
+        tag = legal_name(text)
+        other = next((each for each, taken in self._placeholders.values() if taken == tag and each != text), None)
+        if other is not None:
+            self._source.problem(entry, name, f"`{other}` and `{text}` both become the node ID `{tag}`")
+        elif tag in BUILTINS:
+            self._source.problem(entry, name, f"`{text}` becomes the node ID `{tag}`, which is a node of the engine")
+        self._placeholders[name.raw] = text, tag
+        return text, tag
 
     def _subtree_attributes(self, entry: Entry, node: Node) -> list[Attribute]:
         source = self._source
@@ -250,12 +256,12 @@ class Trees:
     def _remember(self, name: str, category: str, attributes: Iterable[Attribute]) -> None:
         if self._source.verbatim or not name:
             return
-        ports = tuple(
-            (each.name, each.raw.startswith("{"))
-            for each in attributes
-            if each.name not in _NO_PORTS and is_port_name(each.name)
-        )
-        self.custom.append(CustomNode(name, category, ports))
+        node = self.custom.get(name)
+        if node is None:
+            node = self.custom[name] = CustomNode(category)
+        for each in attributes:
+            if each.name not in _NO_PORTS and is_port_name(each.name):
+                node.ports[each.name] = each.raw.startswith("{") or node.ports.get(each.name, False)
 
 
 def _likely_category(node: Node) -> str:
