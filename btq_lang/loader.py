@@ -17,7 +17,7 @@ from btq_lang.globs import glob_matcher
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import record
 from btq_lang.text import LineIndex, Position
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import File, Origin, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -84,13 +84,27 @@ def open_workspace(*paths: str) -> Workspace:
     files: dict[str, File] = {}
 
     def includes_of(path: str, text: str) -> Iterator[str]:
-        files[path] = File(path, text)
+        files[path] = file_of(path, text)
         return (include.path.text for include in files[path].includes if include.path is not None)
 
     loaded = load(paths or (".",), found.project, includes_of)
     for problem in (*found.problems, *loaded.problems):
         raise OSError(str(problem))
     return Workspace(files, found.project)
+
+
+def file_of(path: str, text: str) -> File:
+    """The file of a text as it stands on the disk; XML is read as this language says it, as it is, old or new.
+
+    XML is what is called .xml, and what begins with `<` under a name that says nothing: trees for Groot are called
+    .tree or .bt here and there.
+    """
+    if path.endswith(SUFFIXES) or not (path.endswith(".xml") or text.lstrip().startswith("<")):
+        return File(path, text)
+    from btq_lang.btcpp.importing import import_xml
+
+    done = import_xml(text, keep_v3=True)
+    return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))
 
 
 def find_project(start: str) -> Found:

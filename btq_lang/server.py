@@ -59,7 +59,7 @@ def make_server() -> LanguageServer:
         """The diagnostics of every open file: an edit in one may break another."""
         groups, _ = files.groups(files.overlay)
         for group in groups:
-            texts = {path: file.lines for path, file in group.workspace.files.items()}
+            texts = {path: file.source_lines for path, file in group.workspace.files.items()}
             for path in group.given:
                 found = [
                     _diagnostic(each, path, texts, uris, _encoding(server)) for each in check(group.workspace, path)

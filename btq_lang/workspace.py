@@ -13,7 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
+from btq_lang.diagnostics import Diagnostic
 from btq_lang.parser import Parsed, parse
+from btq_lang.places import Places
 from btq_lang.project import Project, include_candidates
 from btq_lang.record import record
 from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
@@ -53,16 +55,49 @@ class Reference:
         return self.use.span.shifted(self.entry.start)
 
 
-class File:
-    """One file: its text, and what was made of it so far.  Two files with one path and text are equal."""
+@record
+class Origin:
+    """What a file stands for that is written in another language.
 
-    def __init__(self, path: str, text: str) -> None:
+    Attributes:
+        text: as it stands on the disk.
+        places: what in the file's text was made of what in this one.
+        diagnostics: what is wrong with it in its own language; spans count from its start.
+        is_complete: all of it could be read, so a name that is not in the file's text is not in this one.
+    """
+
+    text: str
+    places: Places
+    diagnostics: tuple[Diagnostic, ...]
+    is_complete: bool
+
+
+class File:
+    """One file: its text, and what was made of it so far.  Two files with one path and text are equal.
+
+    Attributes:
+        text: in this language, whatever the file on the disk is written in.
+        origin: that file, where it is written in another one.
+    """
+
+    def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
         self.path = path
         self.text = text
+        self.origin = origin
 
     @cached_property
     def parsed(self) -> Parsed:
-        return parse(self.text if is_btq(self.path) else "")
+        return parse(self.text if self.origin or is_btq(self.path) else "")
+
+    @property
+    def source(self) -> str:
+        """The text as it stands on the disk: the one that people see."""
+        return self.origin.text if self.origin else self.text
+
+    @property
+    def is_understood(self) -> bool:
+        """Whether a name that is not in this file's tree is not in the file."""
+        return self.origin.is_complete if self.origin else is_btq(self.path)
 
     @cached_property
     def summaries(self) -> tuple[Summary, ...]:
@@ -85,6 +120,10 @@ class File:
     @cached_property
     def _mentions(self) -> dict[int, tuple[Mention, ...]]:
         return {}
+
+    @cached_property
+    def source_lines(self) -> LineIndex:
+        return LineIndex(self.source) if self.origin else self.lines
 
     def start_of(self, item: object) -> int:
         """Where one of the file's items begins.
@@ -112,11 +151,15 @@ class File:
             return ()
         return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
 
-    def __reduce__(self) -> tuple[type[File], tuple[str, str]]:
-        return File, (self.path, self.text)
+    def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
+        return File, (self.path, self.text, self.origin)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, File) and (self.path, self.text) == (other.path, other.text)
+        return isinstance(other, File) and (self.path, self.text, self.source) == (
+            other.path,
+            other.text,
+            other.source,
+        )
 
     def __hash__(self) -> int:
         return hash((self.path, self.text))
@@ -136,7 +179,7 @@ class Scope:
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
         self.paths = paths
         self.complete = all(
-            (target := workspace.included_by(path, include)) is not None and is_btq(target)
+            (target := workspace.included_by(path, include)) is not None and workspace.files[target].is_understood
             for path in paths
             for include in workspace.files[path].includes
         )

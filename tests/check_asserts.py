@@ -13,13 +13,14 @@ from textwrap import dedent
 
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.loader import file_of
 from btq_lang.project import Project
 from btq_lang.rules import RULES
 from btq_lang.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace import Workspace
 
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")
-COMMENT_WITH_MARKERS = re.compile(r"#\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
+COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
 Announced = Counter[tuple[str, int, str, str]]  # (file, line, severity, rule)
 
@@ -32,7 +33,7 @@ def assert_problems(text: str, *problems: str, project: Project | None = None) -
             indentation and the line end before it are not part of it.
     """
     files = split_files(text)
-    workspace = Workspace.of(files, project)
+    workspace = workspace_of(files, project)
     found: list[str] = []
     for path in files:
         diagnostics = check(workspace, path)
@@ -47,10 +48,14 @@ def assert_clean(text: str, project: Project | None = None) -> None:
     assert_problems(text, project=project)
 
 
-def assert_marked(text: str) -> None:
-    """The diagnostics of some files are exactly those that comments in them announce."""
-    files = split_files(text)
-    workspace = Workspace.of(files)
+def assert_marked(text: str, name: str = "main.btq") -> None:
+    """The diagnostics of some files are exactly those that comments in them announce.
+
+    Args:
+        name: what a single file is called; a name with .xml makes it one.
+    """
+    files = split_files(text, name)
+    workspace = workspace_of(files)
     expected: Announced = Counter()
     found: Announced = Counter()
     for path, content in files.items():
@@ -70,7 +75,7 @@ def assert_marked(text: str) -> None:
 def assert_fix(text: str, title: str, fixed: str, *, safe: bool = False) -> None:
     """The first of some files has a diagnostic with a fix of this title, and applying it makes this of the files."""
     files = split_files(text)
-    workspace = Workspace.of(files)
+    workspace = workspace_of(files)
     path = next(iter(files))
     fixes = [fix for diagnostic in check(workspace, path) for fix in diagnostic.fixes]
     assert title in [fix.title for fix in fixes]
@@ -83,7 +88,7 @@ def assert_sound(workspace: Workspace, path: str, diagnostics: Sequence[Diagnost
     """What holds for all diagnostics of whatever file: their places lie in their files, and after a safe fix its
     diagnostic is gone and there are fewer of them.  (What the parser's fixes do to torn files its own tests say.)"""
     syntax = workspace.files[path].parsed.diagnostics
-    texts = {other: file.text for other, file in workspace.files.items()}
+    texts = {other: file.source for other, file in workspace.files.items()}
     before = Counter(diagnostic.rule for diagnostic in diagnostics)
     assert list(diagnostics) == sorted(diagnostics, key=lambda diagnostic: (diagnostic.span, diagnostic.rule))
     for diagnostic in diagnostics:
@@ -115,8 +120,8 @@ def assert_fixes_mend(workspace: Workspace, path: str, diagnostics: Sequence[Dia
 
 def rules_after(workspace: Workspace, path: str, fix: Fix) -> Counter[str]:
     """How often each rule is broken in a file after a fix."""
-    texts = apply({other: file.text for other, file in workspace.files.items()}, path, fix)
-    return Counter(found.rule for found in check(Workspace.of(texts, workspace.project), path))
+    texts = apply({other: file.source for other, file in workspace.files.items()}, path, fix)
+    return Counter(found.rule for found in check(workspace_of(texts, workspace.project), path))
 
 
 def apply(files: Mapping[str, str], path: str, fix: Fix) -> dict[str, str]:
@@ -140,11 +145,16 @@ def show(text: str, diagnostics: Sequence[Diagnostic]) -> list[str]:
     return shown
 
 
-def split_files(text: str) -> dict[str, str]:
-    """The files of a fixture: one, called main.btq, or several that each begin with `//- path`."""
+def workspace_of(files: Mapping[str, str], project: Project | None = None) -> Workspace:
+    """The workspace of some texts by path, those of XML files read as the loader reads them."""
+    return Workspace({path: file_of(path, text) for path, text in files.items()}, project or Project())
+
+
+def split_files(text: str, name: str = "main.btq") -> dict[str, str]:
+    """The files of a fixture: one, or several that each begin with `//- path`."""
     text = dedent(text[1:]) if text.startswith("\n") else text
     if not text.startswith("//- "):
-        return {"main.btq": text}
+        return {name: text}
     files: dict[str, str] = {}
     for part in re.split(r"^//- ", text, flags=re.MULTILINE)[1:]:
         path, _, content = part.partition("\n")

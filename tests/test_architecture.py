@@ -16,7 +16,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
-    frozenset({"record", "text", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
+    frozenset({"record", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
         {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "patterns", "plain", "parser"}
         | {"comments", "script"}

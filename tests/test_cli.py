@@ -173,11 +173,43 @@ def test_nothing_checked_is_not_called_clean(btq: Run) -> None:
     assert (done.returncode, done.stdout) == (2, "No files were checked\n")
 
 
-def test_xml_cannot_be_checked_yet(btq: Run, tmp_path: Path) -> None:
-    (tmp_path / "tree.xml").write_text("<root/>")
-    done = btq("check", "tree.xml")
-    assert (done.returncode, done.stdout) == (2, "No files were checked\n")
-    assert done.stderr == "btq: tree.xml: XML files can be included, but not be checked by themselves yet\n"
+XML = """\
+<root BTCPP_format="4">
+  <BehaviorTree ID="Main">
+    <SubTree ID="Pick"/>
+  </BehaviorTree>
+</root>
+"""
+
+
+def test_xml_is_checked_and_shown_as_it_stands(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "tree.xml").write_text(XML)
+    done = btq("check", "--fix", "tree.xml")
+    assert done.stdout == (
+        "error[unknown-tree]: there is no tree `Pick` in this file or in those it includes\n"
+        " --> tree.xml:3:18\n"
+        "  |\n"
+        '2 |   <BehaviorTree ID="Main">\n'
+        '3 |     <SubTree ID="Pick"/>\n'
+        "  |                  ^^^^\n"
+        "4 |   </BehaviorTree>\n"
+        "\n"
+        "Found 1 error\n"
+    )
+    assert (done.returncode, (tmp_path / "tree.xml").read_text()) == (1, XML)
+
+
+def test_xml_is_not_formatted(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "tree.xml").write_text(XML)
+    done = btq("format", "tree.xml")
+    assert done.returncode == 2
+    assert done.stderr.startswith("btq: tree.xml: this is XML, which `btq format` leaves alone: see `btq import`\n")
+
+
+def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text('include "pick.xml"\n\nBehaviorTree Main\n    SubTree Pick\n')
+    (tmp_path / "pick.xml").write_text(XML.replace("Main", "Pick").replace('<SubTree ID="Pick"/>', "<AlwaysSuccess/>"))
+    assert btq("check").stdout == "No problems found in 1 file\n"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")

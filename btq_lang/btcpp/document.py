@@ -47,9 +47,10 @@ class Element:
     Attributes:
         children: what stands in it, in order.
         start, end: its start tag in the file it was read from; -1 where it was made.
+        close: where its end tag ends, likewise.
     """
 
-    __slots__ = ("attributes", "children", "end", "start", "tag")
+    __slots__ = ("attributes", "children", "close", "end", "start", "tag")
 
     def __init__(
         self,
@@ -59,11 +60,12 @@ class Element:
         start: int = -1,
         end: int = -1,
     ) -> None:
-        self.tag: Final = tag
+        self.tag = tag
         self.attributes: Final = list(attributes)
         self.children: Final = list(children)
         self.start: Final = start
         self.end: Final = end
+        self.close = end  # set once more, by the reader, when the end tag comes
 
     @property
     def elements(self) -> Iterator[Element]:
@@ -219,10 +221,8 @@ def _referred(match: re.Match[str]) -> str:
     name = match[1]
     if name in _NAMED:
         return _NAMED[name]
-    try:
-        return chr(int(name[2:], 16) if name[1] == "x" else int(name[1:]))
-    except (ValueError, OverflowError):
-        return match[0]
+    code = int(name[2:], 16) if name[1] == "x" else int(name[1:])
+    return chr(code) if 0 < code <= 0x10FFFF and not 0xD800 <= code < 0xE000 else match[0]
 
 
 _STEP: Final = "  "

@@ -27,6 +27,7 @@ from btq_lang.checks import (
     trees,
     unreachable,
 )
+from btq_lang.checks.origins import shown_on_origins
 from btq_lang.checks.suppressions import Suppressions
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
@@ -102,6 +103,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         conditions.subtraction_without_blanks,
         prose.prose_constraint,
         reactive.reactive_multiple_async,
+        reactive.explicit_in_reactive,
         reactive.condition_without_recheck,
         preconditions.one_shot_monitor,
         preconditions.while_skip_is_success,
@@ -186,7 +188,7 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     if "btq:" in view.file.text:
         suppressions = Suppressions(view.file)
         found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
-    found = list(configured(workspace.project, found))
+    found = list(configured(workspace.project, shown_on_origins(workspace, path, found)))
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
 
 

@@ -26,7 +26,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if item.name is None:
             yield from _nameless(view, entry, item)
         elif reason := model_name_problem(item.name.text, version):
-            yield _tree_name(item.name, reason, _renamed(view, entry, item.name))
+            yield _tree_name(view, item.name, reason, _renamed(view, entry, item.name))
         for seen in view.nodes(entry):
             yield from _of_node(view, entry, seen, version)
     elif isinstance(item, Model | Models):
@@ -67,7 +67,7 @@ def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator
     label = seen.node.name
     if name is not None and (reason := model_name_problem(name.text, version)):
         if seen.is_subtree and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
-            yield _tree_name(name, reason, ())  # else it is told where the tree is, or that there is none
+            yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
         elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
             yield _refused("node", name, reason, _explicit(seen, name))
     if label is not None and (reason := instance_name_problem(label.text, version)):
@@ -91,8 +91,10 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
         yield Diagnostic("forbidden-name", span, "this tree has no ID: `BehaviorTree <ID>`", notes=(note,))
 
 
-def _tree_name(name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
+def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
     """Only a warning: a build writes the tree and all that refer to it under a legal name."""
+    if view.is_xml:
+        return _refused("tree", name, reason)
     return Diagnostic(
         "forbidden-name",
         name.span,

@@ -41,6 +41,26 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 surely = not results.first & goes_on
 
 
+def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An explicit form directly below a ReactiveSequence, which only XML can say: a build writes the compact one.
+
+    Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
+    """
+    if not view.is_xml or not at_least(view.workspace.project.target, "4.8"):
+        return
+    for seen in view.nodes(entry):
+        parent, category = seen.parent, seen.node.category
+        if parent is None or parent.kind is None or parent.kind.tag != "ReactiveSequence":
+            continue
+        if category is None or category.raw == "SubTree":
+            continue
+        message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
+        name = seen.node.id
+        shown = f"<{name.text}/>" if name is not None and " " not in name.text else "the node's own name as its tag"
+        note = f"`Unknown node type: {category.raw}`, it says, and means the tag: write {shown}"
+        yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
+
+
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
     if view.main_tree is None or not view.is_this(view.main_tree, entry):

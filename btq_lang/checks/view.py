@@ -108,6 +108,11 @@ class View:
         """What an entry refers to, of one kind."""
         return (use for use in self.file.summary_of(entry).uses if use.kind is kind)
 
+    @property
+    def is_xml(self) -> bool:
+        """Whether the file is XML that the engine loads as it is: no build comes between."""
+        return self.file.origin is not None
+
     @cached_property
     def trees(self) -> tuple[Entry, ...]:
         """The file's trees, in order."""

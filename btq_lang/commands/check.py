@@ -58,9 +58,9 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     findings: list[Finding] = []
     for group in groups:
         for path, found in _found(group, options.jobs):
-            text = group.workspace.files[path].text
+            text = group.workspace.files[path].source
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
-    texts = {path: file.text for group in groups for path, file in group.workspace.files.items()}
+    texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
     _print(report, options, mended)
     watched = tuple(
@@ -99,7 +99,9 @@ def _fix(
     mended = 0
     for group in groups:
         workspace = group.workspace
-        writable = tuple(path for path in group.given if path not in group.damaged)
+        writable = tuple(
+            path for path in group.given if path not in group.damaged and group.workspace.files[path].origin is None
+        )
         for _ in range(_ROUNDS):
             found = {path: tuple(d for d in check(workspace, path) if _is_wanted(d, options)) for path in writable}
             texts, count = fixed(workspace, found)

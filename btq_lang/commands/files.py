@@ -6,10 +6,10 @@ import os.path
 import sys
 from collections.abc import Iterable, Iterator
 
-from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, find_project, load
+from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
 from btq_lang.project import Project
 from btq_lang.record import record
-from btq_lang.workspace import File, Workspace, is_btq
+from btq_lang.workspace import File, Workspace
 
 STDIN = "-"
 
@@ -72,9 +72,6 @@ class Files:
             return projects[folder]
 
         for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
-            if not is_btq(path):
-                problems.append(LoadProblem(path, "XML files can be included, but not be checked by themselves yet"))
-                continue
             if path in self.overlay:
                 members.setdefault(project_of(path).path or "", {})[path] = None
                 continue
@@ -114,6 +111,6 @@ class Files:
 
     def _file(self, path: str, text: str) -> File:
         known = self._known.get(path)
-        if known is None or known.text != text:
-            known = self._known[path] = File(path, text)
+        if known is None or known.source != text:
+            known = self._known[path] = file_of(path, text)
         return known

@@ -25,6 +25,9 @@ def run(options: Namespace) -> int:
     changed = count = refused = 0
     for group in groups:
         for path in group.given:
+            if group.workspace.files[path].origin is not None:
+                trouble.append(LoadProblem(path, "this is XML, which `btq format` leaves alone: see `btq import`"))
+                continue
             text = group.workspace.files[path].text
             done = format_text(text)
             from_stdin = path == files.stdin

@@ -59,6 +59,11 @@ _TABLE = (
     Rule("duplicate-attribute", _E, "two values for one attribute"),
     Rule("tree-root-count", _E, "a tree without exactly one node at its top"),
     Rule("useless-ignore", _W, "a comment `btq: ignore` that can silence nothing"),
+    # What is wrong with XML as XML.
+    Rule("xml-syntax", _E, "XML that the engine cannot read"),
+    Rule("xml-root", _E, "a document element that is not `root`"),
+    Rule("xml-not-well-formed", _W, "XML that the engine reads and other tools refuse"),
+    Rule("xml-ignored", _W, "text in XML where the engine looks for none"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
     Rule("not-an-engine-node", _W, "a word of the published language that is no node of the engine"),
@@ -115,6 +120,7 @@ _TABLE = (
     Rule("requirement-without-subject", _W, "a claim that is about no node"),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
+    Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine wants the node's own tag"),
     Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent goes on as if it had succeeded"),
     Rule("unreachable-child", _W, "a child that can never run"),
@@ -127,6 +133,6 @@ RULES = {rule.name: rule for rule in _TABLE}
 UNREADABLE = frozenset(
     (
         *("syntax-error", "inconsistent-indentation", "unclosed-bracket", "unclosed-string", "unclosed-comment"),
-        *("misplaced-comment", "unknown-unit"),
+        *("misplaced-comment", "unknown-unit", "xml-syntax", "xml-root"),
     )
 )

@@ -1,0 +1,65 @@
+"""What other XML tools refuse, though the engine reads it: lxml's word, and what to write instead.
+
+One invariant: lxml is given bytes and no leave: no network, no files, no entities, no huge documents.  It is imported
+only when there is XML to judge.
+"""
+
+from __future__ import annotations
+
+import re
+
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.text import LineIndex, Position, Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def not_well_formed(text: str) -> tuple[Diagnostic, ...]:
+    """One warning where lxml refuses a text, at the place where it stops; nothing where it reads it."""
+    from lxml import etree  # type: ignore[import-untyped]  # its stubs are a package of their own
+
+    parser = etree.XMLParser(
+        encoding="utf-8", resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_pis=True
+    )
+    try:
+        etree.fromstring(text.encode("utf-8", "replace"), parser)
+    except etree.XMLSyntaxError as error:
+        if error.code in (_TOO_DEEP_FOR_LXML, _TOO_LONG_FOR_LXML):  # limits of its own, which XML does not have
+            return ()
+        line, column = error.position
+        return (_refused(text, error.msg or "it is not well-formed", line, column),)
+    return ()
+
+
+def _refused(text: str, message: str, line: int, column: int) -> Diagnostic:
+    said = _POSITION.sub("", message).rstrip()
+    lines = LineIndex(text)
+    at = min(lines.offset(Position(max(line, 1) - 1, max(column, 1) - 1)), max(len(text) - 1, 0))
+    notes = tuple(note for pattern, note in _MENDING if pattern in said)
+    shown = f"the engine reads this, but no other XML tool does: {said}"
+    return Diagnostic("xml-not-well-formed", Span(at, min(at + 1, len(text))), shown, notes=notes)
+
+
+_POSITION: Final = re.compile(r", line \d+, column \d+.*\Z", re.DOTALL)
+_TOO_DEEP_FOR_LXML: Final = 1  # XML_ERR_INTERNAL_ERROR: how older versions of libxml2 say it
+_TOO_LONG_FOR_LXML: Final = 114  # XML_ERR_RESOURCE_LIMIT
+
+# What libxml2 says, and what to do about it.
+_MENDING: Final = (
+    ("Unescaped '<'", "write `<` in a value as `&lt;`"),
+    ("EntityRef", "write `&` as `&amp;`"),
+    ("Entity '", "only &lt; &gt; &amp; &quot; &apos; and numbers are known: write `&` as `&amp;`"),
+    ("xmlParseCharRef", "a character like this cannot stand in XML: remove it"),
+    ("PCDATA invalid Char", "a control character cannot stand in XML: remove it"),
+    ("invalid character", "a control character cannot stand in XML: remove it"),
+    ("Double hyphen", "write `- -` in comments"),
+    ("Unsupported version", 'write version="1.0"'),
+    ("attributes construct error", "put a blank between attributes"),
+    ("XML or text declaration", "the declaration stands first in a file, without a blank before it"),
+    ("XML declaration allowed", "the declaration stands first in a file, without a blank before it"),
+    ("Start tag expected", "remove what stands before the document element"),
+    ("Extra content", "one element holds all of the file: remove what stands behind it"),
+    ("StartTag: invalid element name", "put no blank between `<` and the name"),
+)

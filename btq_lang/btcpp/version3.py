@@ -1,0 +1,186 @@
+"""What version 3 of the engine said in other words, said as version 4 does.
+
+One invariant: every change is told.  The engine's own converter (convert_v3_to_v4.py) is not followed where it is
+wrong: it puts braces round the `name` of a SubTree, forgets the explicit form of SequenceStar, and does not know the
+ports of Parallel.
+
+Sources: BehaviorTree.CPP 3.8, xml_parsing.cpp; 4.x, migration guide and convert_v3_to_v4.py.
+"""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.document import Attribute, Element
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.record import record
+from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Final
+
+
+@record
+class Change:
+    """Something that is said otherwise than in the XML.
+
+    Attributes:
+        span: where it stands in the XML.
+    """
+
+    span: Span
+    message: str
+
+
+def is_version_3(root: Element) -> bool:
+    """Whether a file is meant for version 3: it does not say that it is for version 4, and says nothing new."""
+    format_ = root.get("BTCPP_format")
+    if format_ is not None:
+        return format_.strip() == "3"
+    return not any(_is_new(element) for element in _walk(root))
+
+
+def translated(root: Element, changes: list[Change]) -> None:
+    """Say it as version 4 does, in place."""
+    span = Span(root.start + 1, root.end - 1)
+    kept = [each for each in root.attributes if each.name != "BTCPP_format"]
+    if any(each.name == "BTCPP_format" for each in root.attributes):
+        changes.append(Change(span, 'BTCPP_format="3" is now "4"'))
+    else:
+        changes.append(Change(span, 'BTCPP_format="4" is added'))
+    root.attributes[:] = [Attribute("BTCPP_format", "4"), *kept]
+    for element in _walk(root):
+        _Translator(element, changes).translate()
+
+
+class _Translator:
+    """An element on its way."""
+
+    def __init__(self, element: Element, changes: list[Change]) -> None:
+        self.element: Final = element
+        self.changes: Final = changes
+
+    def translate(self) -> None:
+        element = self.element
+        is_explicit = element.tag in ("Action", "Condition", "Control", "Decorator")
+        identity = element.get("ID") if is_explicit else element.tag
+        if identity in ("SubTree", "SubTreePlus"):
+            if not any(child.tag.endswith("_port") for child in element.elements):
+                self.subtree(identity == "SubTreePlus")
+            else:
+                self.subtree_model()
+            return
+        known = KNOWN_WORDS.get(identity or "")
+        if known is not None and known.replacement is not None:
+            self.rename(is_explicit, known.replacement)
+            identity = known.replacement
+        elif known is not None and known.word in _GONE:
+            self.tell(f"{known.why}: kept as it is")
+        for index, attribute in enumerate(element.attributes):
+            port = OLD_PORTS.get((identity or "", attribute.name))
+            if port is not None:
+                self.tell(f"{attribute.name} of {identity} is now {port}", attribute)
+                element.attributes[index] = _renamed(attribute, port)
+
+    def rename(self, is_explicit: bool, new: str) -> None:
+        element = self.element
+        if is_explicit:
+            for index, attribute in enumerate(element.attributes):
+                if attribute.name == "ID":
+                    self.tell(f"{attribute.raw} is now {new}", attribute)
+                    element.attributes[index] = _valued(attribute, new)
+        else:
+            self.tell(f"{element.tag} is now {new}")
+            element.tag = new
+
+    def subtree(self, is_plus: bool) -> None:
+        """A SubTree maps keys to keys, a SubTreePlus keys to values as SubTree does now."""
+        element = self.element
+        if is_plus:
+            self.tell("SubTreePlus is now SubTree")
+            element.tag = "SubTree"
+        found: list[Attribute] = []
+        for attribute in element.attributes:
+            key, said = attribute.name, attribute.value
+            if key == "__shared_blackboard":
+                if _is_true(said):
+                    self.tell('__shared_blackboard is now _autoremap="true"', attribute)
+                    found.append(_valued(_renamed(attribute, "_autoremap"), "true"))
+                else:
+                    self.tell("__shared_blackboard is left out: version 4 shares nothing that is not said", attribute)
+            elif key == "__autoremap":
+                self.tell("__autoremap is now _autoremap", attribute)
+                found.append(_renamed(attribute, "_autoremap"))
+            elif is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
+                found.append(attribute)
+            elif said == "":
+                self.tell(f"`{key}` of a SubTree names no entry: kept as it is", attribute)
+                found.append(attribute)
+            else:
+                self.tell(f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute)
+                found.append(_valued(attribute, f"{{{attribute.raw}}}"))
+        element.attributes[:] = found
+
+    def subtree_model(self) -> None:
+        """Version 4 asks for every port of a SubTree's model; these two are no ports any more."""
+        element = self.element
+        for child in list(element.elements):
+            if child.get("name") in ("__shared_blackboard", "__autoremap"):
+                message = f"the port {child.get('name')} of a SubTree's model is left out: version 4 would ask for it"
+                self.changes.append(Change(Span(child.start, child.end), message))
+                element.children.remove(child)
+
+    def tell(self, message: str, attribute: Attribute | None = None) -> None:
+        """Report a change: of an attribute, or of the element's tag."""
+        if attribute is None:
+            start = self.element.start + 1
+            self.changes.append(Change(Span(start, start + len(self.element.tag)), message))
+        else:
+            end = attribute.value_start + len(attribute.raw) + 1
+            self.changes.append(Change(Span(attribute.start, end), message))
+
+
+def _is_new(element: Element) -> bool:
+    """Whether only version 4 understands an element: its node, or one of its attributes."""
+    if element.tag in _NEW_NODES:
+        return True
+    return any(each.name in _NEW_ATTRIBUTES for each in element.attributes)
+
+
+def _walk(root: Element) -> Iterator[Element]:
+    stack = [root]
+    while stack:
+        element = stack.pop()
+        yield element
+        stack += reversed(list(element.elements))
+
+
+def _is_true(said: str) -> bool:
+    return said.strip().lower() in ("true", "1")
+
+
+def _renamed(attribute: Attribute, name: str) -> Attribute:
+    return Attribute(name, attribute.raw, attribute.start, attribute.value_start)
+
+
+def _valued(attribute: Attribute, raw: str) -> Attribute:
+    return Attribute(attribute.name, raw, attribute.start, attribute.value_start)
+
+
+# Nodes of version 3 that version 4 has no word for.
+_GONE: Final = frozenset(
+    ("ManualSelector", "BlackboardCheckInt", "BlackboardCheckDouble", "BlackboardCheckString", "BlackboardCheckBool")
+)
+_OLD_NODES: Final = frozenset(
+    (
+        *("Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse"),
+        *("Switch2", "Switch3", "Switch4", "Switch5", "Switch6", "Inverter", "ForceSuccess", "ForceFailure"),
+        *("KeepRunningUntilFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "AlwaysSuccess"),
+        *("AlwaysFailure", "SetBlackboard", "SubTree"),
+    )
+)
+_NEW_NODES: Final = frozenset(BUILTINS) - _OLD_NODES
+_NEW_ATTRIBUTES: Final = frozenset(
+    kind.name for kind in RESERVED_ATTRIBUTES.values() if kind.is_script or kind.name == "_autoremap"
+)

@@ -1,0 +1,131 @@
+"""How what XML says is spelt in a .btq file: names, values, node kinds and comments.
+
+One invariant: what is spelt here reads as what it was made of, and a value written in XML with a line end or a tab as
+it stands keeps it, while one written as a reference (`&#10;`) becomes an escape (`\\n`): so the way back is the same.
+It knows words, and neither elements nor lines.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from btq_lang.btcpp.document import unescape
+from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
+from btq_lang.clauses import HEADS, VERBS
+from btq_lang.parser import ITEM_WORDS
+from btq_lang.syntax import is_name
+from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def value(raw: str) -> str:
+    """A Value: blackboard entries and numbers bare, everything else in quotes.
+
+    Args:
+        raw: as it stands between the quotes of the XML.
+    """
+    if _PLAIN(raw):
+        return f'"{raw}"'
+    if _BARE(raw):
+        return raw
+    if "&" in raw:
+        text = unescape(raw)
+        if _BARE(text):
+            return text
+    return string(raw)
+
+
+def string(raw: str) -> str:
+    """A STRING, from what stands between the quotes of the XML."""
+    if _PLAIN(raw):
+        return f'"{raw}"'
+    return _quoted("".join(_written(part) for part in _PARTS(raw)))
+
+
+def string_of(text: str) -> str:
+    """A STRING that says a text, its line ends and tabs as they are."""
+    return _quoted(_LINE_END.sub("\n", text).replace("\\", "\\\\"))
+
+
+@lru_cache(maxsize=4096)
+def name(raw: str) -> str:
+    """A Name that may stand for a label, an ID or a key."""
+    text = unescape(raw) if "&" in raw else raw
+    return text if is_name(text) and text not in NODE_CLAUSES else string(raw)
+
+
+@lru_cache(maxsize=4096)
+def kind(tag: str, category: bool = False, has_code: bool = True) -> str:
+    """The kind of a node: a symbol where it has one, and in quotes where the bare word would mean something else.
+
+    Args:
+        category: the word stands behind `Action`, `Control` …, where symbols do not.
+        has_code: the node has a script: without one, `Script` is a placeholder.
+    """
+    builtin = BUILTINS.get(tag)
+    if builtin is not None and builtin.symbols and not category:
+        return builtin.symbols[0]
+    changes = not is_name(tag) or xml_tag(tag) != tag or (tag in PLACEHOLDERS and not has_code)
+    return string(tag) if changes or tag in (NODE_CLAUSES if category else _MEANING) else tag
+
+
+@lru_cache(maxsize=512)
+def type_(raw: str) -> str:
+    """The type of a port."""
+    return raw if _TYPE(raw) and all(is_name(part) for part in raw.split("::")) else string(raw)
+
+
+def comment(text: str) -> str:
+    """A comment, from what stands between `<!--` and `-->` (language.md §6)."""
+    if "\n" not in text and "*/" in text:
+        return f"#{text.rstrip(_BLANKS)}"
+    if "\n" not in text:
+        said = text[:-1] if text[:1] == " " and text[-1:] == " " and len(text) > 1 else text
+        if said == said.rstrip(_BLANKS) and (said[:1] != " ") == (said is text):
+            return f"#{said}"
+    return f"/*{text.replace('*/', '* /')}*/"
+
+
+def is_kept(text: str) -> bool:
+    """Whether `comment` keeps all of a comment: `*/` and blanks at its end do not go together."""
+    written = comment(text)
+    if written.startswith("/*"):
+        return written[2:-2] == text
+    said = written[1:]
+    return (f"{said} " if said[:1] == " " else said) == text
+
+
+def _written(part: re.Match[str]) -> str:
+    """A piece of a value: a line end, a reference, a backslash, or plain text."""
+    piece = part[0]
+    first = piece[0]
+    if first in "\r\n":
+        return "\n"
+    if first == "\\":
+        return "\\\\"
+    if first == "&":
+        return _ESCAPED.get(said := unescape(piece), said)
+    return piece
+
+
+def _quoted(inside: str) -> str:
+    if '"' not in inside:
+        return f'"{inside}"'
+    if "'" not in inside:
+        return f"'{inside}'"
+    return '"' + inside.replace('"', '\\"') + '"'
+
+
+_MEANING: Final = frozenset((*CATEGORIES, *DIRECTIONS, *NODE_CLAUSES, *ITEM_WORDS, *HEADS, *VERBS))
+_BLANKS: Final = " \t"
+_ESCAPED: Final = {"\n": "\\n", "\r": "\\n", "\t": "\\t", "\\": "\\\\"}
+_NUMBER: Final = r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
+_BARE: Final = re.compile(rf"\{{[^{{}}\"'\r\n&]*\}}|{_NUMBER}").fullmatch
+_PLAIN: Final = re.compile(r"[^0-9\-{&\"\\\r\n][^&\"\\\r\n]*|").fullmatch
+_PARTS: Final = re.compile(r"\r\n|\n\r|[\r\n]|&#?\w+;|[&\\]|[^\r\n&\\]+").finditer
+_LINE_END: Final = re.compile(r"\r\n|\n|\r")
+_TYPE: Final = re.compile(r"\w+(?:::\w+)*").fullmatch

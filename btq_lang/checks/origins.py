@@ -1,0 +1,44 @@
+"""Diagnostics of files that are written in XML, shown on the XML.
+
+One invariant: what leaves here counts from the start of the file on the disk, whatever language that is written in, and
+no fix changes a file that is not written in this language.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.record import replace
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics of a file, with those of its XML as such, if it is XML."""
+    foreign = {other: file.origin for other, file in workspace.files.items() if file.origin is not None}
+    if not foreign:
+        return list(found)
+    origin = foreign.get(path)
+
+    def on_origin(span: Span, where: str | None) -> Span:
+        there = foreign.get(where or path)
+        return span if there is None else there.places.origin(span)
+
+    shown: list[Diagnostic] = []
+    for each in found:
+        if origin is not None and each.rule in _OF_SPELLING:
+            continue
+        related = tuple(
+            Related(Place(on_origin(near.place.span, near.place.path), near.place.path), near.message)
+            for near in each.related
+        )
+        fixes = tuple(
+            fix for fix in each.fixes if not any((change.place.path or path) in foreign for change in fix.changes)
+        )
+        shown.append(replace(each, span=on_origin(each.span, path), related=related, fixes=fixes))
+    return shown if origin is None else [*origin.diagnostics, *shown]
+
+
+# What can only be wrong with the spelling of a .btq file.
+_OF_SPELLING = frozenset(("string-over-items", "unknown-escape"))

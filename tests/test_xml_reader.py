@@ -1,0 +1,252 @@
+"""The reader of XML: what the engine reads is read, in a time and a space that grow with the file and no faster."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from lxml import etree
+
+from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text, escape, write
+from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
+from btq_lang.text import LINE_END, LineIndex
+
+STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
+
+
+def elements(document: Document) -> list[object]:
+    """Every element, comment and text that is not blank, in order, values as XML normalises them."""
+    found: list[object] = []
+    stack: list[Content] = [*reversed(document.contents)]
+    while stack:
+        content = stack.pop()
+        if isinstance(content, Element):
+            found.append((content.tag, [(each.name, normal(each)) for each in content.attributes]))
+            stack += reversed(content.children)
+        elif isinstance(content, Comment):
+            found.append(content.text)
+        elif content.text.strip():
+            found.append(("text", content.text))
+    return found
+
+
+def normal(attribute: Attribute) -> str:
+    """XML 1.0 §3.3.3: line ends and tabs as they stand are blanks, referred ones stay."""
+    return Attribute(attribute.name, LINE_END.sub(" ", attribute.raw).replace("\t", " ")).value
+
+
+def strict_elements(data: bytes) -> list[object]:
+    """The same by lxml."""
+    found: list[object] = []
+    root = etree.fromstring(data, STRICT)
+    around = [*root.itersiblings(preceding=True)][::-1], [*root.itersiblings()]
+    found += [comment.text for comment in around[0] if comment.tag is etree.Comment]
+    stack: list[tuple[str, object]] = [("node", root)]
+    while stack:
+        kind, node = stack.pop()
+        if kind == "text":
+            found.append(("text", node))
+            continue
+        if node.tag is etree.Comment:
+            found.append(node.text)
+            inner: list[tuple[str, object]] = []
+        else:
+            found.append((node.tag, list(node.items())))
+            inner = [("text", node.text)] if node.text and node.text.strip() else []
+            inner += [("node", child) for child in node]
+        behind = [("text", node.tail)] if node.tail and node.tail.strip() else []
+        stack += reversed(inner + behind)
+    return found + [comment.text for comment in around[1] if comment.tag is etree.Comment]
+
+
+def problems(done: Read, text: str) -> list[str]:
+    lines = LineIndex(text)
+    return [
+        f"{lines.position(each.span.start).line + 1}:{lines.position(each.span.start).column + 1} "
+        f"{each.effective_severity.value} {each.rule}: {each.message}"
+        for each in done.problems
+    ]
+
+
+def test_every_file_of_the_corpus_as_lxml_reads_it(shared: Path) -> None:
+    count = 0
+    for path in sorted((shared / "corpus" / "dev").iterdir()):
+        data = path.read_bytes()
+        done = read(data.decode())
+        assert done.problems == ()
+        assert done.document is not None
+        assert elements(done.document) == strict_elements(data), path.name
+        count += 1
+    assert count > 400
+
+
+def test_what_the_engine_reads_and_others_refuse_is_told_with_the_line(shared: Path) -> None:
+    for path in sorted((shared / "corpus" / "malformed" / "engine-accepts").iterdir()):
+        text = path.read_bytes().decode()
+        done = read(text)
+        assert done.document is not None, path.name
+        assert [each.rule for each in done.problems] == ["xml-not-well-formed"]
+        with pytest.raises(etree.XMLSyntaxError) as refused:
+            etree.fromstring(text.encode(), STRICT)
+        assert LineIndex(text).position(done.problems[0].span.start).line + 1 == refused.value.lineno
+
+
+def test_what_the_engine_refuses_is_an_error(shared: Path) -> None:
+    for path in sorted((shared / "corpus" / "malformed" / "engine-rejects").iterdir()):
+        done = read(path.read_text(encoding="utf-8"))
+        assert done.document is None
+        assert [each.rule for each in done.problems] == ["xml-syntax"]
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("", "1:1 error xml-syntax: this file is empty"),
+        ("  \n", "1:1 error xml-syntax: this file is empty"),
+        ("<!-- x -->", "1:1 error xml-syntax: there is no element in this file"),
+        ("nothing", "1:1 error xml-syntax: there is no element in this file"),
+        ("<a", "1:1 error xml-syntax: <a has no >"),
+        ("<a>", "1:1 error xml-syntax: <a> is never closed"),
+        ("<a><b></a>", "1:7 error xml-syntax: </a> stands where </b> is expected"),
+        ("<a>\n</b>", "2:1 error xml-syntax: </b> stands where </a> is expected"),
+        ("<a>x < y</a>", "1:6 error xml-syntax: `<` begins no tag"),
+        ("<a>1 < 2</a>", "1:6 error xml-syntax: `<` begins no tag"),
+        ("<a b/>", "1:4 error xml-syntax: the attribute `b` has no value in quotes"),
+        ("<a b=c/>", "1:4 error xml-syntax: the attribute `b` has no value in quotes"),
+        ('<a b="1/>', '1:6 error xml-syntax: the value of `b` has no closing "'),
+        ('<a b="1" 2="x"/>', "1:10 error xml-syntax: `2` where an attribute or the end of <a> is expected"),
+        ('<a b="1" c="2" b="3"/>', "1:16 error xml-syntax: the attribute `b` stands twice in <a>"),
+        ("<a><!-- x</a>", "1:4 error xml-syntax: this comment has no -->"),
+        ("<a><![CDATA[ x</a>", "1:4 error xml-syntax: this CDATA section has no ]]>"),
+        ("<!DOCTYPE a", "1:1 error xml-syntax: this declaration has no >"),
+        ("<?xml", "1:1 error xml-syntax: this declaration has no ?>"),
+        ("<a><?b ?></a>", "1:4 error xml-syntax: a processing instruction behind something else"),
+        ("<!-- x --><?xml version='1.0'?><a/>", "1:11 error xml-syntax: an XML declaration behind something else"),
+        ("<a/>text", "1:5 error xml-syntax: text behind the document element"),
+    ],
+)
+def test_what_no_reader_can_make_sense_of(text: str, problem: str) -> None:
+    done = read(text)
+    assert (done.document, problems(done, text)) == (None, [problem])
+
+
+@pytest.mark.parametrize(
+    ("text", "found", "note"),
+    [
+        ('<a b="<"/>', [("a", [("b", "<")])], "write `<` in a value as `&lt;`"),
+        ('<a b="& &c;"/>', [("a", [("b", "& &c;")])], "write `&` as `&amp;`"),
+        ("<a><!-- -- --></a>", [("a", []), " -- "], "write `- -` in comments"),
+        ('<a b="1"c="2"/>', [("a", [("b", "1"), ("c", "2")])], "put a blank between attributes"),
+        ("text<a/>", [("a", [])], "remove what stands before the document element"),
+        ("<a/><b/>", [("a", [])], "one element holds all of the file: remove what stands behind it"),
+        ("< a/>", [("a", [])], "put no blank between `<` and the name"),
+        ('<?xml version="2.0"?><a/>', [("a", [])], 'write version="1.0"'),
+    ],
+)
+def test_what_only_the_engine_reads(text: str, found: list[object], note: str) -> None:
+    done = read(text)
+    assert done.document is not None
+    assert elements(done.document) == found
+    assert [(each.rule, each.notes) for each in done.problems] == [("xml-not-well-formed", (note,))]
+
+
+def test_what_is_passed_over_and_what_is_kept() -> None:
+    text = '\ufeff<?xml version="1.0" encoding="latin1"?>\n<!DOCTYPE a SYSTEM "file:///etc/passwd">\n<a>t&#252;<![CDATA[<u>]]></a>\n'
+    done = read(text)
+    assert done.document is not None
+    assert elements(done.document) == [("a", []), ("text", "tü"), ("text", "<u>")]
+    assert done.problems == ()
+
+
+def test_entities_of_a_doctype_are_not_expanded() -> None:
+    lol = '<!DOCTYPE a [<!ENTITY x "ha"><!ENTITY y "&x;&x;">]><a b="&y;">&y;</a>'
+    done = read(lol)
+    assert done.document is not None
+    assert done.document.root.get("b") == "&y;"
+
+
+def test_where_things_stand() -> None:
+    text = "<a>\n  <b  x = \"1&lt;\"\n y='2'><!-- c --></b>\n  t\n</a>"
+    done = read(text)
+    assert done.document is not None
+    a = done.document.root
+    b, t = a.children
+    assert isinstance(b, Element)
+    assert isinstance(t, Text)
+    assert text[b.start : b.end] == "<b  x = \"1&lt;\"\n y='2'>"
+    assert text[b.start : b.close] == "<b  x = \"1&lt;\"\n y='2'><!-- c --></b>"
+    assert [text[each.start :].startswith(each.name) for each in b.attributes] == [True, True]
+    assert [text[each.value_start :].startswith(each.raw) for each in b.attributes] == [True, True]
+    assert text[a.start : a.close] == text
+    assert text[t.start :].startswith(t.text)
+
+
+def test_values_as_the_engine_reads_them() -> None:
+    done = read('<a b="&#10;&#x41;&quot;&apos;&unknown;&#xD800;&#0;&#x110000;\t\r\n"/>')
+    assert done.document is not None
+    assert done.document.root.get("b") == "\nA\"'&unknown;&#xD800;&#0;&#x110000;\t\r\n"
+
+
+def test_as_deep_as_the_engine_goes_and_no_deeper() -> None:
+    assert read("<a>" * MAX_DEPTH + "<a/>" + "</a>" * MAX_DEPTH).document is not None
+    done = read("<a>" * 100_000)
+    assert [each.rule for each in done.problems] == ["nested-too-deep"]
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        '<a b="' * 100_000,
+        "<a " + "b " * 200_000,
+        "<a" + " " * 400_000,
+        "<a " + 'b="1"' * 100_000,
+        "<a>" + "<!--" * 100_000,
+        "<a>" + "</" * 100_000,
+        "<a>" + "&#1" * 200_000 + "</a>",
+        "<a b='" + "&" * 400_000 + "'/>",
+        "<" * 400_000,
+        "<!" * 200_000,
+        "<a " + " ".join(f'b{number}="1"' for number in range(40_000)) + "/>",
+    ],
+    ids=range(11),
+)
+def test_hostile_files_are_read_once(hostile: str) -> None:
+    """Twice the size takes about twice the time: a tenth of a quadratic reader's would be minutes here."""
+    begin = time.process_time()
+    read(hostile)
+    assert time.process_time() - begin < 20
+
+
+names = st.from_regex(r"[A-Za-z_][A-Za-z0-9_.-]{0,5}", fullmatch=True)
+values = st.text(st.characters(exclude_categories=("Cs", "Cc"), include_characters="\n\t"), max_size=8)
+comments = values.filter(lambda text: "--" not in text and not text.endswith("-")).map(Comment)
+made = st.recursive(
+    st.builds(
+        Element,
+        names,
+        st.dictionaries(names, values, max_size=3).map(
+            lambda pairs: [Attribute(name, escape(value)) for name, value in pairs.items()]
+        ),
+    ),
+    lambda inner: st.builds(Element, names, st.just(()), st.lists(inner | comments, max_size=3)),
+    max_leaves=8,
+)
+
+
+@given(made)
+def test_what_is_written_is_read_again(element: Element) -> None:
+    text = write(Document([element]))
+    done = read(text)
+    assert done.problems == ()
+    assert done.document is not None
+    assert elements(done.document) == elements(Document([element])) == strict_elements(text.encode())
+
+
+@given(st.text(st.sampled_from("<>/=\"'!-?[]& abé\n"), max_size=40))
+def test_every_text_is_answered(text: str) -> None:
+    done = read(text)
+    assert (done.document is None) == any(each.effective_severity.value == "error" for each in done.problems)
+    assert all(0 <= each.span.start <= each.span.end <= len(text) for each in done.problems)
