@@ -71,6 +71,7 @@ class What(Enum):
     TAG = "tag"
     INCLUDE = "file"
     QUANTITY = "quantity"
+    UNIT = "unit"
     EDITION = "edition"
     RULE = "rule"
 
@@ -126,6 +127,7 @@ def _of_item(item: Item) -> Iterator[Mention]:
         yield from _requirement(item, None, attached=False)
     elif isinstance(item, Signal):
         yield from _word(What.SIGNAL, item.name, defines=True)
+        yield from _word(What.UNIT, item.unit)
         if item.source is not None:
             yield from _keys_of(item.source, None, None, root=True)
         yield from _quantities(item)
@@ -219,8 +221,8 @@ def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None) -> Iterator
         yield from _script(value, node, tree, pair)
     elif port is not None and port.content == "key" and value.kind in (NAME, STRING):
         yield from _word(What.KEY, value, node=node, owner=tree, pair=pair)
-    else:
-        yield from _quantities(value)
+    elif value.kind == QUANTITY:
+        yield from _word(What.QUANTITY, value, node=node, pair=pair)
 
 
 def _keys_of(
@@ -293,6 +295,7 @@ def _requirement(requirement: Requirement, node: Node | None, attached: bool) ->
     yield from _quality(requirement.quality, node)
     for parameter in requirement.parameters:
         yield from _word(What.PARAMETER, parameter.name, defines=True, owner=requirement)
+        yield from _word(What.UNIT, parameter.unit)
         yield from _values(parameter.default, requirement)
     for clause in requirement.clauses:
         yield from _values(clause, requirement)

@@ -99,6 +99,11 @@ def nearest_units(text: str) -> tuple[str, ...]:
     return tuple(answers)
 
 
+def symbols() -> tuple[Unit, ...]:
+    """Every unit of the table in its canonical spelling."""
+    return tuple(Unit(*entry) for word, entry in _TABLE.items() if entry[0] == word)
+
+
 def to_si(value: float, unit: Unit) -> float:
     """A value in the unit's SI form: `30 min` is 1800, `25 degC` is 298.15, `98 %` is 0.98."""
     return _tidy(value * unit.factor + unit.offset)

@@ -296,6 +296,22 @@ class Workspace:
         """The files that another file includes."""
         return frozenset(target for path in self.files for target in self._targets(path) if target != path)
 
+    @cached_property
+    def missions(self) -> Mapping[str, str]:
+        """For each file a name for all that it is linked with by includes, either way, over however many files."""
+        found = {path: path for path in self.files}
+
+        def first(path: str) -> str:
+            while found[path] != path:
+                path = found[path]
+            return path
+
+        for path in self.files:
+            for target in self._targets(path):
+                one, other = sorted((first(path), first(target)))
+                found[other] = one
+        return {path: first(path) for path in self.files}
+
     # ---- definitions and references ----
 
     def defined_in(self, path: str) -> tuple[Definition, ...]:

@@ -82,7 +82,7 @@ def entry_at(workspace: Workspace, path: str, offset: int) -> Entry | None:
 def subject(workspace: Workspace, found: Found) -> Subject:
     """What a mention means."""
     path, entry, mention = found.path, found.entry, found.mention
-    if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.ATTRIBUTE) or entry is None:
+    if mention.what in (What.RULE, What.EDITION, What.TAG, What.QUANTITY, What.UNIT, What.ATTRIBUTE) or entry is None:
         return Subject(mention.what, mention.name)
     if mention.what is What.INCLUDE:
         return Subject(What.INCLUDE, workspace.included(path, mention.name) or mention.name)
@@ -266,9 +266,10 @@ def _called(node: Node) -> Word | None:
 
 
 def _blackboard(workspace: Workspace, path: str, entry: Entry, root: bool) -> str:
-    """The blackboard that a key is of: each tree has one, and the main tree's is the root's."""
+    """The blackboard that a key is of: each tree has one, and the main tree's is the root's; files that include each
+    other run together."""
     if root or is_main(workspace, path, entry):
-        return ROOT_BLACKBOARD
+        return f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
     return f"{path}:{entry.start}"
 
 

@@ -115,4 +115,4 @@ def uses_of(workspace: Workspace, wanted: Subject) -> tuple[Found, ...]:
     return tuple(found for found in everywhere(workspace, wanted) if not found.mention.defines)
 
 
-_WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.ATTRIBUTE, What.EDITION, What.RULE))
+_WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.UNIT, What.ATTRIBUTE, What.EDITION, What.RULE))

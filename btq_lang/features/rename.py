@@ -186,6 +186,7 @@ def _after(offset: int, edits: tuple[Edit, ...]) -> int:
 _FIXED = {
     What.ATTRIBUTE: "an attribute of the engine",
     What.QUANTITY: "a quantity",
+    What.UNIT: "a unit",
     What.EDITION: "an edition",
     What.RULE: "a rule",
     What.INCLUDE: "a file is renamed in its folder; it",

@@ -7,14 +7,24 @@ functions call a feature; each knows which markers it reads and refuses a fixtur
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from itertools import pairwise
+from textwrap import dedent
 
 from check_asserts import split_files
 
+from btq_lang.features.completion import Completion, complete
+from btq_lang.features.documentation import documentation
+from btq_lang.features.hover import hover
 from btq_lang.features.navigation import find_references, goto_definition, highlights
+from btq_lang.features.outline import Outline, document_symbols, workspace_symbols
+from btq_lang.features.proposals import Proposal
 from btq_lang.features.rename import Refusal, prepare_rename, rename
+from btq_lang.features.semantic_tokens import TYPES, delta, encode, semantic_tokens
+from btq_lang.features.signature import signature_help
+from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.project import Project
-from btq_lang.text import Span, apply_edits
+from btq_lang.text import LineIndex, Span, apply_edits
 from btq_lang.workspace import Workspace
 
 _TAG = re.compile(r"\$0|</?([a-z]+)>")
@@ -127,8 +137,199 @@ def check_no_rename(text: str, reason: str, name: str | None = None) -> None:
     assert result.reason == reason
 
 
-def answers(feature: Callable[[Workspace, str, int], object], text: str) -> None:
-    """A feature answers at every offset of a text, without an exception."""
+def check_outline(text: str, *lines: str) -> None:
+    """The outline of the first file: `kind name | detail`, indented as it is nested."""
+    fixture = Fixture(text, cursor=False)
+    path = next(iter(fixture.files))
+
+    def show(outlines: Iterable[Outline], level: int, inside: Span) -> Iterable[str]:
+        for one in outlines:
+            assert inside.start <= one.span.start <= one.name_span.start
+            assert one.name_span.end <= one.span.end <= inside.end
+            yield f"{'  ' * level}{one.kind} {one.name}{f' | {one.detail}' if one.detail else ''}"
+            yield from show(one.children, level + 1, one.span)
+
+    outline = document_symbols(fixture.workspace, path)
+    assert list(show(outline, 0, Span(0, len(fixture.files[path])))) == list(lines)
+
+
+def check_search(text: str, query: str, *found: str) -> None:
+    """Searching the project for a name finds these: `kind name (container)`, best first."""
+    fixture = Fixture(text, cursor=False)
+    matches = workspace_symbols(fixture.workspace, query)
+    for match in matches:
+        assert match.name in fixture.files[match.path][match.span.start : match.span.end]
+    assert [f"{match.kind} {match.name} ({match.container})" for match in matches] == list(found)
+
+
+def check_folds(text: str) -> None:
+    """`<block>`, `<brackets>`, `<comment>` and `<includes>` are all that folds."""
+    kinds = ("block", "brackets", "comment", "includes")
+    fixture = Fixture(text, *kinds, cursor=False)
+    folds = folding_ranges(fixture.workspace, "main.btq")
+    for kind in kinds:
+        fixture.expect(kind, (("main.btq", fold.span) for fold in folds if fold.kind == kind))
+
+
+def check_selection(text: str, *steps: str) -> None:
+    """What a selection at the cursor grows to, step by step."""
+    fixture = Fixture(text)
+    spans = selection_range(*fixture.at)
+    content = fixture.files[fixture.at[1]]
+    for inner, outer in pairwise(spans):
+        assert outer.start <= inner.start <= inner.end <= outer.end
+        assert inner != outer
+    assert [content[slice(*span)] for span in spans] == [*steps, content]
+
+
+def check_links(text: str, *targets: str | None) -> None:
+    """`<link>` are the links of the first file, and these their targets."""
+    fixture = Fixture(text, "link", cursor=False)
+    path = next(iter(fixture.files))
+    links = document_links(fixture.workspace, path)
+    fixture.expect("link", ((path, link.span) for link in links))
+    assert [link.target for link in links] == list(targets)
+
+
+def check_tokens(text: str, *expected: str) -> None:
+    """The coloured words of the first file: `type.modifier word`; a part of the file has the same, and so has the
+    encoded form in every encoding."""
+    fixture = Fixture(text, cursor=False)
+    path = next(iter(fixture.files))
+    content = fixture.files[path]
+    tokens = semantic_tokens(fixture.workspace, path)
+    shown = [f"{'.'.join((one.type, *one.modifiers))} {content[slice(*one.span)]}" for one in tokens]
+    assert shown == list(expected)
+    end = 0
+    for one in tokens:
+        assert end <= one.span.start < one.span.end
+        end = one.span.end
+        assert one in semantic_tokens(fixture.workspace, path, one.span)
+    lines = LineIndex(content)
+    for encoding in ("utf-8", "utf-16", "code-points"):
+        line = column = 0
+        data = encode(tokens, content, encoding)
+        for one, at in zip(tokens, range(0, len(data), 5), strict=True):
+            down, right, length, kind, _ = data[at : at + 5]
+            line, column = line + down, right if down else column + right
+            assert (line, column) == lines.position(one.span.start, encoding)
+            assert (line, column + length) == lines.position(one.span.end, encoding)
+            assert TYPES[kind] == one.type
+
+
+def check_delta(before: list[int], after: list[int], expected: tuple[int, int, list[int]] | None) -> None:
+    """This is what makes the second list of integers of the first."""
+    made = delta(before, after)
+    if made is not None:
+        start, count, data = made
+        assert [*before[:start], *data, *before[start + count :]] == after
+    assert made == expected
+
+
+def check_hover(text: str, markdown: str | None) -> None:
+    """What is shown at the cursor; `<hover>` is the word that it is said of."""
+    fixture = Fixture(text, "hover")
+    found = hover(*fixture.at)
+    fixture.expect("hover", ((fixture.at[1], found.span) for found in (found,) if found is not None))
+    assert (found.markdown if found else None) == (dedent(markdown).strip() if markdown else None)
+
+
+def check_signature(text: str, label: str | None) -> None:
+    """The signature at the cursor, its active parameter in `«…»`."""
+    found = signature_help(*Fixture(text).at)
+    if found is None:
+        assert label is None
+        return
+    shown = found.label
+    for parameter in found.parameters:
+        assert parameter.label in shown
+    if found.active is not None:
+        active = found.parameters[found.active].label
+        shown = shown.replace(active, f"«{active}»")
+    assert shown == label
+
+
+def check_completion(text: str, *labels: str) -> None:
+    """All that is proposed at the cursor, in this order."""
+    assert [one.label for one in _complete(Fixture(text)).proposals] == list(labels)
+
+
+def check_offers(text: str, *labels: str, absent: Iterable[str] = ()) -> None:
+    """These are proposed at the cursor, in this order, perhaps among others; those that are absent are not."""
+    found = [one.label for one in _complete(Fixture(text)).proposals]
+    assert [label for label in found if label in labels] == list(labels)
+    assert not set(found) & set(absent)
+
+
+def check_accept(text: str, label: str, after: str, *, plain: str | None = None) -> None:
+    """Accepting a proposal makes this of the file, with `$1` for the places to fill in; `plain`: where an editor has
+    no such places."""
+    fixture = Fixture(text)
+    found = _complete(fixture)
+    _, path, _ = fixture.at
+    content = fixture.files[path]
+    one = next(one for one in found.proposals if one.label == label)
+
+    def accepted(inserted: str) -> str:
+        return content[: found.span.start] + inserted + content[found.span.end :]
+
+    assert accepted(one.snippet or one.insert) == after
+    if plain is not None:
+        assert accepted(one.insert) == plain
+
+
+def check_documentation(text: str, label: str, markdown: str) -> None:
+    """What is shown beside a proposal."""
+    fixture = Fixture(text)
+    one = next(one for one in _complete(fixture).proposals if one.label == label)
+    assert _documented(fixture, one) == dedent(markdown).strip()
+
+
+def _complete(fixture: Fixture) -> Completion:
+    found = complete(*fixture.at)
+    offset = fixture.at[2]
+    assert found.span.start <= offset <= found.span.end
+    assert len({one.label for one in found.proposals}) == len(found.proposals)
+    for one in found.proposals:
+        assert one.insert
+        assert one.name == "" or _documented(fixture, one)
+    return found
+
+
+def _documented(fixture: Fixture, one: Proposal) -> str | None:
+    return documentation(fixture.workspace, fixture.at[1], one.kind, one.name)
+
+
+def answer_everything(text: str, offset: int) -> None:
+    """Every feature answers, and what it answers lies in the text."""
     workspace = Workspace.of({"main.btq": text})
-    for offset in range(len(text) + 1):
-        feature(workspace, "main.btq", offset)
+    at = workspace, "main.btq", offset
+    whole = Span(0, len(text))
+    for target in goto_definition(*at):
+        assert _lies_in(target.name, whole)
+    for _, span in find_references(*at):
+        assert _lies_in(span, whole)
+    highlights(*at)
+    renamed = rename(*at, "another")
+    if not isinstance(renamed, Refusal):
+        for edits in renamed.edits.values():
+            apply_edits(text, edits)
+    found = hover(*at)
+    assert found is None or _lies_in(found.span, whole)
+    signature_help(*at)
+    completed = complete(*at)
+    assert completed.span.start <= offset <= completed.span.end <= len(text)
+    for one in completed.proposals[:3]:
+        documentation(workspace, "main.btq", one.kind, one.name)
+    assert selection_range(*at)[-1] == whole
+    for fold in folding_ranges(workspace, "main.btq"):
+        assert _lies_in(fold.span, whole)
+    for link in document_links(workspace, "main.btq"):
+        assert _lies_in(link.span, whole)
+    for outline in document_symbols(workspace, "main.btq"):
+        assert _lies_in(outline.span, whole)
+    encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
+
+
+def _lies_in(span: Span, whole: Span) -> bool:
+    return whole.start <= span.start <= span.end <= whole.end

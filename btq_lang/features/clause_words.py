@@ -1,0 +1,144 @@
+"""What may follow in the clauses of a requirement: the grammar of language.md §3, read backwards from the cursor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btq_lang.clauses import ACTIONS, COMPARISONS, EXPERIMENTS, HAPPENINGS, METHODS
+from btq_lang.record import record
+from btq_lang.tokens import BRACED, CLOSE, NAME, NUMBER, QUANTITY, STRING, Token
+
+
+@record
+class Expected:
+    """What may stand at a place.
+
+    Attributes:
+        words: words of the grammar, or several of them that go together.
+        condition: a condition begins: contexts, signals, `not` …
+        value: a value of a bound: parameters and signals.
+        signal: the name of a signal.
+        node: a path to a node.
+        clause: another clause may begin.
+    """
+
+    words: tuple[str, ...] = ()
+    condition: bool = False
+    value: bool = False
+    signal: bool = False
+    node: bool = False
+    clause: bool = False
+
+
+def expected(words: Sequence[Token]) -> Expected:
+    """What may follow these words of a requirement or a condition."""
+    if not words:
+        return Expected(clause=True)
+    last = words[-1]
+    before = words[-2].text if len(words) > 1 else ""
+    earlier = [word.text for word in words]
+    text = last.text if last.kind not in (STRING, BRACED) else ""
+    if text == "of" and _begins_last(earlier, ("uses", "sum", "in", "with")) == "uses":
+        return Expected(signal=True)
+    if text == "of":
+        return Expected(node=True) if before == "sum" else Expected(sorted_words(EXPERIMENTS))
+    if text == "and" and _begins_last(earlier, ("between", *_CONDITIONS)) == "between":
+        return Expected(value=True)
+    if text in _AFTER:
+        return _AFTER[text]
+    if text in COMPARISONS or text in ("+", "-", "*", "/"):
+        return Expected(condition=True)
+    if last.kind in (NUMBER, QUANTITY):
+        return Expected(_behind_value(earlier), clause=True)
+    if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
+        if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
+            return Expected(sorted_words(HAPPENINGS))
+        if text in HAPPENINGS and _begins_last(earlier, ("from", "to", *_CLAUSES)) == "from":
+            return Expected(("to",))
+        return Expected(_behind_value(earlier), clause=True)
+    return Expected(clause=True)
+
+
+def sorted_words(words: Sequence[str] | frozenset[str]) -> tuple[str, ...]:
+    return tuple(sorted(words))
+
+
+def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
+    """Which of some words stands last."""
+    return next((word for word in reversed(words) if word in heads), "")
+
+
+def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
+    head = _begins_last(words, _CLAUSES)
+    if head == "uses" and "of" not in words[_last_index(words, head) :]:
+        return ("of",)
+    if head in ("tries", "runs") and "per" not in words[_last_index(words, head) :]:
+        return ("per", "if")
+    if head in ("starts", "ends") and "after" not in words[_last_index(words, head) :]:
+        return ("after", "if")
+    if head in ("in", "with"):
+        return ("of runs", "of activations")
+    if head == "over":
+        return sorted_words(EXPERIMENTS)
+    if head in _CONDITIONS:
+        return ("and", "or", "<=", ">=", "<", ">", "==", "!=")
+    if "if" in words:
+        return ("and", "or", "else")
+    return ("if",) if head in ("takes", "succeeds", "goal") else ()
+
+
+def _last_index(words: Sequence[str], word: str) -> int:
+    return len(words) - 1 - list(reversed(words)).index(word)
+
+
+_BOUNDS = ("at most", "at least", "less than", "more than", "between")
+_CONDITIONS = ("needs", "keeps", "never", "leaves", "while", "when", "context")
+_EVENTS = ("follows", "after", "from", "to")
+_CLAUSES = (
+    *("takes", "succeeds", "uses", "tries", "runs", "starts", "ends", "follows", "in", "with", "confidence", "over"),
+    *("on", "goal", "because", "verified", "from", *_CONDITIONS),
+)
+_CONDITION = Expected(condition=True)
+_VALUE = Expected(value=True)
+_EVENT = Expected(("mission", "when"), node=True)
+_AFTER = {
+    "takes": Expected(_BOUNDS),
+    "uses": Expected(_BOUNDS),
+    "tries": Expected(_BOUNDS),
+    "runs": Expected(("every", *_BOUNDS)),
+    "succeeds": Expected(("within",), clause=True),
+    "starts": Expected(("within",)),
+    "ends": Expected(("within",)),
+    "within": _VALUE,
+    "goal": _VALUE,
+    "at": Expected(("most", "least")),
+    "less": Expected(("than",)),
+    "more": Expected(("than",)),
+    "most": _VALUE,
+    "least": _VALUE,
+    "than": _VALUE,
+    "between": _VALUE,
+    "else": _VALUE,
+    **dict.fromkeys(("needs", "keeps", "never", "leaves", "while", "when", "if", "and", "or", "not"), _CONDITION),
+    "on": Expected(("violation",)),
+    "violation": Expected(ACTIONS),
+    "verified": Expected(("by",)),
+    "by": Expected(METHODS),
+    "in": Expected(("at least",)),
+    "with": Expected(("probability >=",)),
+    "probability": Expected((">=", ">")),
+    "over": Expected(("last",)),
+    "sum": Expected(("of",)),
+    "after": _EVENT,
+    "follows": _EVENT,
+    "from": _EVENT,
+    "to": _EVENT,
+    "mission": Expected(("takes", "succeeds", "uses", "leaves", "keeps", "never", *sorted_words(HAPPENINGS))),
+    "per": Expected(node=True),
+    "every": Expected(value=True, node=True),
+    "node": Expected(node=True),
+    "confidence": Expected(("95 %", "99 %")),
+    "because": Expected(('""',)),
+    ",": Expected(value=True, node=True),
+    "/": Expected(node=True, condition=True),
+}

@@ -1,0 +1,315 @@
+"""Completion: what may stand where somebody types, best first; its documentation is made when it is asked for.
+
+One invariant: what is proposed depends on the place alone, never on the letters typed so far: an editor filters them,
+each in its own way.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.features import proposals as offer
+from btq_lang.features.clause_words import Expected, expected
+from btq_lang.features.meaning import entry_at
+from btq_lang.features.place import Place, place_at
+from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.features.proposals import Proposal
+from btq_lang.record import record, replace
+from btq_lang.text import Span
+from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.workspace import Workspace
+
+
+@record
+class Completion:
+    """What may stand at a place, best first.  span: what each proposal replaces, where it does not say it itself."""
+
+    span: Span
+    proposals: tuple[Proposal, ...]
+
+
+def complete(workspace: Workspace, path: str, offset: int) -> Completion:
+    """What may stand where an offset is."""
+    place = place_at(workspace, path, offset)
+    text = workspace.files[path].text
+    special = _in_comment(place, offset) or _in_braces(workspace, path, place, text, offset)
+    special = special or _in_string(workspace, path, place, text, offset) or _unit(workspace, path, place, text, offset)
+    if special is not None:
+        return special
+    found = _unique(_in_code(workspace, path, place, offset))
+    if text[place.span.end : place.span.end + 2].lstrip(" ").startswith("("):  # the brackets are there already
+        found = tuple(replace(one, snippet=None) for one in found)
+    return Completion(place.span, found)
+
+
+def _unique(found: Iterable[Proposal]) -> tuple[Proposal, ...]:
+    return tuple({one.label: one for one in reversed(tuple(found))}.values())[::-1]
+
+
+# ---- inside comments, braces, strings, and behind numbers ----
+
+
+def _in_comment(place: Place, offset: int) -> Completion | None:
+    if place.inside != "comment":
+        return None
+    listed = re.search(r"btq:\s*ignore\s*\[(?:[^\]]*,)?\s*([\w-]*)$", place.text)
+    if listed:
+        return Completion(Span(offset - len(listed[1]), offset), tuple(offer.rules()))
+    begun = re.search(r"(btq:?\s*\w*)$", place.text)
+    ignore = Proposal("btq: ignore[…]", "keyword", "silence a rule on this line", "btq: ignore[]", "btq: ignore[$0]")
+    return Completion(Span(offset - len(begun[1]) if begun else offset, offset), (ignore,) if begun else ())
+
+
+def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+    """`{` and what may follow: entries of the blackboard; `{@` those of the root's."""
+    line = text[_line_start(text, offset) : offset]
+    begun = re.search(r"\{(@?)([^{}\"'\s]*)$", line)
+    if begun is None or place.inside == "comment":
+        return None
+    rest = re.match(r"[\w./-]*(\s*\})?", text[offset:])
+    end = offset + (len(rest[0]) - len(rest[1] or "") if rest else 0)
+    closing = "" if rest and rest[1] else "}"
+    entry = entry_at(workspace, path, offset)
+    keys = [] if entry is None else list(offer.keys(workspace, path, entry, bool(begun[1])))
+    if not begun[1] and place.node is not None:
+        keys.insert(0, Proposal("=", "key", "the entry that is called as the port", "="))
+    found = tuple(replace(one, insert=f"{one.insert}{closing}") for one in keys)
+    return Completion(Span(offset - len(begun[2]), end), found)
+
+
+def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+    if place.inside != "string":
+        return None
+    if place.words and place.words[0].text == "include":
+        return Completion(Span(offset - len(place.text), offset), tuple(offer.includes(workspace, path, quoted=False)))
+    key = place.key
+    entry = entry_at(workspace, path, offset)
+    if key is not None and entry is not None and offer.is_script(workspace, path, place.node, key):
+        word = re.search(r"\w*$", place.text)
+        begin = offset - len(word[0]) if word else offset
+        return Completion(Span(begin, offset), tuple(offer.keys(workspace, path, entry, False)))
+    whole = Span(offset - len(place.text) - 1, offset)
+    if key in ("ID", "Quality", "main_tree_to_execute") or place.last in ("satisfies", "satisfices", ","):
+        found = _unique(_in_code(workspace, path, place, offset))
+        end = re.match(r"[^\"'\r\n]*[\"']?", text[offset:])
+        quoted = (replace(one, insert=offer.quoted(one.insert), snippet=None, filter=f'"{one.label}') for one in found)
+        return Completion(Span(whole.start, offset + (len(end[0]) if end else 0)), tuple(quoted))
+    return Completion(whole, ())
+
+
+def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
+    """Behind a number: units; those that a port or a verb asks for first."""
+    line = text[_line_start(text, offset) : offset]
+    begun = re.search(r"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)([^\W\d_]*|%)$", line)
+    if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
+        if begun is None or place.inside != "code" or not place.words:
+            return None
+        if place.words[0].text not in ("QualityReq", "signal", "context", "apply"):
+            return None
+    in_brackets = place.depth > 0 and place.node is not None
+    if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
+        return None
+    wanted = None
+    if in_brackets and place.node is not None:
+        before = [word.text for word in place.group if word.kind in (NAME, STRING, OPERATOR)]
+        key = (
+            before[before.index("=") - 1]
+            if "=" in before[:-1]
+            else place.key or (before[-2] if len(before) > 1 else "")
+        )
+        wanted = offer.port_unit(workspace, path, place.node, key)
+        if begun[1] and wanted is None:
+            return None  # `num_attempts = 6 |`: the next attribute
+    elif {"takes", "within", "every"} & {word.text for word in place.words}:
+        wanted = "s"
+    separator = "" if begun[1] else " "
+    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted))
+    behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
+    return Completion(Span(offset - len(begun[2]), offset), (*found, *behind))
+
+
+def _line_start(text: str, offset: int) -> int:
+    return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
+
+
+# ---- in code ----
+
+
+def _in_code(workspace: Workspace, path: str, place: Place, offset: int) -> Iterator[Proposal]:
+    words = place.words
+    if not words:
+        yield from _line_heads(workspace, path, place)
+        return
+    first = words[0].text if words[0].kind == NAME else ""
+    if place.block in ("items", "models"):
+        yield from _in_item(workspace, path, place, first)
+    elif place.block == "ports":
+        yield from offer.port_words(place)
+    elif place.block == "clauses" or _attached_requirement(place):
+        yield from _in_requirement(workspace, path, place)
+    elif place.block == "tree" and first in ("input", "output", "inout"):
+        yield from offer.port_words(place)
+    elif place.block in ("tree", "node"):
+        yield from _in_node(workspace, path, place, first)
+
+
+def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+    """What a line may begin with."""
+    if place.block == "items":
+        yield from offer.item_words(workspace, path)
+    elif place.block == "models":
+        yield from offer.category_words()
+    elif place.block == "ports":
+        yield from offer.port_heads()
+    elif place.block == "clauses":
+        yield from _clause_words(workspace, path, Expected(clause=True), place)
+    elif place.block in ("tree", "node"):
+        yield from offer.nodes(workspace, path)
+        yield from offer.node_clause_words()
+        if place.block == "tree":
+            yield from offer.port_heads()
+
+
+def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
+    last = place.last
+    if first == "include":
+        yield from offer.includes(workspace, path, quoted=True) if len(place.words) == 1 else ()
+    elif first == "qualities":
+        yield from offer.words(EDITIONS, "enum")
+    elif first == "quality":
+        yield from offer.qualities(workspace, path) if last in (":", ".") else ()
+    elif first == "signal":
+        yield from _in_signal(place, last)
+    elif first == "context":
+        colon = last == ":"
+        yield from _clause_words(workspace, path, Expected(condition=True) if colon else expected(place.group), place)
+    elif first == "Root":
+        yield from offer.trees(workspace, path)
+    elif first == "QualityReq":
+        yield from _in_requirement(workspace, path, place)
+    elif first == "apply":
+        yield from _in_apply(workspace, path, place)
+    elif first in CATEGORIES and len(place.words) == 1:
+        yield from offer.unknown_nodes(workspace, path)
+
+
+def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
+    if last == ":":
+        yield from offer.units(None)
+        yield from offer.words(("bool", "text", "1"), "unit")
+    elif len(place.words) >= 4:
+        given = {word.text for word in place.words}
+        wanted = (word for word in ("from {}", "level", "counter", "gauge", "fresh within", "initially"))
+        yield from offer.words((word for word in wanted if word.split()[0] not in given), "keyword")
+
+
+def _in_apply(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+    words = [word.text for word in place.words]
+    if place.depth:
+        yield from offer.parameters(workspace, path, place.callee) if place.last != "=" else ()
+    elif "to" not in words:
+        if place.last in ("apply", ","):
+            yield from offer.requirements(workspace, path)
+        else:
+            yield from offer.words(("to",), "keyword")
+    elif place.last == "tagged":
+        yield from offer.tags(workspace, path)
+    elif place.last in ("to", "except", ",", "every", "under", "/"):
+        yield from offer.words(("every", "every node tagged"), "keyword") if place.last in ("to", "except", ",") else ()
+        yield from offer.node_names(workspace, path)
+    elif "except" not in words:
+        yield from offer.words(("under", "except"), "keyword")
+
+
+def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+    """Behind `QualityReq`, on its line, in brackets, or in its block."""
+    words = place.group
+    at = next((index for index in reversed(range(len(words))) if words[index].text == "QualityReq"), None)
+    if at is not None:
+        behind = [word.text for word in words[at + 1 :]]
+        if not behind:
+            yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
+            return
+        if behind[-1] in (":", ".") and "takes" not in behind:
+            yield from offer.qualities(workspace, path)
+            return
+        if behind == ["ID", "="]:
+            yield from offer.requirements(workspace, path)
+            return
+        if len(behind) == 3 and behind[0] == "ID":
+            yield from offer.words(('description = ""',), "keyword")
+            return
+    yield from _clause_words(workspace, path, expected(words), place)
+
+
+def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Place) -> Iterator[Proposal]:
+    """What the grammar of clauses expects."""
+    yield from offer.words(wanted.words, "keyword")
+    if wanted.condition or wanted.value:
+        yield from offer.values(workspace, path, entry_parameters=place.words + place.parent)
+    if wanted.condition:
+        yield from offer.words(("not", "node", "max()", "min()", "mean()", "p95()"), "keyword")
+    if wanted.signal:
+        yield from offer.signals(workspace, path)
+    if wanted.node:
+        yield from offer.node_names(workspace, path)
+    if wanted.clause:
+        yield from offer.clauses(tuple(word.text for word in place.words))
+        yield from offer.node_names(workspace, path)
+
+
+def _attached_requirement(place: Place) -> bool:
+    return any(word.kind == NAME and word.text == "QualityReq" for word in place.group)
+
+
+def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
+    if place.depth == 0 and len(place.words) == 1 and first in CATEGORIES:
+        yield from offer.of_category(workspace, path, first)
+        return
+    list_word = _open_list(place)
+    if list_word is not None:
+        yield from _in_list(workspace, path, place, list_word)
+        return
+    node = place.node
+    if place.depth == 0:
+        yield from offer.node_clause_words()
+        return
+    if node is None:
+        yield from offer.parameters(workspace, path, place.callee) if place.last != "=" else ()
+        return
+    ports = ports_of_tree(workspace, path, node.name) if node.is_subtree else ()
+    ports = ports or ports_of_kind(workspace, path, node.name, node.quoted)
+    key = place.key
+    if key is None:
+        yield from offer.ports(ports, place.given, node)
+        yield from offer.attributes(place.given, node)
+        yield from offer.node_clause_words()
+    elif key == "ID" and node.is_subtree:
+        yield from offer.trees(workspace, path)
+    else:
+        yield from offer.port_values(next((port for port in ports if port.name == key), None))
+
+
+def _open_list(place: Place) -> str | None:
+    """The list of qualities, requirements or tags that goes on here: behind its word, a comma, a `.` or `Quality =`."""
+    words = place.group
+    if not words or words[-1].kind == CLOSE:
+        return None
+    last = words[-1].text
+    if last not in (",", ".", "<", "=", *NODE_CLAUSES):
+        return None
+    if last == "=" and (len(words) < 2 or words[-2].text != "Quality"):
+        return None
+    return next((word.text for word in reversed(words) if word.kind == NAME and word.text in NODE_CLAUSES), None)
+
+
+def _in_list(workspace: Workspace, path: str, place: Place, word: str) -> Iterator[Proposal]:
+    if word == "satisfices":
+        yield from offer.qualities(workspace, path)
+    elif word == "satisfies":
+        yield from offer.requirements(workspace, path)
+        yield from offer.words(("QualityReq",), "keyword")
+    else:
+        yield from offer.tags(workspace, path)

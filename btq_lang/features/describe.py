@@ -1,0 +1,229 @@
+"""What things are, in Markdown: for hover, and for the documentation beside a completion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
+from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
+from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, Subject, edition, everywhere, home_of
+from btq_lang.features.outline import clauses_detail
+from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.mentions import What
+from btq_lang.quantities import parse_quantity
+from btq_lang.rules import RULES, page
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Context, Model, Node, QualityDecl, Requirement, Signal, Tree
+from btq_lang.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
+from btq_lang.workspace import Definition, Workspace
+
+_MOST_USES = 12
+
+
+def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, children: int | None = None) -> str:
+    """A built-in, a model in scope, or what is known of a word that is neither."""
+    kind = lookup(name, quoted, children)
+    if kind is not None:
+        ports = ports_of_kind(workspace, path, name, quoted, children)
+        return "\n\n".join(filter(None, (_head(kind), kind.doc, kind.semantics, _ports(ports))))
+    found = workspace.scope(path).find(Kind.MODEL, name)
+    if found is not None and isinstance(target := found.symbol.target, Model):
+        text = target.text.text if target.text else ""
+        shown = f"```btq\n{target.category.raw} {name}\n```"
+        return "\n\n".join(filter(None, (shown, text, _ports(ports_of_kind(workspace, path, name)))))
+    if not quoted and name in KNOWN_WORDS:
+        return f"`{name}`: {KNOWN_WORDS[name].why}."
+    return f"`{name}`: a custom node; no model in this file or in what it includes declares its ports."
+
+
+def _head(kind: NodeKind) -> str:
+    least, most = kind.children
+    count = f"{least}" if least == most else f"{least} or more" if most is None else f"{least} to {most}"
+    children = f" · children: {count}" if kind.category in ("Control", "Decorator") else ""
+    written = " ".join(f"`{word}`" for word in spellings(kind))
+    return f"**{kind.tag}** ({kind.category}) · {written}{children} · since {kind.since}"
+
+
+def _ports(ports: Iterable[NodePort]) -> str:
+    return "\n".join(f"- {port(one)}" for one in ports)
+
+
+def port(one: NodePort) -> str:
+    """A port on one line: `` `input msec : unsigned int` in ms, required: how long ``."""
+    notes = [f"in {one.unit}"] if one.unit else []
+    notes += ["required"] if one.required else []
+    said = f" ({', '.join(notes)})" if notes else ""
+    return f"`{one.signature}`{said}{f': {one.doc}' if one.doc else ''}"
+
+
+def tree(workspace: Workspace, path: str, name: str) -> str:
+    """A tree: its ports, what is attached to it, and who runs it."""
+    found = workspace.scope(path).find(Kind.TREE, name) or next(iter(workspace.defined_anywhere(Kind.TREE, name)), None)
+    if found is None:
+        return f"`{name}`: no tree of this name is known."
+    item = found.symbol.target
+    shown = f"```btq\nBehaviorTree {name}\n```"
+    attached = clauses_detail(item.clauses) if isinstance(item, Tree) else ""
+    ports = _ports(ports_of_tree(workspace, found.path, name))
+    count = sum(1 for _ in item.walk()) if isinstance(item, Tree) else 0
+    size = f"{count} node{'s' if count != 1 else ''} · {shown_path(workspace, found.path)}"
+    wanted = Subject(What.TREE, name, home_of(found))
+    return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
+
+
+def requirement(workspace: Workspace, found: Definition, with_uses: bool = True) -> str:
+    """A requirement as its file has it, its quality, and where it is used."""
+    item = found.symbol.target
+    assert isinstance(item, Requirement), "a requirement's symbol defines one"
+    lines = [f"**{found.symbol.name}**"]
+    if item.quality is not None:
+        lines[0] += f" · {'.'.join(name.text for name in item.quality.names)}"
+    if item.text is not None:
+        lines.append(" ".join(item.text.text.split()))
+    if item.clauses:
+        start = found.entry.start
+        text = workspace.files[found.path].text
+        clauses = (" ".join(text[start + one.start : start + one.end].split()) for one in item.clauses)
+        lines.append("```btq\n" + "\n".join(clauses) + "\n```")
+    if with_uses:
+        lines.append(used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to"))
+    return "\n\n".join(filter(None, lines))
+
+
+def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
+    """Where something is used: a list that names the nodes; empty where it is nowhere."""
+    uses = [found for found in everywhere(workspace, wanted) if not found.mention.defines or found.mention.node]
+    lines = [f"- {place_of(workspace, found)}" for found in uses[:_MOST_USES]]
+    if len(uses) > _MOST_USES:
+        lines.append(f"- and {len(uses) - _MOST_USES} more")
+    return "\n".join([f"{heading}:", *lines]) if lines else ""
+
+
+def place_of(workspace: Workspace, found: Found) -> str:
+    """Where a mention stands: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``."""
+    node = found.mention.node
+    item = found.entry.item if found.entry is not None else None
+    name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
+    where = f"`{called(node)}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
+    path = shown_path(workspace, found.path)
+    return f"{where} ({path})" if where else path
+
+
+def shown_path(workspace: Workspace, path: str) -> str:
+    """A path as a person in the project says it."""
+    return path.removeprefix(workspace.project.root.rstrip("/") + "/")
+
+
+def called(node: Node) -> str:
+    """A node's kind and instance name."""
+    return node.head.text if node.name is None else f"{node.head.text} {node.name.text}"
+
+
+def quality(workspace: Workspace, path: str, found: Quality, explanation: str = "") -> str:
+    """A quality of the standard: definition, edition, parts and siblings."""
+    year = EDITIONS[edition(workspace, path)]
+    lines = [f"**{found.id}** · {found.name}", found.definition, f"_{found.source}_"]
+    lines += [explanation] if explanation else []
+    lines += [f"Measures: {found.measures}"] if found.measures else []
+    lines += [f"Nearest in ISO/IEC 25010: `{found.nearest}`"] if found.nearest else []
+    below = [f"`{part.id.rpartition('.')[2]}`" for part in parts(found.id, year)]
+    lines += [f"Parts: {', '.join(below)}"] if below else []
+    beside = [f"`{one.id.rpartition('.')[2]}`" for one in siblings(found, year)] if found.parent else []
+    lines += [f"Siblings: {', '.join(beside)}"] if beside else []
+    return "\n\n".join(lines)
+
+
+def own_quality(workspace: Workspace, found: Definition) -> str:
+    """A quality that a file declares."""
+    item = found.symbol.target
+    assert isinstance(item, QualityDecl), "a quality's symbol declares one"
+    parent = f" · {'.'.join(name.text for name in item.parent.names)}" if item.parent else ""
+    text = item.text.text if item.text else ""
+    return "\n\n".join(
+        filter(None, (f"**{found.symbol.name}**{parent}", text, f"_declared in {shown_path(workspace, found.path)}_"))
+    )
+
+
+def declared(workspace: Workspace, found: Definition) -> str:
+    """A signal or a context, as its file has it."""
+    item = found.symbol.target
+    text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
+    return f"```btq\n{text}\n```\n\n_{shown_path(workspace, found.path)}_"
+
+
+def key(workspace: Workspace, wanted: Subject, writes: Iterable[Found], reads: Iterable[Found]) -> str:
+    """An entry of the blackboard: who writes it, and who reads it."""
+    where = "of the root blackboard" if wanted.home.startswith(ROOT_BLACKBOARD) else "of this tree's blackboard"
+    lines = [f"**{wanted.name}** · entry {where}"]
+    for heading, places in (("Written by", writes), ("Read by", reads)):
+        shown = [f"- {place_of(workspace, found)}" for found in places]
+        lines += ["\n".join([f"{heading}:", *shown[:_MOST_USES]])] if shown else []
+    return "\n\n".join(lines)
+
+
+def quantity(text: str, port_unit: str | None = None) -> str | None:
+    """A quantity in SI units, and in the unit of the port that it is given to."""
+    read = parse_quantity(text)
+    if read is None:
+        return None
+    value, unit, _ = read
+    in_si = f"{number(to_si(value, unit))} {si_symbol(unit)}".rstrip()
+    shown = f"**{text}** = {in_si} ({dimension_name(unit)})"
+    converted = in_unit(text, port_unit)
+    return f"{shown}\n\nWritten to the port as `{converted}`, in {port_unit}." if converted else shown
+
+
+def unit(text: str) -> str | None:
+    """A unit: what it measures, and how much one of it is in SI units."""
+    read = parse_unit(text)
+    if read is None:
+        return None
+    one = f" · 1 {text} = {number(to_si(1.0, read))} {si_symbol(read)}".rstrip() if text != si_symbol(read) else ""
+    return f"**{text}** · {dimension_name(read)}{one}"
+
+
+def in_unit(text: str, port_unit: str | None) -> str | None:
+    """The number that stands for a quantity on a port of a unit; None where that makes no sense."""
+    read = parse_quantity(text)
+    target = parse_unit(port_unit) if port_unit else None
+    if read is None or target is None or read[1].dimension != target.dimension:
+        return None
+    return number(convert(read[0], read[1], target))
+
+
+def number(value: float) -> str:
+    """A number as people write it."""
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else f"{value:.10g}"
+
+
+def si_symbol(unit: Unit) -> str:
+    """The SI unit of what a unit measures; empty for percentages and plain numbers."""
+    for symbol in _SI:
+        named = parse_unit(symbol)
+        if named is not None and named.dimension == unit.dimension and named.factor == 1.0 and named.offset == 0.0:
+            return symbol
+    return "*".join(_powers(unit))
+
+
+def _powers(unit: Unit) -> Iterator[str]:
+    for base, power in zip(BASES, unit.dimension, strict=True):
+        if power and base in _BASE_SYMBOLS:
+            yield _BASE_SYMBOLS[base] if power == 1 else f"{_BASE_SYMBOLS[base]}^{power}"
+
+
+def rule(name: str) -> str | None:
+    """The page of a rule; None: there is no such rule."""
+    return page(name).rstrip() if name in RULES else None
+
+
+_SI = ("s", "m", "kg", "A", "K", "rad", "bit", "m/s", "m/s^2", "rad/s", "Hz", "N", "Pa", "J", "W", "V", "ohm", "A*s")
+_BASE_SYMBOLS = {
+    "length": "m",
+    "mass": "kg",
+    "time": "s",
+    "current": "A",
+    "temperature": "K",
+    "angle": "rad",
+    "data": "bit",
+    "count": "item",
+}

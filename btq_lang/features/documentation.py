@@ -1,0 +1,48 @@
+"""The documentation beside a completion, made when an editor asks for it."""
+
+from __future__ import annotations
+
+from btq_lang.features import describe
+from btq_lang.features.meaning import own_quality, quality_match
+from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.symbols import Kind
+from btq_lang.workspace import Definition, Workspace
+
+
+def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:
+    """What a proposal is, in Markdown; None where there is nothing to say.
+
+    Args:
+        path: the file that it is offered in.
+        kind, name: the proposal's own.
+    """
+    if kind == "node":
+        found = _definition(workspace, path, Kind.MODEL, name)
+        return describe.node_kind(workspace, found.path if found else path, name)
+    if kind == "tree":
+        return describe.tree(workspace, path, name)
+    if kind == "requirement":
+        found = _definition(workspace, path, Kind.REQUIREMENT, name)
+        return describe.requirement(workspace, found) if found else None
+    if kind in ("signal", "context"):
+        found = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
+        return describe.declared(workspace, found) if found else None
+    if kind == "quality":
+        own = own_quality(workspace, path, name) or _definition(workspace, path, Kind.QUALITY, name)
+        match = quality_match(workspace, path, name)
+        if own is not None:
+            return describe.own_quality(workspace, own)
+        return describe.quality(workspace, path, match.quality) if match.quality else None
+    if kind == "rule":
+        return describe.rule(name)
+    if kind == "port":
+        node, _, port = name.rpartition("/")
+        category, _, called = node.rpartition(" ")
+        known = ports_of_tree(workspace, path, called) if category == "SubTree" else ()
+        known = known or ports_of_kind(workspace, path, called)
+        return next((describe.port(one) for one in known if one.name == port), None)
+    return None
+
+
+def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:
+    return workspace.scope(path).find(kind, name) or next(iter(workspace.defined_anywhere(kind, name)), None)

@@ -1,0 +1,94 @@
+"""Hover: what stands here, explained where it stands."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.features import describe
+from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
+from btq_lang.features.navigation import writes
+from btq_lang.features.ports import ports_of
+from btq_lang.mentions import What
+from btq_lang.record import record
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+@record
+class Hover:
+    """What to show beside a word, in Markdown."""
+
+    span: Span
+    markdown: str
+
+
+def hover(workspace: Workspace, path: str, offset: int) -> Hover | None:
+    """What stands at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
+    with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page."""
+    found = at(workspace, path, offset)
+    if found is None:
+        return None
+    markdown = _explained(workspace, found, subject(workspace, found))
+    return Hover(found.span, markdown) if markdown else None
+
+
+def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | None:
+    path, mention = found.path, found.mention
+    node = mention.node
+    if wanted.what is What.NODE:
+        children = len(node.nodes) if node is not None else None
+        return describe.node_kind(workspace, path, mention.name, mention.word.quoted and node is not None, children)
+    if wanted.what is What.TREE:
+        return describe.tree(workspace, path, wanted.name)
+    if wanted.what is What.QUALITY:
+        own = definition(workspace, path, wanted)
+        if own is not None:
+            return describe.own_quality(workspace, own)
+        match = quality_match(workspace, path, mention.name)
+        if match.quality is not None:
+            return describe.quality(workspace, path, match.quality, match.explanation)
+        meant = ", ".join(f"`{one.id}`" for one in match.candidates) or ", ".join(f"`{one}`" for one in match.near)
+        return f"`{mention.name}`: {match.explanation or 'no quality of this name is known'}" + (
+            f"\n\nPerhaps {meant}" if meant else ""
+        )
+    if wanted.what is What.REQUIREMENT:
+        place = definition(workspace, path, wanted)
+        return describe.requirement(workspace, place) if place else None
+    if wanted.what in (What.SIGNAL, What.CONTEXT):
+        place = definition(workspace, path, wanted)
+        return describe.declared(workspace, place) if place else None
+    if wanted.what is What.KEY and mention.what is What.PORT and node is not None:
+        return _port(workspace, found) or _key(workspace, wanted)
+    if wanted.what is What.KEY:
+        return _key(workspace, wanted)
+    if wanted.what is What.PORT:
+        return _port(workspace, found)
+    if wanted.what is What.ATTRIBUTE:
+        kind = RESERVED_ATTRIBUTES.get(wanted.name)
+        return f"`{kind.name}`: {kind.doc}" if kind is not None else None
+    if wanted.what is What.QUANTITY:
+        port = mention.pair.key.text if mention.pair is not None else None
+        ports = ports_of(workspace, path, node) if node is not None else ()
+        return describe.quantity(mention.name, next((one.unit for one in ports if one.name == port), None))
+    if wanted.what is What.UNIT:
+        return describe.unit(mention.name)
+    if wanted.what is What.RULE:
+        return describe.rule(wanted.name)
+    if wanted.what is What.INCLUDE:
+        return f"`{wanted.name}`" if wanted.name in workspace.files else None
+    if wanted.what in (What.INSTANCE, What.TAG, What.PARAMETER):
+        return describe.used(workspace, wanted, f"{wanted.what.value.capitalize()} **{wanted.name}**") or None
+    return None
+
+
+def _key(workspace: Workspace, wanted: Subject) -> str:
+    places = [one for one in everywhere(workspace, wanted) if not one.mention.defines]
+    writing = [one for one in places if writes(workspace, one)]
+    return describe.key(workspace, wanted, writing, [one for one in places if one not in writing])
+
+
+def _port(workspace: Workspace, found: Found) -> str | None:
+    node = found.mention.node
+    if node is None:
+        return None
+    port = next((one for one in ports_of(workspace, found.path, node) if one.name == found.mention.name), None)
+    return describe.port(port) if port is not None else None

@@ -1,0 +1,229 @@
+"""What a file and a project consist of: the outline of a file, and the search for names in all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.nodes import lookup
+from btq_lang.record import record
+from btq_lang.symbols import Kind, requirements_at
+from btq_lang.syntax import (
+    Apply,
+    Context,
+    Entry,
+    Include,
+    Model,
+    Models,
+    Node,
+    NodeClause,
+    QualityDecl,
+    Requirement,
+    Root,
+    Satisfices,
+    Signal,
+    Tags,
+    Tree,
+    Word,
+)
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+@record
+class Outline:
+    """A thing in the outline of a file.
+
+    Attributes:
+        kind: mission, include, tree, control, decorator, action, condition, subtree, node (nobody says which), port,
+            model, requirement, signal, context, quality or apply.
+        detail: what stands beside the name, shorter.
+        span: all of it, with its block; `name_span`: the word to stand on.
+    """
+
+    name: str
+    kind: str
+    detail: str
+    span: Span
+    name_span: Span
+    children: tuple[Outline, ...] = ()
+
+
+@record
+class Match:
+    """A name in the project."""
+
+    name: str
+    kind: str
+    path: str
+    span: Span
+    container: str
+
+
+def document_symbols(workspace: Workspace, path: str) -> tuple[Outline, ...]:
+    """The outline of a file: its items, the nodes of its trees with their qualities, and the ports of its models.
+
+    The items in the block of a Root are its children.
+    """
+    found: list[Outline] = []
+    root: tuple[int, Outline] | None = None
+    inside: list[Outline] = []
+    for entry in workspace.files[path].parsed.entries:
+        for outline in _item(workspace, path, entry):
+            if entry.in_root and root is not None:
+                inside.append(outline)
+                continue
+            if isinstance(entry.item, Root):
+                root = len(found), outline
+            found.append(outline)
+    if root is not None and inside:
+        at, mission = root
+        whole = Span(mission.span.start, max(mission.span.end, inside[-1].span.end))
+        found[at] = Outline(mission.name, mission.kind, mission.detail, whole, mission.name_span, tuple(inside))
+    return tuple(found)
+
+
+def workspace_symbols(workspace: Workspace, query: str, limit: int = 500) -> tuple[Match, ...]:
+    """The names in all files whose letters contain those of the query in order, whatever their case; the shortest and
+    those that begin with it first."""
+    wanted = query.casefold()
+    found: list[tuple[tuple[bool, int, str, str, int], Match]] = []
+    for path in workspace.files:
+        for definition in workspace.defined_in(path):
+            symbol = definition.symbol
+            folded = symbol.name.casefold()
+            if not _contains(folded, wanted):
+                continue
+            rank = (not folded.startswith(wanted), len(folded), folded, path, definition.span.start)
+            found.append((rank, Match(symbol.name, _KIND_WORDS[symbol.kind], path, definition.span, path)))
+        for entry in workspace.files[path].parsed.entries:
+            if isinstance(entry.item, Tree):
+                tree = entry.item.name.text if entry.item.name else ""
+                for node in entry.item.walk():
+                    name = node.name
+                    if name is None or not wanted or not _contains(folded := name.text.casefold(), wanted):
+                        continue
+                    span = name.span.shifted(entry.start)
+                    rank = (not folded.startswith(wanted), len(folded), folded, path, span.start)
+                    found.append((rank, Match(name.text, _category(workspace, path, node), path, span, tree)))
+    return tuple(match for _, match in sorted(found, key=lambda one: one[0])[:limit])
+
+
+def _contains(name: str, wanted: str) -> bool:
+    letters = iter(name)
+    return all(letter in letters for letter in wanted)
+
+
+def _item(workspace: Workspace, path: str, entry: Entry) -> Iterator[Outline]:
+    item = entry.item
+    by = entry.start
+    if isinstance(item, Tree):
+        end = max([item.end, *(child.block_end for child in item.children if isinstance(child, Node))])
+        ports = tuple(
+            _named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in item.ports
+        )
+        nodes = tuple(_node(workspace, path, child, by) for child in item.children if isinstance(child, Node))
+        name = item.name.text if item.name else "BehaviorTree"
+        name_span = _placed(item.name, Span(item.start, item.end), by)
+        yield Outline(
+            name, "tree", clauses_detail(item.clauses), Span(item.start, end).shifted(by), name_span, (*ports, *nodes)
+        )
+    elif isinstance(item, Model):
+        yield _model(item, by)
+    elif isinstance(item, Models):
+        for model in item.models:
+            if isinstance(model, Model):
+                yield _model(model, by)
+    elif isinstance(item, Requirement):
+        yield _named(item.name, "requirement", requirement_detail(item), item, by)
+    elif isinstance(item, Signal):
+        yield _named(item.name, "signal", item.unit.text if item.unit else "", item, by)
+    elif isinstance(item, Context):
+        yield _named(item.name, "context", "", item, by)
+    elif isinstance(item, QualityDecl):
+        parent = ".".join(name.text for name in item.parent.names) if item.parent else ""
+        yield _named(item.name, "quality", parent, item, by)
+    elif isinstance(item, Root):
+        yield _named(item.name, "mission", "", item, by)
+    elif isinstance(item, Include):
+        yield _named(item.path, "include", "", item, by)
+    elif isinstance(item, Apply) and item.uses:
+        name = ", ".join(use.name.text for use in item.uses)
+        span = Span(item.start, item.end).shifted(by)
+        yield Outline(f"apply {name}", "apply", "", span, item.uses[0].name.span.shifted(by))
+
+
+def _node(workspace: Workspace, path: str, node: Node, by: int) -> Outline:
+    name = node.head.text if node.name is None else f"{node.head.text} {node.name.text}"
+    children = tuple(_node(workspace, path, child, by) for child in node.nodes)
+    span = Span(node.start, node.block_end).shifted(by)
+    kind = _category(workspace, path, node)
+    return Outline(name, kind, clauses_detail(node.clauses), span, node.head.span.shifted(by), children)
+
+
+def _category(workspace: Workspace, path: str, node: Node) -> str:
+    if node.category is not None:
+        return node.category.raw.lower()
+    name = node.id
+    kind = lookup(name.text, name.quoted, len(node.nodes)) if name is not None else None
+    if kind is not None:
+        return kind.category.lower()
+    found = workspace.scope(path).find(Kind.MODEL, name.text) if name is not None else None
+    target = found.symbol.target if found else None
+    return target.category.raw.lower() if isinstance(target, Model) else "node"
+
+
+def clauses_detail(clauses: tuple[NodeClause, ...]) -> str:
+    """What is attached to a node, on one line: `satisfices safety; satisfies rq1, rq2; tags heavy`."""
+    qualities: list[str] = []
+    tags: list[str] = []
+    for clause in clauses:
+        if isinstance(clause, Satisfices):
+            qualities += (".".join(word.text for word in quality.path.names) for quality in clause.qualities)
+        elif isinstance(clause, Tags):
+            tags += (name.text for name in clause.names)
+    requirements = [one.name.text for one in requirements_at(clauses) if one.name is not None]
+    parts = (("satisfices", qualities), ("satisfies", requirements), ("tags", tags))
+    return "; ".join(f"{word} {', '.join(names)}" for word, names in parts if names)
+
+
+def requirement_detail(requirement: Requirement) -> str:
+    """A requirement's quality and text, on one line."""
+    quality = ".".join(name.text for name in requirement.quality.names) if requirement.quality else ""
+    text = " ".join(requirement.text.text.split()) if requirement.text else ""
+    return ": ".join(filter(None, (quality, text)))
+
+
+def _model(model: Model, by: int) -> Outline:
+    ports = tuple(_named(port.name, "port", _ports_detail(port.direction, port.type), port, by) for port in model.ports)
+    ends = [model.end, *(part.end for part in model.body)]
+    name = model.name.text if model.name else model.category.text
+    span = Span(model.start, max(ends)).shifted(by)
+    name_span = _placed(model.name, model.category.span, by)
+    return Outline(name, model.category.raw.lower(), model.text.text if model.text else "", span, name_span, ports)
+
+
+def _ports_detail(direction: Word, type_: Word | None) -> str:
+    return f"{direction.text} : {type_.text}" if type_ is not None else direction.text
+
+
+def _named(word: Word | None, kind: str, detail: str, item: object, by: int) -> Outline:
+    start: int = item.start  # type: ignore[attr-defined]  # every item has both
+    end: int = item.end  # type: ignore[attr-defined]  # as above
+    whole = Span(start, max(end, word.end if word is not None else end))
+    return Outline(
+        word.text if word is not None and word.text else kind, kind, detail, whole.shifted(by), _placed(word, whole, by)
+    )
+
+
+def _placed(word: Word | None, otherwise: Span, by: int) -> Span:
+    return (word.span if word is not None else Span(otherwise.start, otherwise.start)).shifted(by)
+
+
+_KIND_WORDS = {
+    Kind.TREE: "tree",
+    Kind.MODEL: "model",
+    Kind.REQUIREMENT: "requirement",
+    Kind.SIGNAL: "signal",
+    Kind.CONTEXT: "context",
+    Kind.QUALITY: "quality",
+}

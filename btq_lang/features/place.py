@@ -1,0 +1,243 @@
+"""The place where somebody types: what stands before the cursor on its logical line, and in which block.
+
+One invariant: only what stands before the cursor counts, so an answer does not depend on what is still to come; and
+it is made of tokens, not of the tree, for the line that is being typed has none yet.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Sequence
+
+from btq_lang.record import record
+from btq_lang.syntax import unquote
+from btq_lang.text import Span
+from btq_lang.tokens import (
+    BLANK,
+    CATEGORIES,
+    CLOSE,
+    COMMENT,
+    DEDENT,
+    ERROR,
+    INDENT,
+    NAME,
+    NEWLINE,
+    NODE_CLAUSES,
+    OPEN,
+    OPERATOR,
+    STRING,
+    SYMBOL,
+    Token,
+)
+from btq_lang.workspace import Workspace
+
+
+@record
+class LineNode:
+    """The node of a line, as far as it is written."""
+
+    name: str
+    quoted: bool
+    category: str | None
+
+    @property
+    def is_subtree(self) -> bool:
+        return self.category == "SubTree"
+
+
+@record
+class Place:
+    """Where the cursor is.
+
+    Attributes:
+        inside: code, comment or string; `text`: what of the comment or string stands before the cursor.
+        span: the word that is being typed, which a completion replaces; `prefix`: what of it stands before the cursor.
+        block: items (of a file or a Root), models (of a TreeNodesModel), ports (of a model), tree, node or clauses
+            (of a requirement).
+        parent: the words of the line that opened the block; none for the file's own.
+        words: the words of the logical line before the one that is being typed.
+        group: those in the innermost open brackets.
+        depth: how many brackets are open.
+        callee: the name behind which the innermost brackets were opened, where they are no node's.
+        node: the node in whose brackets or behind whose kind one is; None at the start of a line.
+    """
+
+    inside: str
+    text: str
+    prefix: str
+    span: Span
+    block: str
+    parent: tuple[Token, ...]
+    words: tuple[Token, ...]
+    group: tuple[Token, ...]
+    depth: int
+    callee: str
+    node: LineNode | None
+
+    @property
+    def key(self) -> str | None:
+        """The attribute whose value is being written."""
+        if len(self.group) >= 2 and self.group[-1].text == "=" and self.depth:
+            return word_text(self.group[-2])
+        return None
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """The attributes that have a value in the innermost brackets."""
+        return tuple(
+            word_text(word)
+            for word, following in zip(self.group, self.group[1:], strict=False)
+            if following.kind == OPERATOR and following.text == "="
+        )
+
+    @property
+    def last(self) -> str:
+        """The word before the one that is being typed; empty at the start of the line or of the brackets."""
+        return self.group[-1].text if self.group else ""
+
+
+def place_at(workspace: Workspace, path: str, offset: int) -> Place:
+    """Where an offset is.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    file = workspace.files[path]
+    tokens = file.parsed.tokens
+    index = bisect_left(tokens, offset, key=lambda token: token.start) - 1
+    inside, text, span = "code", "", Span(offset, offset)
+    if index >= 0 and (token := tokens[index]).end >= offset:
+        if token.kind == COMMENT and (offset < token.end or not token.text.endswith("*/")):
+            inside, text = "comment", file.text[token.start : offset]
+        elif token.kind == STRING and (offset < token.end or not _is_closed(token.text)):
+            inside, text = "string", file.text[token.start + 1 : offset]
+            index -= 1
+        elif token.kind in (NAME, SYMBOL, ERROR):
+            span = Span(token.start, max(token.end, offset))
+            index -= 1
+    words = _line(tokens, index)
+    group, depth = _innermost(words)
+    blanks = _blanks(file.text, words[0].start if words else span.start)
+    parents = _parents(file.text, tokens, words[0].start if words else span.start, blanks)
+    block, parent = _block(parents)
+    node = _node(words) if block in ("node", "tree") else None
+    callee = ""
+    if depth:
+        before = words[: len(words) - _length(words)]
+        if depth > 1 or node is None or any(_is_clause_word(word) for word in before):
+            callee = word_text(before[-2]) if len(before) > 1 else ""
+            node = None
+    prefix = file.text[span.start : offset]
+    return Place(inside, text, prefix, span, block, parent, words, group, depth, callee, node)
+
+
+def word_text(token: Token) -> str:
+    """What a word says."""
+    return unquote(token.text) if token.kind == STRING else token.text
+
+
+def _is_closed(raw: str) -> bool:
+    return len(raw) > 1 and raw[-1] == raw[0]
+
+
+def _line(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
+    """The words of the logical line up to a token."""
+    found: list[Token] = []
+    while index >= 0 and tokens[index].kind != NEWLINE:
+        if tokens[index].kind not in _NO_WORDS and tokens[index].text:
+            found.append(tokens[index])
+        index -= 1
+    return tuple(reversed(found))
+
+
+def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
+    """The words in the innermost brackets that are open, and how many are."""
+    opened: list[int] = []
+    for index, word in enumerate(words):
+        if word.kind == OPEN:
+            opened.append(index)
+        elif word.kind == CLOSE and opened:
+            opened.pop()
+    inside = words[opened[-1] + 1 :] if opened else words
+    kept: list[Token] = []
+    depth = 0
+    for word in inside:  # what stands in closed brackets is over
+        depth += (word.kind == OPEN) - (word.kind == CLOSE)
+        if depth == 0 and word.kind != CLOSE:
+            kept.append(word)
+    return tuple(kept), len(opened)
+
+
+def _length(words: tuple[Token, ...]) -> int:
+    """How many words stand in the innermost brackets that are open, those in closed ones too."""
+    depth = 0
+    for count, word in enumerate(reversed(words)):
+        depth += (word.kind == CLOSE) - (word.kind == OPEN)
+        if depth < 0:
+            return count
+    return len(words)
+
+
+def _is_clause_word(word: Token) -> bool:
+    return word.kind == NAME and word.text in NODE_CLAUSES
+
+
+def _blanks(text: str, start: int) -> str:
+    """What a line begins with."""
+    begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
+    line = text[begin:start]
+    return line[: len(line) - len(line.lstrip(" \t"))]
+
+
+def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> list[tuple[Token, ...]]:
+    """The lines in whose blocks a line stands, the nearest first."""
+    found: list[tuple[Token, ...]] = []
+    width = len(blanks.expandtabs(4))
+    index = bisect_left(tokens, start, key=lambda token: token.start) - 1
+    while index >= 0 and width > 0:
+        line = _line(tokens, index)
+        while index >= 0 and tokens[index].kind != NEWLINE:
+            index -= 1
+        index -= 1
+        if line:
+            column = len(_blanks(text, line[0].start).expandtabs(4))
+            if column < width:
+                found.append(line)
+                width = column
+    return found
+
+
+def _block(parents: list[tuple[Token, ...]]) -> tuple[str, tuple[Token, ...]]:
+    if parents and parents[-1][0].text == "Root":
+        parents = parents[:-1]
+    if not parents:
+        return "items", ()
+    nearest, outermost = parents[0], parents[-1][0].text
+    if any(word.kind == NAME and word.text == "QualityReq" for word in _innermost(nearest)[0]):
+        return "clauses", nearest
+    if outermost == "BehaviorTree":
+        return ("tree" if len(parents) == 1 else "node"), nearest
+    if outermost == "TreeNodesModel":
+        return ("models" if len(parents) == 1 else "ports"), nearest
+    return ("ports" if outermost in CATEGORIES else "none"), nearest
+
+
+def _node(words: tuple[Token, ...]) -> LineNode | None:
+    """[ category ] kind, at the start of a line"""
+    if not words or words[0].text in NODE_CLAUSES:
+        return None
+    first = words[0]
+    if first.kind == NAME and first.text in CATEGORIES:
+        category = first.text
+        if len(words) > 1 and words[1].kind in (NAME, STRING):
+            return LineNode(word_text(words[1]), words[1].kind == STRING, category)
+        for word, equals, value in zip(words, words[1:], words[2:], strict=False):
+            if word.text == "ID" and equals.text == "=":
+                return LineNode(word_text(value), False, category)
+        return LineNode("", False, category)
+    if first.kind in (NAME, STRING, SYMBOL):
+        return LineNode(word_text(first), first.kind == STRING, None)
+    return None
+
+
+_NO_WORDS = frozenset((BLANK, COMMENT, INDENT, DEDENT))

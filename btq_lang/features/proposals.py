@@ -1,0 +1,506 @@
+"""What completion proposes, kind by kind: names of the file's scope and of the project, words of the language, the
+engine's nodes, qualities and units."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
+from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.catalog.qualities import qualities as standard_qualities
+from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, edition, subject
+from btq_lang.features.outline import requirement_detail
+from btq_lang.features.place import LineNode, Place
+from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.mentions import What
+from btq_lang.record import record
+from btq_lang.rules import RULES
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote
+from btq_lang.tokens import CATEGORIES, Token
+from btq_lang.units import dimension_name, parse_unit, symbols
+from btq_lang.workspace import Definition, Workspace
+
+
+@record
+class Proposal:
+    """A word that may stand at a place.
+
+    Attributes:
+        kind: keyword, node, tree, requirement, quality, signal, context, parameter, port, attribute, key, unit, file,
+            rule, tag, instance or enum.
+        detail: what stands beside it in the list.
+        insert: what is written for it; `snippet`: the same with places to fill in, as LSP writes them.
+        filter: what the typed letters are compared with, where that is not the label.
+        name: what `documentation` asks for; empty: there is none.
+        include: the file to include for it, for what this file cannot see yet.
+        old: it is offered, but there is a newer way.
+    """
+
+    label: str
+    kind: str
+    detail: str = ""
+    insert: str = ""
+    snippet: str | None = None
+    filter: str = ""
+    name: str = ""
+    include: str = ""
+    old: bool = False
+
+
+def words(found: Iterable[str], kind: str) -> Iterator[Proposal]:
+    """Words of the language; the cursor goes into quotes, brackets and braces that they bring."""
+    for word in found:
+        at = next((word.index(pair) + 1 for pair in ('""', "()", "{}") if pair in word), None)
+        snippet = f"{escaped(word[:at])}$0{escaped(word[at:])}" if at is not None else None
+        yield Proposal(word, kind, "", word, snippet)
+
+
+def quoted(text: str) -> str:
+    """A word in quotes, unless it is."""
+    return text if text.startswith(('"', "'")) else quote(text)
+
+
+def written(name: str) -> str:
+    """A name as it stands in a file."""
+    return name if is_name(name) else quote(name)
+
+
+def escaped(text: str) -> str:
+    """Text in a snippet."""
+    return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
+
+
+# ---- items and clauses ----
+
+
+def item_words(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    has_root = "Root" in workspace.files[path].text
+    for word, snippet, detail in _ITEMS:
+        if not (word == "Root" and has_root):
+            yield Proposal(word, "keyword", detail, word, snippet)
+
+
+def category_words() -> Iterator[Proposal]:
+    for word in sorted(CATEGORIES):
+        yield Proposal(word, "keyword", "a model: the interface of a node", word, f"{word} ${{1:Name}}\n    $0")
+
+
+def node_clause_words() -> Iterator[Proposal]:
+    yield Proposal("satisfies", "keyword", "attach a requirement", "satisfies")
+    yield Proposal("satisfices", "keyword", "mark a concern: a quality", "satisfices")
+    yield Proposal("tags", "keyword", "mark the node for `apply`", "tags")
+
+
+def port_heads() -> Iterator[Proposal]:
+    for word in ("input", "output", "inout"):
+        yield Proposal(word, "keyword", "a port", word, f'{word} ${{1:name}} : ${{2:string}} "$0"')
+
+
+def port_words(place: Place) -> Iterator[Proposal]:
+    if place.last == ":":
+        yield from words(_TYPES, "enum")
+
+
+def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
+    """Verbs and heads of clauses, in the order in which a requirement is written; what stands once is left out."""
+    for word, snippet, detail in _CLAUSES:
+        head = word.split()[0]
+        if head not in _ONCE or head not in given:
+            yield Proposal(word, "keyword", detail, word, snippet)
+
+
+# ---- names ----
+
+
+def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """Requirements of every file, those in scope first; one that the file cannot see brings its include."""
+    for found, include in _defined(workspace, path, Kind.REQUIREMENT):
+        item = found.symbol.target
+        text = requirement_detail(item) if isinstance(item, Requirement) else ""
+        parameters = item.parameters if isinstance(item, Requirement) else ()
+        name = written(found.symbol.name)
+        needed = [one.name.text for one in parameters if one.default is None]
+        fill = ", ".join(f"{key} = ${{{index}:{key}}}" for index, key in enumerate(needed, 1))
+        snippet = f"{escaped(name)}({fill})" if needed else None
+        yield Proposal(found.symbol.name, "requirement", text, name, snippet, "", found.symbol.name, include)
+
+
+def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    for found, include in _defined(workspace, path, Kind.TREE):
+        name = found.symbol.name
+        ports = ports_of_tree(workspace, found.path, name)
+        snippet = _with_ports(written(name), [port for port in ports if port.required])
+        yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", written(name), snippet, "", name, include)
+
+
+def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    for found, include in _defined(workspace, path, Kind.SIGNAL):
+        item = found.symbol.target
+        unit = item.unit.text if isinstance(item, Signal) and item.unit else ""
+        yield Proposal(found.symbol.name, "signal", unit, found.symbol.name, None, "", found.symbol.name, include)
+
+
+def contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    for found, include in _defined(workspace, path, Kind.CONTEXT):
+        item = found.symbol.target
+        shown = ""
+        if isinstance(item, Context) and item.condition is not None:
+            start = found.entry.start
+            text = workspace.files[found.path].text[start + item.condition.start : start + item.condition.end]
+            shown = " ".join(text.split())
+        yield Proposal(found.symbol.name, "context", shown, found.symbol.name, None, "", found.symbol.name, include)
+
+
+def values(workspace: Workspace, path: str, entry_parameters: tuple[Token, ...]) -> Iterator[Proposal]:
+    """What may be compared: the requirement's parameters, contexts, signals."""
+    for word, colon in pairwise(entry_parameters):
+        if colon.text == ":" and is_name(word.text) and word.text not in ("QualityReq",):
+            name = _parameter_of(entry_parameters, word)
+            if name:
+                yield Proposal(name, "parameter", "parameter", name)
+    yield from contexts(workspace, path)
+    yield from signals(workspace, path)
+
+
+def _parameter_of(line: tuple[Token, ...], word: Token) -> str:
+    """The word, if it stands in the brackets behind a requirement's name."""
+    opened = [token.start for token in line if token.text == "("]
+    closed = [token.start for token in line if token.text == ")"]
+    inside = bool(opened) and opened[0] < word.start and (not closed or word.start < closed[0])
+    return word.text if inside else ""
+
+
+def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Proposal]:
+    """The parameters of a requirement, as arguments."""
+    found = workspace.scope(path).find(Kind.REQUIREMENT, requirement)
+    item = found.symbol.target if found is not None else None
+    for one in item.parameters if isinstance(item, Requirement) else ():
+        unit = one.unit.text if one.unit is not None else ""
+        yield Proposal(one.name.text, "parameter", unit, f"{one.name.text} = ", f"{one.name.text} = ${{0:1 {unit}}}")
+
+
+def tags(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    for name in sorted({found.mention.name for found in _mentioned(workspace, workspace.files, What.TAG)}):
+        yield Proposal(name, "tag", "", written(name))
+
+
+def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """Trees, nodes and instance names that a path can name."""
+    scope = workspace.scope(path)
+    for name in scope.names(Kind.TREE):
+        yield Proposal(name, "tree", "tree", written(name), None, "", name)
+    seen: set[str] = set()
+    for found in _mentioned(workspace, scope.paths, What.INSTANCE, What.NODE):
+        mention = found.mention
+        if mention.name in seen or (mention.what is What.NODE and lookup(mention.name, mention.word.quoted)):
+            continue
+        seen.add(mention.name)
+        kind = "instance" if mention.what is What.INSTANCE else "node"
+        detail = mention.node.head.text if mention.what is What.INSTANCE and mention.node is not None else ""
+        yield Proposal(
+            mention.name, kind, detail, written(mention.name), None, "", mention.name if kind == "node" else ""
+        )
+
+
+def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[Proposal]:
+    """The entries of a tree's blackboard, or of the root's."""
+    seen: dict[str, Proposal] = {}
+    if root or not isinstance(entry.item, Tree):
+        home = f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
+        places = (found for found in _mentioned(workspace, workspace.scope(path).paths, What.KEY))
+        names = {found.mention.name for found in places if subject(workspace, found).home == home}
+        for name in sorted(names):
+            yield Proposal(name, "key", "root blackboard", name)
+        return
+    for port in entry.item.ports:
+        if port.name is not None:
+            type_ = f" : {port.type.text}" if port.type else ""
+            seen[port.name.text] = Proposal(port.name.text, "key", f"{port.direction.raw}{type_}", port.name.text)
+    for mention in workspace.files[path].mentions_of(entry):
+        if mention.what is What.KEY and not mention.root and mention.name and is_name(mention.name):
+            detail = mention.node.head.text if mention.node is not None else ""
+            seen.setdefault(mention.name, Proposal(mention.name, "key", detail, mention.name))
+    yield from seen.values()
+
+
+def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
+    """The project's other files, as an include names them: from an include path where one leads there."""
+    folder = posixpath.dirname(path) or "."
+    for other in sorted(workspace.files):
+        if other == path:
+            continue
+        ways = [posixpath.relpath(other, one) for one in (folder, *workspace.project.include_paths)]
+        shown = min(ways, key=lambda way: (way.startswith(".."), len(way)))
+        if workspace.included(path, shown) == other:
+            yield Proposal(shown, "file", "", quote(shown) if quoted else shown)
+
+
+# ---- nodes ----
+
+
+def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """What a node may be: models, custom nodes in use, built-ins by symbol and name, SubTree."""
+    seen: set[str] = set()
+    for found, include in _defined(workspace, path, Kind.MODEL):
+        item = found.symbol.target
+        if isinstance(item, Model) and item.category.raw != "SubTree":
+            seen.add(found.symbol.name)
+            yield _model(workspace, found, item, include)
+    for name in _unknown(workspace, workspace.scope(path).paths):
+        if name not in seen:
+            yield Proposal(name, "node", "custom node", written(name), None, "", name)
+    for kind in BUILTINS.values():
+        if available(kind, workspace.project.target) and not kind.tag.startswith("Switch"):
+            yield from _builtin(kind)
+    yield Proposal("Switch", "node", BUILTINS["Switch2"].doc, "Switch", _SWITCH, "", "Switch")
+    yield Proposal("SubTree", "keyword", "run another tree", "SubTree")
+    for category in ("Action", "Condition", "Decorator", "Control"):
+        yield Proposal(category, "keyword", "a custom node, with its category", category)
+
+
+def of_category(workspace: Workspace, path: str, category: str) -> Iterator[Proposal]:
+    """The IDs that may follow `SubTree`, `Action` …"""
+    if category == "SubTree":
+        yield from trees(workspace, path)
+        return
+    for found, include in _defined(workspace, path, Kind.MODEL):
+        item = found.symbol.target
+        if isinstance(item, Model) and item.category.raw == category:
+            yield _model(workspace, found, item, include)
+    scope = workspace.scope(path)
+    for name in _unknown(workspace, scope.paths):
+        if scope.find(Kind.MODEL, name) is None:
+            yield Proposal(name, "node", "custom node", written(name), None, "", name)
+
+
+def unknown_nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """The custom nodes that no model declares yet."""
+    scope = workspace.scope(path)
+    for name in _unknown(workspace, workspace.files):
+        if scope.find(Kind.MODEL, name) is None:
+            yield Proposal(name, "node", "has no model yet", written(name))
+
+
+def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
+    """The ports that have no value yet, those that need one first."""
+    for port in sorted((one for one in known if one.name not in given), key=lambda one: not one.required):
+        default = f" = {port.default}" if port.default else ""
+        detail = f"{port.direction}{f' : {port.type}' if port.type else ''}{default}"
+        snippet = f"{escaped(written(port.name))} = {_hole(0, port)}"
+        insert = f"{written(port.name)} = "
+        documented = f"{node.category or ''} {node.name}".strip() + f"/{port.name}"
+        yield Proposal(port.name, "port", detail, insert, snippet, "", documented)
+
+
+def attributes(given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
+    """`name`, and what the engine reads at every node."""
+    if "name" not in given:
+        yield Proposal("name", "attribute", "instance name", "name = ", 'name = "$0"')
+    for kind in RESERVED_ATTRIBUTES.values():
+        if kind.group == "tool" or kind.name in given or (kind.name == "_autoremap" and not node.is_subtree):
+            continue
+        snippet = f'{kind.name} = "$0"' if kind.is_script else f"{kind.name} = ${{0:true}}"
+        yield Proposal(kind.name, "attribute", kind.doc, f"{kind.name} = ", snippet)
+
+
+def port_values(port: NodePort | None) -> Iterator[Proposal]:
+    """What may be given to a port."""
+    yield Proposal("{=}", "key", "the entry that is called as the port", "{=}")
+    if port is not None and port.default:
+        yield Proposal(port.default, "enum", "default", port.default if is_plain(port.default) else quote(port.default))
+    if port is not None and port.type == "bool":
+        yield from words(("true", "false"), "enum")
+    if port is not None and port.type.endswith("NodeStatus"):
+        yield from words(("SUCCESS", "FAILURE", "RUNNING", "SKIPPED"), "enum")
+
+
+def is_plain(value: str) -> bool:
+    """Whether a value needs no quotes."""
+    return is_name(value) or value.lstrip("-").replace(".", "", 1).isdecimal()
+
+
+def is_script(workspace: Workspace, path: str, node: LineNode | None, key: str) -> bool:
+    """Whether an attribute holds a script."""
+    attribute = RESERVED_ATTRIBUTES.get(key)
+    if attribute is not None:
+        return attribute.is_script
+    known = ports_of_kind(workspace, path, node.name, node.quoted) if node is not None else ()
+    return any(port.name == key and port.content == "script" for port in known)
+
+
+def port_unit(workspace: Workspace, path: str, node: LineNode, key: str) -> str | None:
+    """The unit of a number in a port."""
+    known = ports_of_kind(workspace, path, node.name, node.quoted)
+    return next((port.unit for port in known if port.name == key), None)
+
+
+# ---- knowledge ----
+
+
+def qualities(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """Qualities: one's own, then characteristics, then their parts, found by either spelling and by the part alone."""
+    for found, include in _defined(workspace, path, Kind.QUALITY):
+        item = found.symbol.target
+        text = item.text.text if isinstance(item, QualityDecl) and item.text else ""
+        yield Proposal(
+            found.symbol.name, "quality", text, written(found.symbol.name), None, "", found.symbol.name, include
+        )
+    known = standard_qualities(EDITIONS[edition(workspace, path)])
+    for one in sorted(known, key=lambda quality: "." in quality.id):
+        part = one.id.rpartition(".")[2]
+        both = " ".join(dict.fromkeys((one.id, part, one.id.replace("behaviour", "behavior"), one.name)))
+        yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
+
+
+def units(wanted: str | None) -> Iterator[Proposal]:
+    """Units, those that measure the same as `wanted` first."""
+    target = parse_unit(wanted) if wanted else None
+    known = [*symbols(), *(unit for text in _COMPOUNDS if (unit := parse_unit(text)) is not None)]
+    if target is not None:
+        known.sort(key=lambda unit: unit.dimension != target.dimension)
+    for unit in known:
+        yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
+
+
+def rules() -> Iterator[Proposal]:
+    for rule in RULES.values():
+        yield Proposal(rule.name, "rule", rule.summary, rule.name, None, "", rule.name)
+
+
+# ---- parts of the above ----
+
+
+def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Definition, str]]:
+    """Every definition of a kind: those in scope, then those of other files with the file to include."""
+    scope = workspace.scope(path)
+    for name in scope.names(kind):
+        if (found := scope.find(kind, name)) is not None:
+            yield found, ""
+    seen = set(scope.names(kind))
+    for other in sorted(workspace.files):
+        if other in scope.paths:
+            continue
+        for definition in workspace.defined_in(other):
+            if definition.symbol.kind is kind and definition.symbol.name not in seen:
+                seen.add(definition.symbol.name)
+                yield definition, other
+
+
+def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Found]:
+    for path in paths:
+        file = workspace.files[path]
+        for entry in file.parsed.entries:
+            for mention in file.mentions_of(entry):
+                if mention.what in kinds:
+                    yield Found(path, entry, mention)
+
+
+def _unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:
+    """The custom nodes in use."""
+    found = _mentioned(workspace, paths, What.NODE)
+    uses = (one.mention for one in found if not one.mention.defines)
+    return sorted({one.name for one in uses if lookup(one.name, one.word.quoted) is None and one.name})
+
+
+def _model(workspace: Workspace, found: Definition, item: Model, include: str) -> Proposal:
+    name = found.symbol.name
+    needed = [port for port in ports_of_kind(workspace, found.path, name) if port.required]
+    text = item.text.text if item.text else ""
+    detail = f"{item.category.raw}{f': {text}' if text else ''}"
+    return Proposal(name, "node", detail, written(name), _with_ports(written(name), needed), "", name, include)
+
+
+def _builtin(kind: NodeKind) -> Iterator[Proposal]:
+    """A built-in by its symbol, if it has one, and by its shortest name."""
+    needed = [
+        NodePort(one.name, one.direction, one.type, one.default, True, one.doc, one.unit)
+        for one in kind.ports
+        if one.required
+    ]
+    below = "\n    $0" if kind.category in ("Control", "Decorator") else ""
+    for word in dict.fromkeys((*kind.symbols[:1], min((kind.tag, *kind.aliases), key=len), kind.tag)):
+        snippet = _with_ports(word, needed) or (escaped(word) if below else None)
+        named = f"{kind.tag} {word}"
+        yield Proposal(word, "node", kind.doc, word, f"{snippet}{below}" if snippet else None, named, kind.tag)
+
+
+def _with_ports(head: str, needed: Iterable[NodePort]) -> str | None:
+    holes = [f"{escaped(written(port.name))} = {_hole(index, port)}" for index, port in enumerate(needed, 1)]
+    return f"{escaped(head)} ({' '.join(holes)})" if holes else None
+
+
+def _hole(index: int, port: NodePort) -> str:
+    """A place to fill in with what the port takes."""
+    if port.content == "script":
+        return f'"${{{index}:true}}"'
+    if port.unit == "ms":
+        return f"${{{index}:1 s}}"
+    if port.direction != "input":
+        return f"{{${{{index}:{escaped(port.name)}}}\\}}"
+    if port.type in _NUMBERS:
+        return f"${{{index}:1}}"
+    return f"${{{index}:{{=\\}}}}"
+
+
+_NUMBERS = ("int", "unsigned int", "double", "float", "int64_t", "uint64_t")
+_TYPES = (
+    *("string", "bool", "int", "double", "float", "int64_t", "uint64_t", "std::vector<double>", "std::vector<string>"),
+)
+_COMPOUNDS = ("m/s", "m/s^2", "rad/s", "deg/s", "1/s", "%/h", "kB/s")
+_SWITCH = (
+    'Switch (variable = {${1:key}\\} case_1 = "${2:first}" case_2 = "${3:second}")\n    ${4:First}\n    ${5:Second}\n'
+    "    ${0:Otherwise}"
+)
+_ITEMS = (
+    ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->\n        $0", "a tree"),
+    ("QualityReq", 'QualityReq ${1:id} : ${2:quality} "${3:text}"\n    $0', "a requirement"),
+    ("include", 'include "$0"', "another file's names"),
+    ("Root", "Root ${0:Main}", "the main tree"),
+    ("signal", "signal ${1:name} : ${2:unit} from {${0:key}\\}", "what is measured"),
+    ("context", "context ${1:name} : $0", "a condition with a name"),
+    ("apply", "apply ${1:requirement} to $0", "a requirement for many nodes"),
+    ("quality", 'quality ${1:name} : ${2:parent} "$0"', "a quality of one's own"),
+    ("qualities", "qualities ${0:iso25010-2023}", "the edition of the quality model"),
+    ("Action", "Action ${1:Name}\n    $0", "a model: the interface of a node"),
+    ("Condition", "Condition ${0:Name}", "a model: the interface of a node"),
+    ("Decorator", "Decorator ${1:Name}\n    $0", "a model: the interface of a node"),
+    ("Control", "Control ${1:Name}\n    $0", "a model: the interface of a node"),
+    ("SubTree", "SubTree ${1:Name}\n    $0", "a model: the ports of a tree"),
+    ("TreeNodesModel", "TreeNodesModel\n    $0", "models, where the element stands"),
+)
+_ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
+_CLAUSES = (
+    ("takes at most", "takes at most ${0:30 s}", "duration"),
+    ("takes at least", "takes at least ${0:1 s}", "duration"),
+    ("succeeds", None, "result"),
+    ("succeeds within", "succeeds within ${0:30 s}", "result, and when"),
+    ("needs", None, "a condition when it starts"),
+    ("keeps", None, "a condition while it runs"),
+    ("never", None, "what must not be while it runs"),
+    ("leaves", None, "a condition when it has succeeded"),
+    ("uses at most", "uses at most ${1:1 Wh} of ${0:signal}", "a resource"),
+    ("tries at most", "tries at most ${0:3}", "attempts"),
+    ("runs every", "runs every ${0:1 s}", "period"),
+    ("runs at least", "runs at least ${1:1} per ${0:1 s}", "rate"),
+    ("starts within", "starts within ${1:1 s} after $0", "reaction"),
+    ("ends within", "ends within ${1:1 s} after $0", "reaction"),
+    ("follows", None, "order"),
+    ("mission", None, "subject: the whole run"),
+    ("every", None, "subject: each node of a kind"),
+    ("from", "from ${1:A} starts to ${2:B} succeeds $0", "subject: between two events"),
+    ("sum of", None, "subject: several nodes together"),
+    ("while", None, "only while a condition holds"),
+    ("when", None, "only when a condition holds"),
+    ("in at least", "in at least ${1:95 %} of ${0:runs}", "how often"),
+    ("with probability", "with probability >= ${1:95 %} of ${0:runs}", "how often"),
+    ("confidence", "confidence ${0:95 %}", "how sure"),
+    ("over last", "over last ${1:100} ${0:runs}", "window"),
+    ("on violation", "on violation ${0:fail}", "what happens: fail, halt, warn or log"),
+    ("goal", "goal ${0:10 s}", "what would be better still"),
+    ("because", 'because "$0"', "the reason"),
+    ("verified by", "verified by ${0:test}", "monitor, analysis, test or review"),
+)

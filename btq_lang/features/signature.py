@@ -1,0 +1,49 @@
+"""Signature help: the ports of the node in whose brackets one types."""
+
+from __future__ import annotations
+
+from btq_lang.features import describe
+from btq_lang.features.place import place_at
+from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.record import record
+from btq_lang.workspace import Workspace
+
+
+@record
+class Parameter:
+    """A port: its label is a part of the signature's."""
+
+    label: str
+    documentation: str
+
+
+@record
+class Signature:
+    """The ports of a node on one line.  active: which one is being given; None: one that it has not."""
+
+    label: str
+    documentation: str
+    parameters: tuple[Parameter, ...]
+    active: int | None
+
+
+def signature_help(workspace: Workspace, path: str, offset: int) -> Signature | None:
+    """The ports of the node in whose brackets an offset is."""
+    place = place_at(workspace, path, offset)
+    node = place.node
+    if node is None or place.depth == 0:
+        return None
+    if node.is_subtree:
+        ports = ports_of_tree(workspace, path, node.name)
+    else:
+        ports = ports_of_kind(workspace, path, node.name, node.quoted)
+    if not ports:
+        return None
+    parameters = tuple(Parameter(port.signature, describe.port(port)) for port in ports)
+    label = f"{node.name} ({', '.join(parameter.label for parameter in parameters)})"
+    names = [port.name for port in ports]
+    if place.key is not None:
+        active = names.index(place.key) if place.key in names else None
+    else:
+        active = next((index for index, name in enumerate(names) if name not in place.given), None)
+    return Signature(label, "", parameters, active)

@@ -1,0 +1,140 @@
+"""The shape of a text: what folds, what a selection grows to, and which words lead to other files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.features.meaning import at, entry_at
+from btq_lang.record import record
+from btq_lang.syntax import Include, Node, Tree
+from btq_lang.text import Span
+from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
+from btq_lang.workspace import Workspace
+
+
+@record
+class Fold:
+    """A stretch that can be folded to its first line.  kind: block, brackets, comment or includes."""
+
+    span: Span
+    kind: str
+
+
+@record
+class Link:
+    """A word that leads to a file; no target: the file is not there."""
+
+    span: Span
+    target: str | None
+
+
+def folding_ranges(workspace: Workspace, path: str) -> tuple[Fold, ...]:
+    """Blocks, brackets over several lines, runs of comment lines, and the includes at the top."""
+    file = workspace.files[path]
+    text = file.text
+    found: list[Fold] = []
+    blocks: list[int] = []  # where the line above each open block begins
+    brackets: list[int] = []
+    line = end = 0  # where the logical line at hand begins, and where its last word ends
+    at_start = True
+    for token in file.parsed.tokens:
+        if token.kind == INDENT:
+            blocks.append(line)
+        elif token.kind == DEDENT:
+            if blocks:
+                found.append(Fold(Span(blocks.pop(), end), "block"))
+        elif token.kind == NEWLINE:
+            at_start = True
+        elif token.kind not in (BLANK, COMMENT):
+            if at_start:
+                line, at_start = token.start, False
+            if token.kind == OPEN:
+                brackets.append(token.start)
+            elif token.kind == CLOSE and brackets:
+                found.append(Fold(Span(brackets.pop(), token.end), "brackets"))
+            end = token.end
+    found += _comment_runs(workspace, path)
+    includes = [entry for entry in file.parsed.entries if isinstance(entry.item, Include)]
+    if len(includes) > 1:
+        first, last = includes[0], includes[-1]
+        found.append(Fold(Span(first.start + first.item.start, last.start + last.item.end), "includes"))
+    several_lines = (fold for fold in found if "\n" in text[slice(*fold.span)] or "\r" in text[slice(*fold.span)])
+    return tuple(sorted(several_lines, key=lambda fold: fold.span))
+
+
+def _comment_runs(workspace: Workspace, path: str) -> Iterator[Fold]:
+    file = workspace.files[path]
+    run: Span | None = None
+    begins = True
+    for token in file.parsed.tokens:
+        if token.kind == COMMENT and begins:
+            run = Span(run.start if run else token.start, token.end)
+        elif token.kind not in (BLANK, INDENT, DEDENT):
+            if run is not None:
+                yield Fold(run, "comment")
+            run, begins = None, token.kind == NEWLINE
+        elif token.kind == BLANK:
+            lines = token.text.count("\n") or token.text.count("\r")
+            begins = begins or lines > 0
+            if lines > 1 and run is not None:
+                yield Fold(run, "comment")
+                run = None
+    if run is not None:
+        yield Fold(run, "comment")
+
+
+def selection_range(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
+    """What a selection at a place grows to, step by step, the smallest first: the word, what is in a string, the pair,
+    the brackets, the node, the node with its block, those it stands in, the item, the file."""
+    file = workspace.files[path]
+    spans = {Span(0, len(file.text))}
+    for token in file.parsed.tokens:
+        if token.start <= offset <= token.end and token.kind not in (BLANK, NEWLINE, INDENT, DEDENT):
+            spans.add(Span(token.start, token.end))
+            if token.kind == STRING and token.start < offset < token.end:
+                spans.add(Span(token.start + 1, max(token.end - 1, token.start + 1)))
+    found = at(workspace, path, offset)
+    if found is not None:
+        spans.add(found.span)
+    entry = entry_at(workspace, path, offset)
+    if entry is not None:
+        item = entry.item
+        spans.add(Span(item.start, item.end).shifted(entry.start))
+        if isinstance(item, Tree):
+            ends = [child.block_end for child in item.children if isinstance(child, Node)]
+            spans.add(Span(item.start, max([item.end, *ends])).shifted(entry.start))
+            for node in item.walk():
+                spans.add(node.span.shifted(entry.start))
+                spans.add(Span(node.start, node.block_end).shifted(entry.start))
+                spans.update(pair.span.shifted(entry.start) for pair in node.attributes)
+    spans.update(_brackets(workspace, path))
+    around = [span for span in spans if span.start <= offset <= span.end]
+    around.sort(key=lambda span: (span.end - span.start, span.start))
+    nested: list[Span] = []
+    for span in around:
+        if not nested or (span != nested[-1] and span.start <= nested[-1].start and nested[-1].end <= span.end):
+            nested.append(span)
+    return tuple(nested)
+
+
+def _brackets(workspace: Workspace, path: str) -> Iterator[Span]:
+    opened: list[int] = []
+    for token in workspace.files[path].parsed.tokens:
+        if token.kind == OPEN:
+            opened.append(token.start)
+        elif token.kind == CLOSE and opened:
+            start = opened.pop()
+            yield Span(start, token.end)
+            yield Span(start + 1, max(token.end - 1, start + 1))
+
+
+def document_links(workspace: Workspace, path: str) -> tuple[Link, ...]:
+    """The paths of includes."""
+    file = workspace.files[path]
+    found = []
+    for entry in file.parsed.entries:
+        if isinstance(entry.item, Include) and entry.item.path is not None:
+            span = entry.item.path.span.shifted(entry.start)
+            inside = Span(span.start + 1, max(span.end - 1, span.start + 1)) if entry.item.path.quoted else span
+            found.append(Link(inside, workspace.included_by(path, entry.item)))
+    return tuple(found)

@@ -1,0 +1,176 @@
+"""Completion by place, in lines that are half typed."""
+
+from __future__ import annotations
+
+import pytest
+from feature_asserts import check_accept, check_completion, check_documentation, check_offers
+
+FILES = """//- main.btq
+signal battery : % from {battery_level}
+context low : battery < 20 %
+quality gentleness : safety "soft"
+QualityReq slow(limit : m/s) : safety "Slow"
+    keeps speed <= limit
+Action MoveBase "Drives"
+    input station : string "a name"
+    input speed : double = 0.5
+    output pose : string
+Condition Near
+BehaviorTree Main
+    input ward : string
+    -> First
+        MoveBase ToWard (station = {goal} pose = {here}) tags heavy
+        SubTree Dock (place = x)
+        Script (code = "n := 1")
+BehaviorTree Dock
+    input place : string
+    Wait
+//- lib.btq
+QualityReq far "Far away"
+    takes at most 1 s
+BehaviorTree Far
+    Pick
+"""
+MAIN, LIB = FILES.split("//- lib.btq\n")
+
+
+def typed(line: str) -> str:
+    """The files, with a line being typed at the end of main.btq."""
+    return f"{MAIN}{line}\n//- lib.btq\n{LIB}"
+
+
+@pytest.mark.parametrize(
+    ("line", "labels"),
+    [
+        # Behind SubTree and Root: trees, those of other files too.
+        ("BehaviorTree X\n    SubTree $0", ("Main", "Dock", "X", "Far")),
+        ("Root M$0", ("Main", "Dock", "Far")),
+        # Requirements, with those that are elsewhere; their parameters.
+        ("BehaviorTree X\n    Pick satisfies $0", ("slow", "far", "QualityReq")),
+        ("BehaviorTree X\n    Pick satisfies slow, $0", ("slow", "far", "QualityReq")),
+        ("BehaviorTree X\n    Pick (satisfies $0)", ("slow", "far", "QualityReq")),
+        ("BehaviorTree X\n    Pick (satisfies QualityReq ID = $0)", ("slow", "far")),
+        ("BehaviorTree X\n    Pick satisfies slow($0", ("limit",)),
+        ("apply $0", ("slow", "far")),
+        ("apply slow($0) to Pick", ("limit",)),
+        ("apply slow $0", ("to",)),
+        ("apply slow to every node tagged $0", ("heavy",)),
+        # What follows a node and what follows a list.
+        ("BehaviorTree X\n    Pick $0", ("satisfies", "satisfices", "tags")),
+        ("BehaviorTree X\n    Pick satisfies slow $0", ("satisfies", "satisfices", "tags")),
+        ("BehaviorTree X\n    Pick tags $0", ("heavy",)),
+        # Entries of the blackboard.
+        ("BehaviorTree X\n    input shelf : string\n    Pick (from = {$0", ("=", "shelf")),
+        ("BehaviorTree X\n    Pick (a = {there} from = {t$0} b = 1)", ("=", "there", "t")),
+        ("BehaviorTree X\n    Pick (from = {@$0", ("battery_level",)),
+        ('BehaviorTree X\n    input shelf : string\n    Script (code = "a := sh$0', ("shelf",)),
+        # The grammar of clauses.
+        ('QualityReq a "t" takes $0', ("at most", "at least", "less than", "more than", "between")),
+        ('QualityReq a "t" takes at $0', ("most", "least")),
+        ('QualityReq a "t"\n    on $0', ("violation",)),
+        ('QualityReq a "t"\n    on violation $0', ("fail", "halt", "warn", "log")),
+        ('QualityReq a "t"\n    verified by $0', ("monitor", "analysis", "test", "review")),
+        ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
+        ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", "max()", "min()", "mean()", "p95()")),
+        ('QualityReq a "t"\n    starts within 1 s after Dock $0', ("fails", "finishes", "halts", "starts", "succeeds")),
+        # Strings and comments.
+        ('include "$0', ("lib.btq",)),
+        ("include $0", ("lib.btq",)),
+        ("qualities $0", ("iso25010-2023", "iso25010-2011")),
+        ('BehaviorTree X\n    Pick (name = "$0")', ()),
+        ("# a comment $0", ()),
+        ("# btq$0", ("btq: ignore[…]",)),
+        # Models.
+        ("Action $0", ("Pick", "Wait")),
+        ("Action Wait\n    $0", ("input", "output", "inout")),
+        ("BehaviorTree X\n    Condition $0", ("Near", "Wait")),
+    ],
+)
+def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
+    check_completion(typed(line), *labels)
+
+
+@pytest.mark.parametrize(
+    ("line", "labels", "absent"),
+    [
+        ("Beh$0", ("BehaviorTree", "QualityReq", "include", "Root", "signal", "apply"), ("satisfies",)),
+        (
+            "BehaviorTree X\n    $0",
+            ("MoveBase", "Near", "Wait", "->", "Sequence", "Retry", "RetryUntilSuccessful", "SubTree", "satisfies"),
+            ("BehaviorTree", "takes at most"),
+        ),
+        (
+            "BehaviorTree X\n    MoveBase (station = a $0",
+            ("speed", "pose", "name", "_skipIf", "satisfies"),
+            ("station", "_autoremap", "_uid"),
+        ),
+        ("BehaviorTree X\n    SubTree Dock ($0", ("place", "name", "_autoremap"), ("station",)),
+        ("BehaviorTree X\n    Timeout ($0)", ("msec", "name", "_skipIf"), ("satisfied",)),
+        ("BehaviorTree X\n    Timeout (msec = 3$0", ("s", "ms", "min", "m", "kg"), ("satisfies",)),
+        ("BehaviorTree X\n    Retry (num_attempts = 3 $0", ("name", "_skipIf"), ("s", "num_attempts")),
+        (
+            "BehaviorTree X\n    Pick satisfices perf$0",
+            ("gentleness", "performance-efficiency", "safety", "performance-efficiency.time-behaviour"),
+            ("satisfies",),
+        ),
+        ("BehaviorTree X\n    Pick (satisfices Quality = $0", ("gentleness", "safety"), ("satisfies",)),
+        ('QualityReq a : $0 "t"', ("gentleness", "safety"), ("takes at most",)),
+        ('QualityReq a "t" takes at most 30 $0', ("s", "min", "m", "if", "takes at most", "on violation"), ()),
+        (
+            'QualityReq a "t"\n    goal 1 s\n    $0',
+            ("takes at most", "needs", "while", "in at least", "confidence", "over last", "on violation", "because"),
+            ("satisfies", "BehaviorTree"),
+        ),
+        ('QualityReq a "t" on violation fail $0', ("takes at most", "goal"), ("on violation",)),
+        ("QualityReq a(n : m/s)\n    keeps battery <= $0", ("n", "low", "battery"), ("takes at most",)),
+        ("signal a : $0", ("m", "%", "m/s", "bool", "text"), ("level",)),
+        ("signal a : m/s $0", ("from {}", "level", "fresh within"), ("m",)),
+        ('QualityReq a "t"\n    from $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("Sequence",)),
+        ("BehaviorTree X\n    MoveBase  # btq: ignore[$0", ("syntax-error", "unknown-node"), ()),
+        ("BehaviorTree X\n    MoveBase  # btq: ignore[unknown-node, unk$0]", ("unknown-port",), ()),
+    ],
+)
+def test_among_what_may_stand_here(line: str, labels: tuple[str, ...], absent: tuple[str, ...]) -> None:
+    check_offers(typed(line), *labels, absent=absent)
+
+
+@pytest.mark.parametrize(
+    ("line", "label", "after", "plain"),
+    [
+        ("    Move$0", "MoveBase", "    MoveBase (station = ${1:{=\\}})", "    MoveBase"),
+        ("    Move$0 (station = x)", "MoveBase", "    MoveBase (station = x)", "    MoveBase (station = x)"),
+        ("    Ret$0", "Retry", "    Retry (num_attempts = ${1:1})\n    $0", "    Retry"),
+        ("    Pick (from = {w$0", "=", "    Pick (from = {=}", None),
+        ("    Pick (from = {w$0})", "=", "    Pick (from = {=})", None),
+        ("    MoveBase (st$0)", "station", "    MoveBase (station = ${0:{=\\}})", "    MoveBase (station = )"),
+        ("    Timeout (msec = 30$0)", "s", "    Timeout (msec = 30 s)", None),
+        ("    Timeout (msec = 30 m$0)", "min", "    Timeout (msec = 30 min)", None),
+        ("    Pick satisfies s$0", "slow", "    Pick satisfies slow(limit = ${1:limit})", "    Pick satisfies slow"),
+        ("    SubTree D$0", "Dock", "    SubTree Dock (place = ${1:{=\\}})", "    SubTree Dock"),
+        ("    Pick satisfices perf$0", "safety", "    Pick satisfices safety", None),
+        ("    Pick  # btq: ign$0", "btq: ignore[…]", "    Pick  # btq: ignore[$0]", "    Pick  # btq: ignore[]"),
+    ],
+)
+def test_what_is_written(line: str, label: str, after: str, plain: str | None) -> None:
+    head = f"{MAIN.removeprefix('//- main.btq' + chr(10))}BehaviorTree X\n"
+    check_accept(f"{head}{line}", label, f"{head}{after}", plain=f"{head}{plain}" if plain else None)
+
+
+def test_documentation() -> None:
+    check_documentation(
+        typed("BehaviorTree X\n    Pick satisfies $0"),
+        "far",
+        "**far**\n\nFar away\n\n```btq\ntakes at most 1 s\n```",
+    )
+    check_documentation(
+        typed("BehaviorTree X\n    MoveBase ($0"),
+        "station",
+        "`input station : string` (required): a name",
+    )
+
+
+def test_the_cursor_on_an_empty_line_between_others() -> None:
+    check_offers(
+        "BehaviorTree Main\n    ->\n        $0\n        Pick\n", "Pick", "->", "SubTree", absent=["takes at most"]
+    )
+    check_offers('QualityReq a "t"\n    $0\n    on violation fail\n', "takes at most", absent=["SubTree"])

@@ -1,0 +1,168 @@
+"""Hover: what stands under the cursor, explained."""
+
+from __future__ import annotations
+
+import pytest
+from feature_asserts import check_hover
+
+
+def test_a_model_with_its_ports() -> None:
+    check_hover(
+        """
+        Action Pick "Takes a tube"
+            input from : string "where the tubes are"
+            output weight : double = 0
+        BehaviorTree Main
+            <hover>Pi$0ck</hover> (from = x)
+        """,
+        """
+        ```btq
+        Action Pick
+        ```
+
+        Takes a tube
+
+        - `input from : string` (required): where the tubes are
+        - `output weight : double = 0`
+        """,
+    )
+
+
+def test_a_builtin() -> None:
+    check_hover(
+        "BehaviorTree Main\n    <hover>Inv$0erter</hover>\n        Pick\n",
+        """
+        **Inverter** (Decorator) · `Inverter` · children: 1 · since 4.6
+
+        Turns success into failure and failure into success.
+
+        RUNNING and SKIPPED are passed on as they are.
+        """,
+    )
+
+
+def test_a_requirement_from_another_file() -> None:
+    check_hover(
+        """
+        //- main.btq
+        include "lib.btq"
+        BehaviorTree Main
+            ->
+                Pick Near satisfies <hover>rq$01</hover>
+                Place satisfies rq1
+        //- lib.btq
+        QualityReq rq1 : safety "Keep
+                                 calm"
+            takes at most
+                30 s
+            on violation fail
+        """.replace("at most\n                30 s", "at most 30 s"),
+        """
+        **rq1** · safety
+
+        Keep calm
+
+        ```btq
+        takes at most 30 s
+        on violation fail
+        ```
+
+        Attached to:
+        - `Pick Near` in `Main` (main.btq)
+        - `Place` in `Main` (main.btq)
+        """,
+    )
+
+
+def test_a_quality() -> None:
+    check_hover(
+        "BehaviorTree Main\n    Pick satisfices <hover>time-$0behavior</hover>\n",
+        """
+        **performance-efficiency.time-behaviour** · Time behaviour
+
+        Response time and throughput meet the requirement.
+
+        _ISO/IEC 25010:2023_
+
+        Siblings: `resource-utilization`, `capacity`
+        """,
+    )
+
+
+def test_a_quality_of_ones_own() -> None:
+    check_hover(
+        'quality gentleness : safety "soft"\nBehaviorTree Main\n    Pick satisfices <hover>gentle$0ness</hover>\n',
+        "**gentleness** · safety\n\nsoft\n\n_declared in main.btq_",
+    )
+
+
+def test_an_entry_with_its_readers_and_writers() -> None:
+    check_hover(
+        """
+        Action Look
+            output pose : string
+        Action Go
+            input to : string
+        Root Other
+        BehaviorTree Main
+            ->
+                Look (pose = {<hover>tar$0get</hover>})
+                Go (to = {target})
+        """,
+        """
+        **target** · entry of this tree's blackboard
+
+        Written by:
+        - `Look` in `Main` (main.btq)
+
+        Read by:
+        - `Go` in `Main` (main.btq)
+        """,
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "markdown"),
+    [
+        ("QualityReq r\n    takes at most <hover>$030 min</hover>\n", "**30 min** = 1800 s (time)"),
+        ("QualityReq r\n    keeps v <= <hover>36 k$0mh</hover>\n", "**36 kmh** = 10 m/s (speed)"),
+        ("QualityReq r\n    keeps t <= <hover>25 deg$0C</hover>\n", "**25 degC** = 298.15 K (temperature)"),
+        ("QualityReq r\n    in at least <hover>98 $0%</hover> of runs\n", "**98 %** = 0.98 (percentage)"),
+        (
+            "BehaviorTree Main\n    Timeout (msec = <hover>3$00 s</hover>)\n        Pick\n",
+            "**30 s** = 30 s (time)\n\nWritten to the port as `30000`, in ms.",
+        ),
+        (
+            "BehaviorTree Main\n    Timeout (<hover>ms$0ec</hover> = 30 s)\n        Pick\n",
+            "`input msec : unsigned int` (in ms, required): The time limit; 0 is none",
+        ),
+        (
+            "BehaviorTree Main\n    Pick (<hover>_skip$0If</hover> = x)\n",
+            "`_skipIf`: SKIPPED without a tick, if true when the node starts; not looked at while it runs",
+        ),
+        (
+            "signal <hover>spe$0ed</hover> : m/s from {v}\n",
+            "```btq\nsignal speed : m/s from {v}\n```\n\n_main.btq_",
+        ),
+        (
+            "BehaviorTree Main\n    <hover>Pi$0ck</hover>\n",
+            "`Pick`: a custom node; no model in this file or in what it includes declares its ports.",
+        ),
+        (
+            "Root <hover>Ma$0in</hover>\nBehaviorTree Main\n    Pick\n",
+            "```btq\nBehaviorTree Main\n```\n\n1 node · main.btq\n\nRun by:\n- main.btq",
+        ),
+        ("signal v : <hover>km$0h</hover>\n", "**kmh** · speed · 1 kmh = 0.2777777778 m/s"),
+        ("signal v : <hover>$0m/s</hover>\n", "**m/s** · speed"),
+        ("$0\n", None),
+        ("Behavior$0Tree Main\n", None),
+    ],
+)
+def test_hover(text: str, markdown: str | None) -> None:
+    check_hover(text, markdown)
+
+
+def test_a_rule() -> None:
+    from btq_lang.rules import page
+
+    check_hover("# btq: ignore[<hover>unused$0-tree</hover>]\nBehaviorTree Main\n    Pick\n", page("unused-tree"))

@@ -1,0 +1,90 @@
+"""Semantic tokens: what each word is."""
+
+from __future__ import annotations
+
+from feature_asserts import check_delta, check_tokens
+
+
+def test_a_tree() -> None:
+    check_tokens(
+        """
+        //- main.btq
+        BehaviorTree Main  # it runs
+            -> First
+                Pick (from = {shelf} n = 6) satisfies rq1
+                Retry (num_attempts = 3)
+                    SubTree Dock (_skipIf = "a > 1")
+        """,
+        "keyword BehaviorTree",
+        "class.definition Main",
+        "comment # it runs",
+        "operator.defaultLibrary ->",
+        "label.definition First",
+        "function Pick",
+        "property from",
+        "variable {",
+        "variable shelf",
+        "variable }",
+        "property n",
+        "number 6",
+        "keyword satisfies",
+        "interface rq1",
+        "type.defaultLibrary Retry",
+        "property num_attempts",
+        "number 3",
+        "keyword SubTree",
+        "class Dock",
+        "property _skipIf",
+        'string "',
+        "variable a",
+        'string  > 1"',
+    )
+
+
+def test_a_requirement() -> None:
+    check_tokens(
+        "QualityReq slow(limit : m/s) : performance <time-behavior> 'Slow\n'\n    keeps speed <= limit and fast\n",
+        "keyword QualityReq",
+        "interface.definition slow",
+        "parameter.definition limit",
+        "type m",
+        "type s",
+        "enumMember.defaultLibrary performance",
+        "enumMember.defaultLibrary time-behavior",
+        "string 'Slow",
+        "string '",
+        "keyword keeps",
+        "variable.readonly speed",
+        "parameter limit",
+        "keyword and",
+        "variable.readonly fast",
+    )
+
+
+def test_a_keyword_may_be_a_name() -> None:
+    check_tokens(
+        "BehaviorTree satisfies\n    takes\n",
+        "keyword BehaviorTree",
+        "class.definition satisfies",
+        "function takes",
+    )
+
+
+def test_wide_characters_count_as_the_encoding_has_them() -> None:
+    check_tokens(
+        'BehaviorTree "🤖" # ä\n    Grüße\n',
+        "keyword BehaviorTree",
+        'class.definition "🤖"',
+        "comment # ä",
+        "function Grüße",
+    )
+
+
+def test_delta() -> None:
+    one, two, three = [0, 0, 1, 1, 0], [1, 0, 1, 2, 0], [0, 5, 1, 3, 0]
+    check_delta(one + two + three, one + two + three, None)
+    check_delta(one + three, one + two + three, (5, 0, two))
+    check_delta(one + two + three, one + three, (5, 5, []))
+    check_delta(one + two, one + three, (5, 5, three))
+    check_delta([], one, (0, 0, one))
+    check_delta(one + one, one, (5, 5, []))
