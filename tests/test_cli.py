@@ -360,3 +360,9 @@ def test_a_closed_pipe_is_no_traceback(tmp_path: Path) -> None:
     command = f"{sys.executable} -m btq_lang check main.btq | head -1"
     done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)
     assert done.stderr == ""
+
+
+def test_format_keeps_the_line_ends_of_standard_input(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "btq_lang", "format", "-"]
+    done = subprocess.run(command, cwd=tmp_path, input=b"BehaviorTree Main\r\n  Dock\r\n", capture_output=True)
+    assert done.stdout == b"BehaviorTree Main\r\n    Dock\r\n"

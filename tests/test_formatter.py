@@ -42,9 +42,18 @@ def test_a_file_ends_with_one_line_end() -> None:
     assert format_text("# c").text == "# c\n"
 
 
-def test_line_ends_are_one_character_and_the_byte_order_mark_goes() -> None:
-    text = '\ufeffBehaviorTree X\r\n\tFoo (a = "one\r\n  two") /* three\r  four */\r\tBar'
-    assert format_text(text).text == 'BehaviorTree X\n    Foo (a = "one\n  two")  /* three\n  four */\n    Bar\n'
+def test_line_ends_are_those_of_the_file_and_the_byte_order_mark_goes() -> None:
+    text = '\ufeffBehaviorTree X{0}\tFoo (a = "one\r\n  two") /* three\r  four */\r\tBar\n'
+    formatted = 'BehaviorTree X\n    Foo (a = "one\n  two")  /* three\n  four */\n    Bar\n'
+    assert format_text(text.format("\n")).text == formatted
+    assert format_text(text.format("\r")).text == formatted
+    assert format_text(text.format("\r\n")).text == formatted.replace("\n", "\r\n")
+
+
+def test_a_formatted_file_of_windows_stays_as_it_is() -> None:
+    text = "signal a : s\r\n\r\nBehaviorTree A\r\n    Foo  # a\r\n"
+    assert format_text(text).edits == ()
+    assert format_text(text.replace("Foo ", "Foo")).edits == (Edit(Span(40, 40), " "),)
 
 
 def test_no_blanks_at_the_end_of_a_line_but_in_strings() -> None:
@@ -642,6 +651,55 @@ def test_comments_on_one_line_stay_on_it() -> None:
     )
 
 
+def test_comments_that_are_aligned_stay_aligned() -> None:
+    assert_formats(
+        """
+        signal a : s from {x} # a
+        signal b :   s        # b
+        signal cc : s from   {long}   # c
+        signal d:s # d
+        BehaviorTree A
+          ->
+             Foo   (x = 1)    # f
+             Bar              # g
+               Baz            # h
+
+             Foo              # not beside the line above
+             Bar
+             X (               # i
+               x = 1           # j
+               yyyyyyyyyyy = 2 # k
+             )                 # l
+        """,
+        """
+        signal a : s from {x}  # a
+        signal b : s           # b
+        signal cc : s from {long}  # c
+        signal d : s  # d
+
+        BehaviorTree A
+            ->
+                Foo (x = 1)  # f
+                Bar          # g
+                    Baz      # h
+
+                Foo  # not beside the line above
+                Bar
+                X (                  # i
+                    x = 1            # j
+                    yyyyyyyyyyy = 2  # k
+                )                    # l
+        """,
+    )
+
+
+def test_a_tab_before_an_aligned_comment_is_four_columns() -> None:
+    assert_formats(
+        "BehaviorTree A\n\t->\n\t\tFoo\t\t# a\n\t\tBazes\t# b\n",
+        "BehaviorTree A\n    ->\n        Foo    # a\n        Bazes  # b\n",
+    )
+
+
 def test_comments_in_brackets() -> None:
     assert_formats(
         """
@@ -741,7 +799,8 @@ def test_edits_are_gaps() -> None:
 
 
 def test_edits_do_not_cut_a_line_end_in_two() -> None:
-    assert format_text("Root A\r\n").edits == (Edit(Span(6, 8), "\n"),)
+    assert format_text("# a\nRoot A\r\n").edits == (Edit(Span(10, 12), "\n"),)
+    assert format_text("# a\r\nRoot A\n").edits == (Edit(Span(11, 12), "\r\n"),)
 
 
 RANGE = """\

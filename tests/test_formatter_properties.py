@@ -49,6 +49,10 @@ def assert_holds(text: str, options: FormatOptions = DEFAULTS) -> None:
     assert not has_errors(done.text)
     assert format_text(done.text, options).text == done.text
     assert_says_the_same(text, done.text)
+    line_end = re.search(r"\r\n|\n|\r", text)
+    if line_end is not None and line_end[0] == "\r\n":
+        assert done.text.count("\n") == done.text.count("\r\n")
+        done = format_text(text.replace("\r\n", "\n"), options)
     assert not re.search(r"[ \t]\n|\r|\n\n\n|^\n|[^\n]\Z", without_texts(done.text))
 
 

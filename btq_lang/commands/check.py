@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
-from btq_lang.commands.files import STDIN, Files, Group, usage_problem
+from btq_lang.commands.files import STDIN, Files, Group, usage_problem, write_stdout
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import LoadProblem, shown, write_whole
@@ -113,7 +113,7 @@ def _fix(
         for path in writable:
             text = workspace.files[path].text
             if path == files.stdin:
-                sys.stdout.write(text)
+                write_stdout(text)
             elif text != group.workspace.files[path].text:
                 try:
                     write_whole(path, text)

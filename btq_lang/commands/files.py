@@ -38,6 +38,12 @@ def usage_problem(paths: Iterable[str]) -> str | None:
     return "a path is empty; `.` is this folder" if "" in paths else None
 
 
+def write_stdout(text: str) -> None:
+    """Print a file as it is: standard output itself would write other line ends on some systems."""
+    sys.stdout.flush()
+    sys.stdout.buffer.write(text.encode())
+
+
 class Files:
     """What was read so far; asked again, it parses only what changed.
 

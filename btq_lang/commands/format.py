@@ -6,7 +6,7 @@ import os
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files, usage_problem
+from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.formatter import format_text
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.render.colour import painter, wants_colour
@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
                         changed -= 1
                         refused += 1
             if from_stdin and not only_tell:
-                sys.stdout.write(done.text)
+                write_stdout(done.text)
     for problem in trouble:
         print(f"btq: {problem}", file=sys.stderr)
     _sum_up(count, changed, refused, only_tell)

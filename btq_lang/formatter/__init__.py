@@ -16,13 +16,14 @@ The style:
 * inside an attribute or a condition the author's line ends stay, save where they tear apart what is one: round `=`,
   before `,` and so on;
 * one blank between words, none inside brackets, paths and units, one between a number and its unit, two before a
-  comment behind code;
+  comment behind code; such comments of lines that follow each other stay in one column if they are in one;
 * each clause in the block of a requirement has a line of its own, in one order: what is demanded, `while` and `when`,
   odds, confidence, window, `on violation`, `goal`, `because`, `verified by`; clauses behind the requirement's head stay
   there if they fit the line;
 * at most one blank line anywhere, none at the start of the file or of a block; one before and behind every item that
-  has a block; no blanks at a line's end, and `\\n` for every line end, those in strings and comments too, which mean
-  that anyway (language.md §2).
+  has a block; no blanks at a line's end;
+* the line ends that the file has: `\\r\\n` where its first one is that, else `\\n`, in strings and comments too, where
+  they mean the same (language.md §2).
 """
 
 from __future__ import annotations
@@ -33,14 +34,15 @@ from itertools import pairwise
 from typing import Final
 
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.formatter.alignment import Gap, paddings
 from btq_lang.formatter.clauses import sections
 from btq_lang.formatter.layout import FormatOptions, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks, marks_of
 from btq_lang.parser import Parsed, parse
-from btq_lang.record import record
+from btq_lang.record import record, replace
 from btq_lang.rules import Severity
-from btq_lang.text import Edit, Span
+from btq_lang.text import LINE_END, Edit, Span, apply_edits
 
 __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
 
@@ -121,19 +123,54 @@ def _stretches(parsed: Parsed, options: FormatOptions) -> list[_Stretch]:
     parts = tuple(sections(logical_lines(parsed.text, parsed.tokens, marks.atoms), marks, options))
     items = {entry.start + entry.item.start for entry in parsed.entries}
     _part_items([line for section in parts for line in section.lines], items)
-    found: list[_Stretch] = []
+    sections_of_rows: list[list[_Row]] = []
     above = -1  # the level of the row above
     for section in parts:
-        moved = False
-        text: list[str] = []
-        for row in (row for line in section.lines for row in _rows(line, marks, options)):
+        rows = [row for line in section.lines for row in _rows(line, marks, options)]
+        for index, row in enumerate(rows):
             if row.blank and row.level <= above:
-                text.append("\n")
-            text += (row.text, "\n")
-            moved = moved or row.is_moved
+                rows[index] = replace(row, text="\n" + row.text, gaps=tuple(_moved(row.gaps, 1)))
             above = row.level
-        found.append(_Stretch(*section.span, section.lines[0].level, moved, "".join(text)))
-    return found
+        sections_of_rows.append(rows)
+    line_end = _line_end(parsed.text)
+    return [
+        _Stretch(
+            *section.span,
+            section.lines[0].level,
+            any(row.is_moved for row in rows),
+            "".join(f"{row.text}\n" for row in rows).replace("\n", line_end),
+        )
+        for section, rows in zip(parts, _aligned(parsed.text, sections_of_rows), strict=True)
+    ]
+
+
+def _aligned(old: str, sections_of_rows: list[list[_Row]]) -> list[list[_Row]]:
+    """The rows with comments that were aligned aligned again."""
+    gaps: list[Gap] = []
+    at = 0
+    for row in (row for rows in sections_of_rows for row in rows):
+        gaps += _moved(row.gaps, at)
+        at += len(row.text) + 1
+    if len(gaps) < 2:
+        return sections_of_rows
+    new = "".join(f"{row.text}\n" for rows in sections_of_rows for row in rows)
+    blanks = iter(paddings(old, new, gaps))
+    return [[_padded(row, blanks) for row in rows] for rows in sections_of_rows]
+
+
+def _moved(gaps: Iterable[Gap], by: int) -> Iterator[Gap]:
+    return (Gap(gap.at + by, gap.comment) for gap in gaps)
+
+
+def _padded(row: _Row, blanks: Iterator[int]) -> _Row:
+    edits = [Edit(Span(gap.at, gap.at), " " * next(blanks)) for gap in row.gaps]
+    return replace(row, text=apply_edits(row.text, edits)) if edits else row
+
+
+def _line_end(text: str) -> str:
+    """The line end that the file is written with."""
+    first = LINE_END.search(text)
+    return "\r\n" if first is not None and first[0] == "\r\n" else "\n"
 
 
 def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
@@ -160,6 +197,7 @@ class _Row:
     blank: bool
     is_moved: bool
     text: str
+    gaps: tuple[Gap, ...] = ()
 
 
 def _rows(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Row]:
@@ -168,7 +206,7 @@ def _rows(line: Line, marks: Marks, options: FormatOptions) -> Iterator[_Row]:
         yield _remark_row(remark, options)
     if line.pieces:
         moved = line.blanks != " " * (line.level * options.indent)
-        yield _Row(line.level, line.blank, moved, laid_out(line.pieces, line.level, marks, options))
+        yield _Row(line.level, line.blank, moved, *laid_out(line.pieces, line.level, marks, options))
     for remark in line.tail:
         yield _remark_row(remark, options)
 

@@ -8,8 +8,10 @@ where the words on both sides are the same either way, and a new one stands only
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import accumulate
 from typing import Final
 
+from btq_lang.formatter.alignment import Gap
 from btq_lang.formatter.lines import Piece
 from btq_lang.formatter.marks import Marks
 from btq_lang.record import record
@@ -24,8 +26,9 @@ class FormatOptions:
     indent: int = 4
 
 
-def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> str:
-    """The text of a logical line, its indentation included, without the line end."""
+def laid_out(pieces: Sequence[Piece], level: int, marks: Marks, options: FormatOptions) -> tuple[str, tuple[Gap, ...]]:
+    """The text of a logical line, its indentation included, without the line end; and the gaps before the comments
+    behind its code."""
     writer = _Writer(pieces, level * options.indent, marks, options)
     for index in range(len(pieces)):
         writer.write(index)
@@ -82,6 +85,8 @@ class _Writer:
         self.column = indent
         self.next_word = -1  # a piece that is no comment, behind comments at hand
         self.remark = -1  # the gap in `out` behind the code of this line, if only comments follow it
+        self.comment = 0  # where the first of them begins in the file
+        self.gaps: Final[list[tuple[int, int]]] = []  # those of the lines before
 
     def write(self, index: int) -> None:
         piece = self.pieces[index]
@@ -95,6 +100,7 @@ class _Writer:
             self.remark = -1
         elif before is not None and before.kind != COMMENT:
             self.remark = len(self.out)
+            self.comment = piece.start
         self.put("" if indent is not None else _gap(before, piece, self.marks))
         self.put(piece.text)
         if piece.kind == OPEN:
@@ -104,10 +110,10 @@ class _Writer:
         elif indent is not None and piece.start in self.marks.elements:
             self.groups[-1].loose = not self.fits(self.rest_of_element(index), indent)
 
-    def written(self) -> str:
-        if self.remark >= 0:
-            self.out[self.remark] = "  "
-        return "".join(self.out)
+    def written(self) -> tuple[str, tuple[Gap, ...]]:
+        self.end_code()
+        ends = list(accumulate(map(len, self.out), initial=0)) if self.gaps else ()
+        return "".join(self.out), tuple(Gap(ends[index], comment) for index, comment in self.gaps)
 
     def put(self, text: str) -> None:
         self.out.append(text)
@@ -115,12 +121,17 @@ class _Writer:
         self.column = len(text) - last - 1 if last >= 0 else self.column + len(text)
 
     def end_line(self, indent: int, blank: bool) -> None:
-        if self.remark >= 0:
-            self.out[self.remark] = "  "
-            self.remark = -1
+        self.end_code()
         self.put("\n\n" if blank else "\n")
         self.put(" " * indent)
         self.indent = indent
+
+    def end_code(self) -> None:
+        """Set apart the comments at the end of the line of text at hand."""
+        if self.remark >= 0:
+            self.out[self.remark] = "  "
+            self.gaps.append((self.remark, self.comment))
+            self.remark = -1
 
     # ---- line ends ----
 
