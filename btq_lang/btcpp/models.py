@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
+from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
 from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import spelt
@@ -16,7 +17,7 @@ from btq_lang.btcpp.trees import CustomNode
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.record import replace
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim
+from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim, Word
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -50,16 +51,26 @@ def model_element(source: Source, entry: Entry, model: Model) -> Element:
                 source.put(fields.children, made, around)
             continue
         fields = None
-        made_part = source.raw(entry, part) if isinstance(part, Verbatim) else port_element(source, entry, part)
+        made_part = (
+            source.raw(entry, part)
+            if isinstance(part, Verbatim)
+            else port_element(source, entry, part, model.name if model.category.raw == "SubTree" else None)
+        )
         source.put(contents, made_part, around)
     contents += source.written(own.last)
     return element
 
 
-def port_element(source: Source, entry: Entry, port: Port) -> Element:
-    """`input station : string = "charger" "where to go"`."""
+def port_element(source: Source, entry: Entry, port: Port, tree: Word | None = None) -> Element:
+    """`input station : string = "charger" "where to go"`; tree: whose port it is, where it is a tree's."""
     said = (("name", port.name), ("type", port.type), ("default", port.default))
     attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
+    if tree is not None and port.name is not None and port.default is not None and not source.verbatim:
+        raw = attributes[-1].raw
+        fit = fitting(source.type_below(tree.text, port.name.text), raw)
+        if fit != raw:
+            source.respelt(entry, port.default, raw, fit)
+            attributes[-1] = Attribute("default", fit)
     attributes += attributes_of(source, entry, port.attributes)
     element = Element(f"{port.direction.raw}_port", only_first(attributes))
     own = source.around(entry, port)
@@ -112,7 +123,7 @@ class Models:
             self.loose.append(model)
         for port in tree.ports:
             if port.name is None or port.name.text not in known:
-                source.put(model.children, port_element(source, entry, port), source.around(entry, port))
+                source.put(model.children, port_element(source, entry, port, tree.name), source.around(entry, port))
 
     def _elements(self) -> Iterator[Element]:
         for contents in (*(palette.children for palette in self.palettes), self.loose):

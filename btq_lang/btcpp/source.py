@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from btq_lang.btcpp.constants import type_below
 from btq_lang.btcpp.document import Comment, Content, Raw, escape
 from btq_lang.btcpp.fragment import fragment_problem
 from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
@@ -60,6 +61,7 @@ class Source:
         self.repairs: Final[dict[Remark, None]] = {}
         self.problems: Final[dict[Remark, None]] = {}
         self._tree_ids: dict[str, str] = {}
+        self._types: dict[tuple[str, str], str] = {}
         self._changed_comments: list[SourceComment] = []
 
     def repair(self, entry: Entry, part: Part, message: str) -> None:
@@ -86,6 +88,18 @@ class Source:
     def around(self, entry: Entry, part: Part) -> Comments:
         """The comments of an element."""
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
+
+    def type_below(self, tree: str, port: str) -> str:
+        """The type that a port of a tree meets, as `constants` finds it."""
+        known = self._types.get((tree, port))
+        if known is None:
+            known = self._types[tree, port] = type_below(self.scope, self.target, tree, port)
+        return known
+
+    def respelt(self, entry: Entry, part: Part, said: str, written: str) -> None:
+        """A constant of a subtree's port is spelt as another type."""
+        why = "4.9.1 and later would take it for a number of another type than the node below"
+        self.repair(entry, part, f"`{said}` is written as `{written}`: {why}")
 
     def raw(self, entry: Entry, verbatim: Verbatim) -> Raw:
         """An element that the file spells out."""

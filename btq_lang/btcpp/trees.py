@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
+from btq_lang.btcpp.constants import fitting, is_number
 from btq_lang.btcpp.descriptions import description
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
@@ -216,9 +217,23 @@ class Trees:
                 attributes.insert(0, Attribute("ID", raw))
             else:
                 attributes[in_brackets] = Attribute("ID", raw)
+            if not source.verbatim:
+                attributes = [self._constant(entry, node, name.text, each) for each in attributes]
         if not source.verbatim and node.name is not None and at_least(source.target, _UNIQUE_SINCE):
             return self._with_unique_name(entry, node.name, attributes)
         return attributes
+
+    def _constant(self, entry: Entry, node: Node, tree: str, attribute: Attribute) -> Attribute:
+        """What a SubTree says for a port of its tree, spelt so that every version of the engine takes it."""
+        if not is_number(attribute.raw) or not is_port_name(attribute.name):
+            return attribute
+        source = self._source
+        raw = fitting(source.type_below(tree, attribute.name), attribute.raw)
+        if raw == attribute.raw:
+            return attribute
+        said = next((pair.value for pair in node.attributes if pair.key.text == attribute.name), None)
+        source.respelt(entry, said or node, attribute.raw, raw)
+        return Attribute(attribute.name, raw)
 
     def _with_unique_name(self, entry: Entry, name: Word, attributes: list[Attribute]) -> list[Attribute]:
         """The engine refuses a second SubTree of one name in a tree, and one whose name is empty."""

@@ -168,9 +168,11 @@ std::pair<std::string, BT::PortInfo> port(const Json& port)
     return BT::CreatePort<unsigned>(direction, name);
   if(type == "double")
     return BT::CreatePort<double>(direction, name);
+  if(type == "float")
+    return BT::CreatePort<float>(direction, name);
   if(type == "bool")
     return BT::CreatePort<bool>(direction, name);
-  if(type == "std::string")
+  if(type == "string" || type == "std::string")
     return BT::CreatePort<std::string>(direction, name);
   return BT::CreatePort<BT::AnyTypeAllowed>(direction, name);
 }
