@@ -1,4 +1,4 @@
-"""The command line: `btq check`, `btq format`, `btq explain`, `btq init`, `btq completion`.
+"""The command line: `btq check`, `btq format`, `btq build`, `btq explain`, `btq init`, `btq completion`.
 
 Exit codes, everywhere: 0 clean, 1 findings, 2 usage or I/O.  Nothing is decided here: arguments in, the pure parts
 called, their answer printed.  A command imports what it needs when it runs, for most runs are one `btq check`.
@@ -75,7 +75,7 @@ def build_parser() -> ArgumentParser:
 
     parser = ArgumentParser(
         prog="btq",
-        description="Quality-aware behavior trees for BehaviorTree.CPP: check, format and understand .btq files.",
+        description="Quality-aware behavior trees for BehaviorTree.CPP: check, build and understand .btq files.",
         epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
         formatter_class=RawDescriptionHelpFormatter,
     )

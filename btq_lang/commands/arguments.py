@@ -11,6 +11,7 @@ from btq_lang.render import FORMATS
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
+TARGETS = ("4.6", "4.7", "4.8", "4.9", "4.10")
 SEVERITIES = ("error", "warning", "info", "hint")
 
 
@@ -18,6 +19,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     """Add every command to the parser."""
     _add_check(commands)
     _add_format(commands)
+    _add_build(commands)
     _add_explain(commands)
     _add_init(commands)
     _add_completion(commands)
@@ -78,6 +80,27 @@ def _add_format(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_paths(parser)
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
     parser.add_argument("--diff", action="store_true", help="write nothing, show the changes; exit 1 if there are any")
+    _add_color(parser)
+
+
+def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "build",
+        "write missions as XML that BehaviorTree.CPP loads",
+        epilog="exit codes: 0 written, 1 errors in the missions or (--check) files out of date, 2 usage or I/O\n\n"
+        "examples:\n  btq build mission.btq              mission.xml, and one file for each included one\n"
+        "  btq build missions -o install      below another folder\n"
+        "  btq build --check                  in CI: is the XML what the missions say?\n",
+    )
+    _add_paths(parser)
+    parser.add_argument("-o", "--output", metavar="FOLDER", help="where to write; default: beside the missions")
+    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it includes")
+    parser.add_argument("--target", choices=TARGETS, help="the engine's version; default: the project's newest")
+    parser.add_argument("--verbatim", action="store_true", help="exactly what the file says: nothing mended or added")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
+    parser.add_argument("--force", action="store_true", help="write over XML that btq did not make")
+    parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
     _add_color(parser)
 
 

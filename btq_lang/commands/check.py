@@ -31,7 +31,9 @@ def run(options: CheckOptions) -> int:
     files = Files()
     code, watched = _check(options, files)
     if options.watch:
-        _watch(options, files, watched)
+        from btq_lang.commands.again import run_again
+
+        run_again(lambda: _check(options, files)[1], options.paths, watched)
     return code
 
 
@@ -132,33 +134,6 @@ def _print(report: Report, options: CheckOptions, mended: int) -> None:
         stream.write(piece)
     if mended and options.output_format in ("full", "concise"):
         print(f"Fixed {mended} problem{'s' if mended > 1 else ''}", file=stream)
-
-
-def _watch(options: CheckOptions, files: Files, watched: tuple[str, ...]) -> None:
-    import time
-
-    from btq_lang.loader import stamp
-    from btq_lang.watch import watch
-
-    state = {"files": watched}
-
-    def paths() -> Iterator[str]:
-        """The files of the last run, and those that have come since."""
-        from btq_lang.loader import absolute, collect, find_project
-
-        yield from state["files"]
-        for path in options.paths:
-            yield from collect([path], find_project(absolute(path)).project)[0]
-
-    changes = watch(paths, stamp, time.sleep, time.monotonic)
-    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
-    try:
-        for changed in changes:
-            names = ", ".join(shown(path) for path in changed[:3]) + (", …" if len(changed) > 3 else "")
-            print(f"\n{time.strftime('%H:%M:%S')} {names} changed", file=sys.stderr)
-            _, state["files"] = _check(options, files)
-    except KeyboardInterrupt:
-        print(file=sys.stderr)
 
 
 def _configured(workspace: Workspace, options: CheckOptions) -> Workspace:

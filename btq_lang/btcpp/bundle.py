@@ -1,0 +1,100 @@
+"""A mission and all that it includes as one document.
+
+One invariant: each file is written as it would be by itself; only the includes between them are gone, and the models
+are in one place.
+"""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.document import Content, Document, Element
+from btq_lang.btcpp.export import Export, IncludedAs, export, xml_path
+from btq_lang.btcpp.source import Remark
+from btq_lang.symbols import Kind
+from btq_lang.workspace import Workspace, is_btq
+
+
+def bundle(
+    workspace: Workspace,
+    path: str,
+    *,
+    target: str | None = None,
+    verbatim: bool = False,
+    included_as: IncludedAs | None = None,
+) -> Export:
+    """A file with all it includes, included ones first; arguments as of `export`.
+
+    An included XML file stays an `<include>`; what is in it is its own.
+    """
+    name = included_as or (lambda included: xml_path(path, included))
+    paths = tuple(each for each in workspace.closure(path) if is_btq(each))
+    exports = [
+        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda to: "" if is_btq(to) else name(to))
+        for each in paths
+    ]
+    main = exports[-1].document
+    root = Element("root", main.root.attributes)
+    palette = Element("TreeNodesModel")
+    includes: dict[str, Element] = {}
+    for done in exports:
+        _merge(done.document, root.children, palette, includes, keep_outer=done is not exports[-1])
+    root.children[:0] = includes.values()
+    if palette.children:
+        root.children.append(palette)
+    contents = [root if content is main.root else content for content in main.contents]
+    return Export(
+        Document(contents),
+        tuple(remark for done in exports for remark in done.repairs),
+        (*(remark for done in exports for remark in done.problems), *_twice(workspace, paths)),
+        {key: element for done in exports for key, element in done.elements.items()},
+    )
+
+
+def _merge(
+    document: Document, contents: list[Content], palette: Element, includes: dict[str, Element], keep_outer: bool
+) -> None:
+    """Add what is in a document's root; the comments around the root, too, where it is not the main file's."""
+    for content in document.contents:
+        if content is not document.root:
+            if keep_outer:
+                contents.append(content)
+            continue
+        for child in document.root.children:
+            if not isinstance(child, Element):
+                contents.append(child)
+            elif child.tag == "include":
+                if path := child.get("path"):
+                    includes.setdefault(path, child)
+            elif child.tag == "TreeNodesModel":
+                _add_models(palette, child)
+            else:
+                contents.append(child)
+
+
+def _add_models(palette: Element, models: Element) -> None:
+    """A node that two files speak of has one model: the first, with the ports that only the second knows."""
+    known = {(model.tag, model.get("ID")): model for model in palette.elements if model.get("ID") is not None}
+    for content in models.children:
+        first = known.get((content.tag, content.get("ID"))) if isinstance(content, Element) else None
+        if first is None or not isinstance(content, Element):
+            palette.children.append(content)
+            continue
+        ports = {port.get("name") for port in first.elements}
+        first.children.extend(port for port in content.elements if _is_port(port) and port.get("name") not in ports)
+
+
+def _is_port(element: Element) -> bool:
+    return element.tag.endswith("_port")
+
+
+def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
+    """The trees of which another one has the ID already."""
+    known: set[str] = set()
+    found = []
+    for path in paths:
+        for definition in workspace.defined_in(path):
+            if definition.symbol.kind is Kind.TREE:
+                name = definition.symbol.name
+                if name in known:
+                    found.append(Remark(path, definition.span, f"there are two trees `{name}`: a bundle holds one"))
+                known.add(name)
+    return found

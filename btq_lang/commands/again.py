@@ -1,0 +1,36 @@
+"""`--watch`: run a command again whenever a file changes that its last run depended on."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+from btq_lang.loader import absolute, collect, find_project, shown, stamp
+from btq_lang.watch import watch
+
+
+def run_again(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:
+    """Run for every change, until Ctrl+C.
+
+    Args:
+        run: one run; it answers the files that the next one would depend on.
+        paths: what the command line asks for; new files among them are seen as well.
+        watched: the files that the first run depended on.
+    """
+    state = {"files": watched}
+
+    def files() -> Iterator[str]:
+        yield from state["files"]
+        for path in paths:
+            yield from collect([path], find_project(absolute(path)).project)[0]
+
+    changes = watch(files, stamp, time.sleep, time.monotonic)
+    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+    try:
+        for changed in changes:
+            names = ", ".join(shown(path) for path in changed[:3]) + (", …" if len(changed) > 3 else "")
+            print(f"\n{time.strftime('%H:%M:%S')} {names} changed", file=sys.stderr)
+            state["files"] = run()
+    except KeyboardInterrupt:
+        print(file=sys.stderr)

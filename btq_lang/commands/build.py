@@ -1,0 +1,257 @@
+"""`btq build`: write missions as XML that BehaviorTree.CPP loads."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+
+from btq_lang.btcpp.bundle import bundle
+from btq_lang.btcpp.document import Comment, Document, write
+from btq_lang.btcpp.export import Export, export, xml_name
+from btq_lang.btcpp.marks import generated_mark, is_generated
+from btq_lang.btcpp.source import Remark
+from btq_lang.checks import check
+from btq_lang.commands.files import STDIN, Files, Group, usage_problem
+from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
+from btq_lang.record import record, replace
+from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.render.colour import wants_colour
+from btq_lang.rules import Severity
+from btq_lang.workspace import is_btq
+
+
+@record
+class Output:
+    """A file to be written.
+
+    Attributes:
+        source: what it is made from.
+        old: what stands there now; None: nothing.
+    """
+
+    path: str
+    text: str
+    source: str
+    old: str | None
+
+
+def run(options: Namespace) -> int:
+    """Build once, or again and again with `--watch`."""
+    if problem := _usage_problem(options):
+        print(f"btq build: {problem}", file=sys.stderr)
+        return 2
+    files = Files()
+    code, watched = _build(options, files)
+    if options.watch:
+        from btq_lang.commands.again import run_again
+
+        run_again(lambda: _build(options, files)[1], options.paths, watched)
+    return code
+
+
+def _usage_problem(options: Namespace) -> str | None:
+    if options.watch and STDIN in options.paths:
+        return "--watch cannot wait for standard input to change"
+    if STDIN in options.paths and (len(options.paths) > 1 or options.output or options.check):
+        return "what comes from standard input goes to standard output: no other path, no -o, no --check"
+    return usage_problem(options.paths)
+
+
+def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
+    """One run: its exit code, and the files that another run would depend on."""
+    groups, problems = files.groups(options.paths, options.stdin_filename)
+    if options.target:
+        groups = tuple(_for_target(group, options.target) for group in groups)
+    watched = tuple(
+        path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
+    )
+    for problem in problems:
+        print(f"btq: {problem}", file=sys.stderr)
+    if problems:  # a file that could not be read may be part of any other
+        return 2, watched
+    if _has_errors(groups, options):
+        return 1, watched
+    sources = {path: None for group in groups for path in _sources(group)}
+    places = _Places(options.output, tuple(sources))
+    made = [
+        (path, places.of(path), _exported(group, path, places, options))
+        for group in groups
+        for path in (_missions(group) if options.bundle else _sources(group))
+    ]
+    told = 0
+    for _, _, done in made:
+        told += _tell(done.problems, "error", groups)
+    for twice in _same_place([(path, place) for path, place, _ in made]):
+        print(f"btq build: {twice}", file=sys.stderr)
+        told += 1
+    if told:
+        print("nothing was written", file=sys.stderr)
+        return 1, watched
+    for _, _, done in made:
+        _tell(done.repairs, "repaired", groups)
+    if STDIN in options.paths:
+        for path, _, done in made:
+            if path == files.stdin:
+                sys.stdout.write(_text(path, done.document, options))
+        return 0, watched
+    outputs = [Output(place, _text(path, done.document, options), path, _old_text(place)) for path, place, done in made]
+    return (_compare if options.check else _write)(outputs, options), watched
+
+
+def _for_target(group: Group, target: str) -> Group:
+    project = replace(group.workspace.project, engines=(target,))
+    return replace(group, workspace=group.workspace.with_project(project))
+
+
+def _sources(group: Group) -> tuple[str, ...]:
+    """The files that were asked for, and all that they include."""
+    found = dict.fromkeys(group.given)
+    for path in group.given:
+        found.update(dict.fromkeys(each for each in group.workspace.closure(path) if is_btq(each)))
+    return tuple(found)
+
+
+def _missions(group: Group) -> tuple[str, ...]:
+    """The files that were asked for and that none of them includes."""
+    included = group.workspace.included_files
+    return tuple(path for path in group.given if path not in included) or group.given
+
+
+# ---- what is wrong ----
+
+
+def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
+    """Tell what keeps the files from being built."""
+    findings = []
+    for group in groups:
+        for path in _sources(group):
+            file = group.workspace.files[path]
+            found = file.parsed.diagnostics if options.verbatim else check(group.workspace, path)
+            findings += [Finding(path, file.text, each) for each in found if each.effective_severity is Severity.ERROR]
+    if not findings:
+        return False
+    texts = {path: file.text for group in groups for path, file in group.workspace.files.items()}
+    report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
+    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    for piece in render("full", report, colour=colour, width=120):
+        sys.stdout.write(piece)
+    print("nothing was written", file=sys.stderr)
+    return True
+
+
+def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:
+    """Print what an export has to say; how much that was."""
+    for remark in remarks:
+        file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
+        line, column = file.lines.position(remark.span.start)
+        print(f"{shown(remark.path)}:{line + 1}:{column + 1}: {word}: {remark.message}", file=sys.stderr)
+    return len(remarks)
+
+
+def _same_place(places: list[tuple[str, str]]) -> Iterator[str]:
+    """Two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
+    known: dict[str, str] = {}
+    for source, place in places:
+        other = known.setdefault(place, source)
+        if other != source:
+            yield f"{shown(other)} and {shown(source)} would both be written to {shown(place)}"
+
+
+# ---- what is written, and where ----
+
+
+class _Places:
+    """Where the XML of each file is put: beside it, or below the folder `output`, in the places they have below the
+    folder that holds them all."""
+
+    def __init__(self, output: str | None, sources: tuple[str, ...]) -> None:
+        self._output = absolute(output) if output else None
+        folders = [os.path.dirname(source) for source in sources]
+        self._above = os.path.commonpath(folders).replace(os.sep, "/") if output and folders else ""
+
+    def of(self, source: str) -> str:
+        """The place of the XML of one of the files."""
+        if self._output is None:
+            return xml_name(source)
+        return absolute(os.path.join(self._output, os.path.relpath(xml_name(source), self._above)))
+
+    def seen_from(self, source: str, included: str) -> str:
+        """How the XML of `source` names an included file: that made from it, or an XML file where it is."""
+        place = self.of(included) if is_btq(included) else included
+        return os.path.relpath(place, os.path.dirname(self.of(source))).replace(os.sep, "/")
+
+
+def _exported(group: Group, path: str, places: _Places, options: Namespace) -> Export:
+    make = bundle if options.bundle else export
+    return make(
+        group.workspace,
+        path,
+        verbatim=options.verbatim,
+        included_as=lambda included: places.seen_from(path, included),
+    )
+
+
+def _text(path: str, document: Document, options: Namespace) -> str:
+    if options.verbatim:
+        return write(document)
+    return write(Document([Comment(generated_mark(os.path.basename(path))), *document.contents]))
+
+
+def _old_text(path: str) -> str | None:
+    return read(path)[0] if os.path.exists(path) else None
+
+
+def _compare(outputs: list[Output], options: Namespace) -> int:
+    """`--check`: name the files that are not what they would be."""
+    stale = [output for output in outputs if output.text != output.old]
+    for output in stale:
+        print(f"{'missing' if output.old is None else 'out of date'}: {shown(output.path)}")
+    return int(bool(stale))
+
+
+def _write(outputs: list[Output], options: Namespace) -> int:
+    """Write what has changed: all of it, or where one file cannot be written, none."""
+    changed = [output for output in outputs if output.text != output.old]
+    foreign = [output for output in changed if not options.force and _is_foreign(output.old)]
+    for output in foreign:
+        message = "was not made by btq build (or with --verbatim): --force writes over it"
+        print(f"btq build: {shown(output.path)} {message}", file=sys.stderr)
+    if foreign:
+        print("nothing was written", file=sys.stderr)
+        return 2
+    done: list[Output] = []
+    for output in changed:
+        try:
+            os.makedirs(os.path.dirname(output.path), exist_ok=True)
+            write_whole(output.path, output.text)
+        except OSError as error:
+            print(f"btq: {LoadProblem(output.path, f'cannot be written: {error.strerror}')}", file=sys.stderr)
+            _take_back(done)
+            print("nothing was written", file=sys.stderr)
+            return 2
+        done.append(output)
+    for output in changed:
+        print(f"wrote {shown(output.path)}")
+    same = len(outputs) - len(changed)
+    if same:
+        print(f"{same} file{'' if same == 1 else 's'} left as {'it is' if same == 1 else 'they are'}", file=sys.stderr)
+    return 0
+
+
+def _is_foreign(text: str | None) -> bool:
+    return text is not None and not is_generated(text)
+
+
+def _take_back(outputs: list[Output]) -> None:
+    """Put back what stood in files before, as far as the disk lets us."""
+    for output in outputs:
+        try:
+            if output.old is None:
+                os.unlink(output.path)
+            else:
+                write_whole(output.path, output.old)
+        except OSError as error:
+            problem = LoadProblem(output.path, f"was written and cannot be put back: {error.strerror}")
+            print(f"btq: {problem}", file=sys.stderr)
