@@ -7,10 +7,14 @@ are in one place.
 from __future__ import annotations
 
 from btq_lang.btcpp.document import Content, Document, Element
-from btq_lang.btcpp.export import Export, IncludedAs, export, xml_path
+from btq_lang.btcpp.export import Export, export
 from btq_lang.btcpp.source import Remark
 from btq_lang.symbols import Kind
-from btq_lang.workspace import Workspace, is_btq
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 def bundle(
@@ -19,17 +23,15 @@ def bundle(
     *,
     target: str | None = None,
     verbatim: bool = False,
-    included_as: IncludedAs | None = None,
 ) -> Export:
-    """A file with all it includes, included ones first; arguments as of `export`.
+    """A file with all it includes, included ones first, XML files too.
 
-    An included XML file stays an `<include>`; what is in it is its own.
+    Args:
+        target, verbatim: as of `export`.
     """
-    name = included_as or (lambda included: xml_path(path, included))
-    paths = tuple(each for each in workspace.closure(path) if is_btq(each))
+    paths = workspace.closure(path)
     exports = [
-        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda to: "" if is_btq(to) else name(to))
-        for each in paths
+        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE) for each in paths
     ]
     main = exports[-1].document
     root = Element("root", main.root.attributes)
@@ -62,8 +64,9 @@ def _merge(
             if not isinstance(child, Element):
                 contents.append(child)
             elif child.tag == "include":
-                if path := child.get("path"):
-                    includes.setdefault(path, child)
+                path = child.get("path")
+                if path is not None and path != _IN_BUNDLE:  # what only the robot knows: a package's
+                    includes.setdefault(f"{child.get('ros_pkg')}/{path}", child)
             elif child.tag == "TreeNodesModel":
                 _add_models(palette, child)
             else:
@@ -98,3 +101,6 @@ def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
                     found.append(Remark(path, definition.span, f"there are two trees `{name}`: a bundle holds one"))
                 known.add(name)
     return found
+
+
+_IN_BUNDLE: Final = "/"  # no file can be called so

@@ -74,7 +74,7 @@ def export(
     try:
         source = Source(workspace, path, target or workspace.project.target, verbatim)
         trees = Trees(source)
-        document = _document(source, trees, included_as or (lambda target: xml_path(path, target)))
+        document = _document(source, trees, included_as or (lambda target: xml_path(workspace, path, target)))
         source.finish()
         return Export(document, tuple(source.repairs), tuple(source.problems), trees.elements)
     finally:
@@ -82,10 +82,15 @@ def export(
             gc.enable()
 
 
-def xml_path(path: str, included: str) -> str:
+def xml_path(workspace: Workspace, path: str, included: str) -> str:
     """How the XML of the file `path` names that of an included file, where the XML files stand beside their sources."""
     relative = posixpath.relpath(included, posixpath.dirname(path) or ".")
-    return xml_name(relative) if is_btq(included) else relative
+    return xml_name(relative) if is_mission(workspace, included) else relative
+
+
+def is_mission(workspace: Workspace, path: str) -> bool:
+    """Whether a file is written in this language, and not in XML."""
+    return workspace.files[path].origin is None and is_btq(path)
 
 
 def xml_name(path: str) -> str:
@@ -161,7 +166,7 @@ def _include(source: Source, entry: Entry, include: Include, included_as: Includ
     if include.path is not None:
         target = source.workspace.included_by(source.path, include)
         text = include.path.text
-        if target is not None and not (source.verbatim and not is_btq(target)):
+        if target is not None and (is_mission(source.workspace, target) or not source.verbatim):
             name = escape(included_as(target))
         else:
             name = spelt(include.path) if not text.endswith((".btq", ".qualitybtcpp")) else escape(xml_name(text))

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import Comment, Document, write
-from btq_lang.btcpp.export import Export, export, xml_name
+from btq_lang.btcpp.export import Export, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark, is_generated
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
@@ -19,7 +19,7 @@ from btq_lang.record import record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
-from btq_lang.workspace import is_btq
+from btq_lang.workspace import Workspace
 
 
 @record
@@ -67,6 +67,12 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
     )
+    problems += tuple(
+        LoadProblem(path, "is XML already")
+        for group in groups
+        for path in group.given
+        if not is_mission(group.workspace, path)
+    )
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
     if problems:  # a file that could not be read may be part of any other
@@ -109,8 +115,8 @@ def _sources(group: Group) -> tuple[str, ...]:
     """The files that were asked for, and all that they include."""
     found = dict.fromkeys(group.given)
     for path in group.given:
-        found.update(dict.fromkeys(each for each in group.workspace.closure(path) if is_btq(each)))
-    return tuple(found)
+        found.update(dict.fromkeys(group.workspace.closure(path)))
+    return tuple(path for path in found if is_mission(group.workspace, path))
 
 
 def _missions(group: Group) -> tuple[str, ...]:
@@ -132,7 +138,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
             findings += [Finding(path, file.text, each) for each in found if each.effective_severity is Severity.ERROR]
     if not findings:
         return False
-    texts = {path: file.text for group in groups for path, file in group.workspace.files.items()}
+    texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
     colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for piece in render("full", report, colour=colour, width=120):
@@ -146,7 +152,8 @@ def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> 
     for remark in remarks:
         file = next(group.workspace.files[remark.path] for group in groups if remark.path in group.workspace.files)
         line, column = file.lines.position(remark.span.start)
-        print(f"{shown(remark.path)}:{line + 1}:{column + 1}: {word}: {remark.message}", file=sys.stderr)
+        place = "" if file.origin else f":{line + 1}:{column + 1}"  # XML is read as this language would say it
+        print(f"{shown(remark.path)}{place}: {word}: {remark.message}", file=sys.stderr)
     return len(remarks)
 
 
@@ -177,20 +184,18 @@ class _Places:
             return xml_name(source)
         return absolute(os.path.join(self._output, os.path.relpath(xml_name(source), self._above)))
 
-    def seen_from(self, source: str, included: str) -> str:
+    def seen_from(self, source: str, included: str, workspace: Workspace) -> str:
         """How the XML of `source` names an included file: that made from it, or an XML file where it is."""
-        place = self.of(included) if is_btq(included) else included
+        place = self.of(included) if is_mission(workspace, included) else included
         return os.path.relpath(place, os.path.dirname(self.of(source))).replace(os.sep, "/")
 
 
 def _exported(group: Group, path: str, places: _Places, options: Namespace) -> Export:
-    make = bundle if options.bundle else export
-    return make(
-        group.workspace,
-        path,
-        verbatim=options.verbatim,
-        included_as=lambda included: places.seen_from(path, included),
-    )
+    workspace = group.workspace
+    if options.bundle:
+        return bundle(workspace, path, verbatim=options.verbatim)
+    name = places.seen_from
+    return export(workspace, path, verbatim=options.verbatim, included_as=lambda to: name(path, to, workspace))
 
 
 def _text(path: str, document: Document, options: Namespace) -> str:
