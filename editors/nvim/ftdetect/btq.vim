@@ -1,0 +1,1 @@
+autocmd BufRead,BufNewFile *.btq,*.qualitybtcpp set filetype=btq

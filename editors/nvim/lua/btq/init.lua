@@ -1,0 +1,77 @@
+-- The language server of btq in Neovim's built-in client, from 0.7 on.
+-- One invariant: one server for each project, whatever the version of Neovim.
+local M = {}
+
+local MARKERS = { 'btq.toml', 'pyproject.toml', '.git' }
+
+--- The command that starts the server: `vim.g.btq_cmd`, else `btq-lsp` of the active virtual environment, else of the PATH.
+function M.command()
+  if vim.g.btq_cmd then
+    return vim.g.btq_cmd
+  end
+  local environment = vim.env.VIRTUAL_ENV
+  if environment then
+    for _, place in ipairs({ '/bin/btq-lsp', '/Scripts/btq-lsp.exe' }) do
+      if vim.fn.executable(environment .. place) == 1 then
+        return { environment .. place }
+      end
+    end
+  end
+  return { 'btq-lsp' }
+end
+
+--- Start the server for every mission that is opened from now on.
+function M.setup()
+  if vim.lsp.config and vim.lsp.enable then -- 0.11 and newer
+    vim.lsp.config('btq', { cmd = M.command(), filetypes = { 'btq' }, root_markers = MARKERS })
+    vim.lsp.enable('btq')
+    return
+  end
+  vim.api.nvim_create_autocmd('FileType', {
+    group = vim.api.nvim_create_augroup('btq', { clear = true }),
+    pattern = 'btq',
+    desc = 'start the language server of btq',
+    callback = function(event)
+      M.attach(event.buf)
+    end,
+  })
+end
+
+--- Attach the server of the buffer's project; only for Neovim 0.7 to 0.10, newer ones do it themselves.
+function M.attach(buffer)
+  local command = M.command()
+  if vim.fn.executable(command[1]) ~= 1 then
+    vim.notify_once('btq: ' .. command[1] .. ' was not found; :checkhealth btq says more', vim.log.levels.WARN)
+    return
+  end
+  local file = vim.api.nvim_buf_get_name(buffer)
+  local root = M.root(file)
+  if vim.lsp.start then -- 0.8 to 0.10
+    vim.lsp.start({ name = 'btq', cmd = command, root_dir = root }, { bufnr = buffer })
+    return
+  end
+  M.clients = M.clients or {} -- 0.7 does not know which clients are of one project
+  local client = M.clients[root]
+  if not client or vim.lsp.client_is_stopped(client) then
+    client = vim.lsp.start_client({ name = 'btq', cmd = command, root_dir = root })
+    M.clients[root] = client
+  end
+  vim.lsp.buf_attach_client(buffer, client)
+end
+
+--- The folder of the project: the nearest above with one of the markers, else the file's own.
+function M.root(file)
+  local own = vim.fn.fnamemodify(file ~= '' and file or vim.fn.getcwd() .. '/x', ':p:h')
+  for _, marker in ipairs(MARKERS) do
+    local found = vim.fn.finddir(marker, own .. ';')
+    if found == '' then
+      found = vim.fn.findfile(marker, own .. ';')
+    end
+    if found ~= '' then
+      return vim.fn.fnamemodify(vim.fn.fnamemodify(found, ':p'):gsub('/$', ''), ':h')
+    end
+  end
+  return own
+end
+
+return M

@@ -1,0 +1,162 @@
+// What VS Code starts: the language client, its commands, the task, and what the status bar says.
+// One invariant: whatever goes wrong with the server is said once, with a button that helps, and the rest goes on working.
+import * as vscode from "vscode";
+import { LanguageClient, State, TransportKind } from "vscode-languageclient/node";
+
+import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
+import { findServer, NoPython, type Server } from "./server";
+import { CheckTasks, runCheck } from "./tasks";
+
+let client: LanguageClient | undefined;
+let server: Server | undefined;
+let turn: Promise<void> = Promise.resolve();
+
+export async function activate(context: vscode.ExtensionContext): Promise<void> {
+  const log = vscode.window.createOutputChannel("btq", { log: true });
+  const status = vscode.languages.createLanguageStatusItem("btq.server", { language: "btq" });
+  status.name = "btq";
+  status.command = { command: "btq.showLog", title: "Show Log" };
+
+  // One start at a time, in the order asked for: two servers would answer everything twice.
+  const restart = (): Promise<void> => (turn = turn.then(() => start(context, log, status)));
+
+  context.subscriptions.push(
+    log,
+    status,
+    vscode.commands.registerCommand("btq.restartServer", restart),
+    vscode.commands.registerCommand("btq.showLog", () => log.show()),
+    vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
+    vscode.commands.registerCommand("btq.newProject", () => newProject(context)),
+    vscode.commands.registerCommand("btq.check", async () => {
+      const found = await runCheck(await commandLine(context));
+      await vscode.commands.executeCommand("setContext", "btq.checkedClean", found === 0);
+    }),
+    vscode.tasks.registerTaskProvider("btq", new CheckTasks(() => commandLine(context))),
+    vscode.workspace.onDidChangeConfiguration((change) => {
+      if (["btq.interpreter", "btq.importStrategy", "btq.server"].some((name) => change.affectsConfiguration(name))) {
+        void restart();
+      }
+    }),
+    vscode.workspace.onDidGrantWorkspaceTrust(restart),
+  );
+  await onInterpreterChange(context, restart);
+  await restart();
+}
+
+export async function deactivate(): Promise<void> {
+  await turn;
+  await client?.dispose();
+}
+
+async function start(
+  context: vscode.ExtensionContext,
+  log: vscode.LogOutputChannel,
+  status: vscode.LanguageStatusItem,
+): Promise<void> {
+  await client?.dispose().catch((error: unknown) => log.warn(`the server did not stop: ${error}`));
+  client = undefined;
+  await vscode.commands.executeCommand("setContext", "btq.serverRuns", false);
+  status.text = "btq";
+  status.detail = "starting";
+  status.busy = true;
+  status.severity = vscode.LanguageStatusSeverity.Information;
+  try {
+    server = await findServer(context.extensionPath, await activeInterpreter());
+    log.info(`starting ${server.origin}: ${[server.command, ...server.args].join(" ")}`);
+    client = new LanguageClient(
+      "btq",
+      "btq",
+      { command: server.command, args: server.args, transport: TransportKind.stdio },
+      {
+        documentSelector: [
+          { scheme: "file", language: "btq" },
+          { scheme: "untitled", language: "btq" },
+        ],
+        outputChannel: log,
+        diagnosticCollectionName: "btq",
+      },
+    );
+    client.onDidChangeState(({ newState }) => {
+      status.busy = newState === State.Starting;
+      status.severity =
+        newState === State.Stopped ? vscode.LanguageStatusSeverity.Error : vscode.LanguageStatusSeverity.Information;
+      status.detail = newState === State.Stopped ? "stopped" : server?.origin;
+    });
+    await client.start();
+    const version = client.initializeResult?.serverInfo?.version;
+    status.text = version ? `btq ${version}` : "btq";
+    await vscode.commands.executeCommand("setContext", "btq.serverRuns", true);
+  } catch (error) {
+    status.busy = false;
+    status.severity = vscode.LanguageStatusSeverity.Error;
+    status.detail = error instanceof NoPython ? "no Python found" : "did not start";
+    log.error(String(error));
+    void explain(error);
+  }
+}
+
+/** Says why there is no server, and offers what helps. */
+async function explain(error: unknown): Promise<void> {
+  const choose = "Choose Python…";
+  const get = "Get Python";
+  const show = "Show Log";
+  const buttons = error instanceof NoPython ? [choose, get] : [show, choose];
+  const text = error instanceof NoPython ? error.message : `The btq server did not start: ${String(error)}`;
+  const answer = await vscode.window.showErrorMessage(text, ...buttons);
+  if (answer === choose) await chooseInterpreter();
+  if (answer === get) await vscode.env.openExternal(vscode.Uri.parse("https://www.python.org/downloads/"));
+  if (answer === show) await vscode.commands.executeCommand("btq.showLog");
+}
+
+async function chooseInterpreter(): Promise<void> {
+  const chosen = await vscode.window.showOpenDialog({
+    title: "The Python, 3.10 or newer, that runs btq",
+    openLabel: "Use This Python",
+    canSelectMany: false,
+  });
+  if (chosen?.[0] !== undefined) {
+    await vscode.workspace
+      .getConfiguration("btq")
+      .update("interpreter", chosen[0].fsPath, vscode.ConfigurationTarget.Global);
+  }
+}
+
+/** `btq init` in a folder that the user chooses; then its mission is opened. */
+async function newProject(context: vscode.ExtensionContext): Promise<void> {
+  const chosen = await vscode.window.showOpenDialog({
+    title: "The folder of the new project",
+    openLabel: "Begin Here",
+    defaultUri: vscode.workspace.workspaceFolders?.[0]?.uri,
+    canSelectFiles: false,
+    canSelectFolders: true,
+    canSelectMany: false,
+  });
+  const folder = chosen?.[0];
+  if (folder === undefined) return;
+  const [command, ...args] = await commandLine(context);
+  if (command === undefined) return;
+  const { execFile } = await import("node:child_process");
+  const said = await new Promise<string>((resolve) =>
+    execFile(command, [...args, "init", folder.fsPath], (error, _, complaint) =>
+      resolve(error ? complaint.trim() || error.message : ""),
+    ),
+  );
+  if (said) {
+    void vscode.window.showErrorMessage(said);
+    return;
+  }
+  if (!vscode.workspace.getWorkspaceFolder(folder)) {
+    vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });
+  }
+  await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, "mission.btq"));
+}
+
+/** The command line of btq that belongs to the server; empty, with a message, where there is no Python. */
+async function commandLine(context: vscode.ExtensionContext): Promise<string[]> {
+  try {
+    return (server ?? (await findServer(context.extensionPath, await activeInterpreter()))).btq;
+  } catch (error) {
+    void explain(error);
+    return [];
+  }
+}

