@@ -15,7 +15,18 @@ import re
 from functools import cache, lru_cache
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.scan import blanks_end, line_end, line_opening, name_end, number_at, string_end, symbol_at, unit_run
+from btq_lang.patterns import read_tokens
+from btq_lang.scan import (
+    COMPILED,
+    blanks_end,
+    line_end,
+    line_opening,
+    name_end,
+    number_at,
+    string_end,
+    symbol_at,
+    unit_run,
+)
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import Span
 from btq_lang.tokens import (
@@ -84,6 +95,8 @@ class Lexer:
         level: how many blocks are open around the line.
         line_start: where the line begins, its blanks included.
         blanks: the blanks it begins with.
+        columns: the blanks of each open block.
+        adopted: other blanks were taken for those of an open block.
         kinds, starts, raws: the tokens of the line after `scan`; the last one is always a NEWLINE.
         comments: start and end of every comment so far.
         problems: what was wrong so far.
@@ -104,9 +117,9 @@ class Lexer:
         self.problems: list[Diagnostic] = []
         self.ended_early = 0
         self._cut_until = -1  # the end of the last line that ended its brackets early
-        self._indents: list[str] = [""]  # the blanks of each open block
+        self.columns: list[str] = [""]
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
-        self._adopted = False  # there is such a one
+        self.adopted = False
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
         self._strange = False  # a character that begins nothing was reported on this line
         self._stray_until = -1  # the end of the last line of text where a `)` was reported
@@ -138,34 +151,43 @@ class Lexer:
             return False
         self.line_start = start
         self.blanks = blanks
-        if blanks != self._indents[-1]:
+        if blanks != self.columns[-1]:
             self._indent(blanks)
         return True
 
+    def open_behind(self, position: int) -> bool:
+        """Open the next line as `open_line` does; somebody else read up to `position`, and has opened and closed the
+        blocks in `columns`."""
+        del self._aliases[1:]
+        self._aliases += [()] * (len(self.columns) - 1)
+        self.level = len(self.columns) - 1
+        self.position = position
+        return self.open_line()
+
     def _indent(self, blanks: str) -> None:
         """Open a block, close blocks, or adopt a column that no open block has."""
-        indents, aliases = self._indents, self._aliases
-        level = len(indents) - 1
-        if not self._adopted and len(blanks) > len(indents[level]):
+        columns, aliases = self.columns, self._aliases
+        level = len(columns) - 1
+        if not self.adopted and len(blanks) > len(columns[level]):
             level = -1  # as below, for no column is longer
-        while level >= 0 and blanks != indents[level] and blanks not in aliases[level]:
+        while level >= 0 and blanks != columns[level] and blanks not in aliases[level]:
             level -= 1
         if level < 0:
-            if _extends(blanks, indents[-1], aliases[-1]):
-                indents.append(blanks)
+            if _extends(blanks, columns[-1], aliases[-1]):
+                columns.append(blanks)
                 aliases.append(())
-                level = len(indents) - 1
+                level = len(columns) - 1
             else:
                 level = self._adopting_level(blanks)
-                self._adopted = True
+                self.adopted = True
                 if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
-                    self._report_indentation(blanks, indents[level])  # else it is what is left of the brackets
+                    self._report_indentation(blanks, columns[level])  # else it is what is left of the brackets
                 if level == 0:
                     aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
                 else:
-                    aliases[level] = (*aliases[level], indents[level])[-_ALIASES:]
-                    indents[level] = blanks
-        del indents[level + 1 :], aliases[level + 1 :]
+                    aliases[level] = (*aliases[level], columns[level])[-_ALIASES:]
+                    columns[level] = blanks
+        del columns[level + 1 :], aliases[level + 1 :]
         self.level = level
         if level < self._root_level:
             self._root_level = -1
@@ -175,8 +197,8 @@ class Lexer:
         deepest whose opener stands further left."""
         if _top_line().match(self.text, self.position):
             return max(self._root_level, 0)
-        level = len(self._indents) - 1
-        while not _extends(blanks, self._indents[level - 1], self._aliases[level - 1]):
+        level = len(self.columns) - 1
+        while not _extends(blanks, self.columns[level - 1], self._aliases[level - 1]):
             level -= 1
         return level
 
@@ -190,6 +212,10 @@ class Lexer:
         position = self.position
         text, size = self.text, self.size
         while position < size:
+            if not COMPILED:
+                position = read_tokens(text, position, self.kinds, self.starts, self.raws)
+                if position == size:
+                    break
             character = text[position]
             if character == " " or character == "\t":
                 position += 1
@@ -526,9 +552,9 @@ class Lexer:
     def _at_top_column(self, blanks: str) -> bool:
         """Whether an item may begin there; behind `Root (` without `)` that is any column of its block to be."""
         level = self._root_level
-        if blanks == "" or (0 < level < len(self._indents) and blanks == self._indents[level]):
+        if blanks == "" or (0 < level < len(self.columns) and blanks == self.columns[level]):
             return True
-        return self._is_root_line() and _extends(blanks, self._indents[-1], ())
+        return self._is_root_line() and _extends(blanks, self.columns[-1], ())
 
     def _close_lost(self, start: int, end: int) -> None:
         """Close the brackets whose `)` is lost in a string or comment that runs to the end of its line."""

@@ -8,9 +8,10 @@ from __future__ import annotations
 from btq_lang.clauses import HEADS, VERBS, ClauseParser
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.lines import MAX_DEPTH, Block, read_lines
 from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
-from btq_lang.scan import line_start, path_end
+from btq_lang.scan import COMPILED, line_start, path_end
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -47,8 +48,6 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
-MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
-
 
 class NodeParser(ClauseParser):
     """A cursor that can read the block of a tree."""
@@ -61,15 +60,29 @@ class NodeParser(ClauseParser):
         """INDENT { Port } { ClauseLine } { Node } DEDENT"""
         lexer = self.lexer
         ports: list[Port] = []
-        block = _Block(level, None)
+        block = Block(level, None)
         blocks = [block]
         told_too_deep = False
+        stopped = -1  # the line that is spelt in another way than `read_lines` knows
         while self.more and lexer.level > level:
             inner = lexer.level
             while block.level >= inner:
                 blocks.pop().close()
                 block = blocks[-1]
-            node: Node | None = None
+            if not (COMPILED or lexer.line_start == stopped or lexer.ended_early or lexer.adopted):
+                behind, node = read_lines(lexer, blocks, self.base)
+                if behind >= 0:
+                    block = blocks[-1]
+                    inner = len(lexer.columns) - 1
+                    self.more = lexer.open_behind(behind)
+                    if node is None:
+                        self.no_block(inner)
+                    elif self.more and lexer.level > inner:
+                        block = Block(inner, node)
+                        blocks.append(block)
+                    stopped = lexer.line_start
+                    continue
+            node = None
             plain = None
             if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
                 plain = plain_node(self.text, lexer.position, lexer.blanks, self.base)
@@ -110,7 +123,7 @@ class NodeParser(ClauseParser):
             if node is not None:
                 block.children.append(node)
                 if self.more and lexer.level > inner:
-                    block = _Block(inner, node)
+                    block = Block(inner, node)
                     blocks.append(block)
         for open_block in blocks:
             open_block.close()
@@ -574,24 +587,3 @@ _ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
 _OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"
-
-
-class _Block:
-    """The open block of a node, or of the tree itself: what was read of it so far."""
-
-    __slots__ = ("children", "clauses", "level", "node")
-
-    def __init__(self, level: int, node: Node | None) -> None:
-        self.level: Final = level  # of the line that opened it
-        self.node: Final = node
-        self.clauses: list[NodeClause] = []
-        self.children: list[Node | Verbatim] = []
-
-    def has_nodes(self) -> bool:
-        return any(isinstance(child, Node) for child in self.children)
-
-    def close(self) -> None:
-        if self.node is not None:
-            self.node.children = tuple(self.children)
-            if self.clauses:
-                self.node.clauses += tuple(self.clauses)

@@ -8,65 +8,180 @@ from __future__ import annotations
 
 import re
 
-from btq_lang.syntax import Pair, Word
-from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, NAME, NODE_CLAUSES, NUMBER, STRING, SYMBOL, SYMBOLS
+from btq_lang.scan import number_at
+from btq_lang.syntax import (
+    NodeClause,
+    Pair,
+    Quality,
+    QualityPath,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Word,
+)
+from btq_lang.tokens import (
+    BRACED,
+    CATEGORIES,
+    DIRECTIONS,
+    ERROR,
+    NAME,
+    NODE_CLAUSES,
+    NUMBER,
+    OPERATOR,
+    STRING,
+    SYMBOL,
+    SYMBOLS,
+)
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
-Head = tuple["Word | None", "Word | None", "Word | None", int]
 
+def read_attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair]) -> tuple[int, str | None]:
+    """{ Pair [ "," ] } and what follows them, if it is `)` or a word that begins a clause
 
-def read_head(text: str, start: int, base: int) -> Head | None:
-    """Kind [ Label ], before a bracket or the line's end: the category, the kind, the label, and where they end"""
-    match = _HEAD(text, start)
-    if match is None:
-        return None
-    first, second, third = match.groups()
-    role = _ROLES.get(first, NAME)
-    if role == _CATEGORY:
-        word = Word(NAME, start - base, first)
-        if second is None:
-            return word, None, None, match.end()
-        kind = Word(_KINDS.get(second[0], NAME), match.start(2) - base, second)
-        if third is None:
-            return word, kind, None, match.end()
-        return word, kind, Word(_KINDS.get(third[0], NAME), match.start(3) - base, third), match.end()
-    if role == _NO_NODE or third is not None:
-        return None
-    kind = Word(role, start - base, first)
-    if second is None:
-        return None, kind, None, match.end()
-    return None, kind, Word(_KINDS.get(second[0], NAME), match.start(2) - base, second), match.end()
-
-
-def read_pairs(text: str, at: int, blanks: str, base: int, pairs: list[Pair]) -> int:
-    """{ Pair [ "," ] }; where the first attribute begins that is none, or is written in another way"""
-    while match := _PAIR(text, at):
-        key, value, line = match.groups()
+    Returns:
+        Where that ends and `)`, or where the clause begins and its word; or where something is written in another way,
+        and None.
+    """
+    while match := _ATTRIBUTE(text, at):
+        line, key, value, closing, word = match.groups()
         if line is not None and not line.startswith(blanks):
             break
-        pairs.append(Pair(Word(NAME, at - base, key), Word(_KINDS.get(value[0], NAME), match.start(2) - base, value)))
+        if key is None:
+            return (match.end(), ")") if closing else (match.start(5), word)
+        pairs.append(
+            Pair(
+                Word(NAME, match.start(2) - base, key),
+                Word(value_kind(value[0], NAME), match.start(3) - base, value),
+            )
+        )
         at = match.end()
+    return at, None
+
+
+def read_clause(text: str, start: int, blanks: str | None, base: int) -> tuple[NodeClause, int] | None:
+    """ "satisfices" … | "satisfies" …, where nothing more follows in the brackets or, without `blanks`, on the line:
+    the clause, and where it ends"""
+    match = (_LINE_LIST if blanks is None else _BRACKETED_LIST)(text, start)
+    if match is not None:
+        end = match.end()
+        if match[1] is not None:
+            qualities = tuple(Quality(_path(path.start(1) - base, path[1])) for path in _PATHS(text, *match.span(1)))
+            return Satisfices(start - base, end - base, qualities), end
+        uses = tuple(ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES(text, *match.span(2)))
+        return Satisfies(start - base, end - base, uses), end
+    match = _DEFINITION(text, start)
+    if match is None:
+        return None
+    quality, bracket_line, name, line, description = match.group(1, 2, 4, 5, 6)
+    end = match.end()
+    if blanks is None or (bracket_line is not None and not bracket_line.startswith(blanks)):
+        return None
+    inner = blanks if quality is None else bracket_line
+    if line is not None and (inner is None or not line.startswith(inner)):
+        return None
+    requirement = Requirement(
+        match.start(3) - base,
+        (match.end(4) if description is None else match.end(6)) - base,
+        Word(value_kind(name[0], NAME), match.start(4) - base, name),
+        True,
+        (),
+        None,
+        None if description is None else Word(value_kind(description[0], NAME), match.start(6) - base, description),
+        (),
+    )
+    if quality is None:
+        return Satisfies(start - base, end - base, (requirement,)), end
+    return Satisfices(start - base, end - base, (Quality(_path(match.start(1) - base, quality), (requirement,)),)), end
+
+
+def read_tokens(text: str, at: int, kinds: list[int], starts: list[int], raws: list[str]) -> int:
+    """Words, strings, numbers and signs in a row; where the first thing begins that needs a second look"""
+    while match := _TOKEN(text, at):
+        group = match.lastindex
+        start, at = match.span(group)  # type: ignore[arg-type]  # a token is one of the groups
+        kind = _TOKEN_KINDS[group]  # type: ignore[index]  # as above
+        if kind == NUMBER:
+            kind, at = number_at(text, start)
+            if kind == ERROR:
+                return start
+        kinds.append(kind)
+        starts.append(start)
+        raws.append(text[start:at])
     return at
 
 
+def _path(start: int, raw: str) -> QualityPath:
+    words = []
+    for name in raw.split("."):
+        words.append(Word(NAME, start, name))
+        start += len(name) + 1
+    return QualityPath(tuple(words))
+
+
+# ---- pieces of patterns: `(?:…|)` means the same as `(?:…)?` and costs the engine two thirds -------------------------
+
 _NAME: Final = r"[A-Za-z_]\w*"
 _STRING: Final = r"\"[^\"\\\r\n]*\"|'[^'\\\r\n]*'"
-# `(?:…|)` and not `(?:…)?`: it means the same and costs the engine a third.
 _LABEL: Final = rf"(?: (?!satisfi|tags)({_NAME}|{_STRING})|)"
-_HEAD: Final = re.compile(rf"({_NAME}|->|\?|\|\||[RAM]->|[RA]\?|All\|\|){_LABEL}{_LABEL}(?= ?\(|[\r\n])").match
 # A number may have a unit; before a comma, a bracket, the line's end or the next key it has none.
-_PAIR: Final = re.compile(
-    rf"({_NAME}) ?= ?({_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=))"
-    r"(?:,? |,?\n([ \t]+)(?=[\w)])|(?=[,)\r\n]))"
-).match
-_KINDS: Final = dict.fromkeys("\"'", STRING) | dict.fromkeys("-0123456789", NUMBER) | {"{": BRACED}
-_CATEGORY: Final = -1
-_NO_NODE: Final = -2  # a line may begin with it and perhaps be no node, or end brackets
-_ROLES: Final = (
-    dict.fromkeys(SYMBOLS, SYMBOL)
-    | dict.fromkeys(CATEGORIES, _CATEGORY)
-    | dict.fromkeys((*NODE_CLAUSES, *DIRECTIONS, "xml", "BehaviorTree", "Root", "TreeNodesModel"), _NO_NODE)
+_VALUE: Final = rf"{_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=)"
+_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})(?:,? |(?=\)))"
+_REMARK: Final = r"(?:\#|//)[^\r\n]*"
+_LISTED: Final = rf"(?!satisfi|tags|parameters|Quality){_NAME}(?:-\w+)*"
+_PATH: Final = rf"{_LISTED}(?:\.{_NAME}(?:-\w+)*)*"
+_QUALITY: Final = rf"(?:Quality ?= ?|){_PATH}"
+_LIST: Final = rf"satisfi(?:ces ({_QUALITY}(?:, {_QUALITY})*)|es ({_LISTED}(?:, {_LISTED})*))"
+_TEXT: Final = r"\"[^\"\\\r\n]*(?:[\r\n]+[ \t][^\"\\\r\n]*)*\""  # a string of several lines, none at the margin
+_REQUIREMENT: Final = (
+    rf"(QualityReq) ID ?= ?({_NAME}|{_STRING})(?:,?(?: |\r?\n([ \t]+))description ?= ?({_TEXT}|{_NAME})|)"
 )
+_BRACKETS_END: Final = r"(?=\)|\r?\n[ \t]*\))"
+_LINE_END: Final = r"(?=[\r\n]| (?:\#|//))"
+
+# ---- patterns -------------------------------------------------------------------------------------------------------
+
+# A line of a tree; each group but the first may be missing:
+#     1 blanks  2 to 4 up to three words  5 to 8 two pairs  9 the closing bracket, empty where the brackets go on
+#     10 the end of the line with the comment before it, empty where the line goes on
+read_line: Final = re.compile(
+    rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME}){_LABEL}{_LABEL}"
+    rf"(?: ?\((?:{_PAIR}(?:{_PAIR}|)|)(\)|)|)"
+    rf"((?: +{_REMARK}|)\r?\n|)"
+).match
+# Blank lines and comments between two lines.
+read_between: Final = re.compile(rf"(?:[ \t]*(?:{_REMARK}|)\r?\n)+").match
+# 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket  5 the word of a clause
+_ATTRIBUTE: Final = re.compile(
+    rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(satisfices|satisfies|tags)(?= ))"
+).match
+# 1 qualities, or 2 names of requirements
+_BRACKETED_LIST: Final = re.compile(_LIST + _BRACKETS_END).match
+_LINE_LIST: Final = re.compile(_LIST + _LINE_END).match
+# 1 the quality that encloses it, if one does, and 2 the blanks of the line that its bracket begins, if it does
+# 3 to 6 the requirement: its first word, its name, the blanks of the line that its description begins, if it does, and
+# the description
+_DEFINITION: Final = re.compile(
+    rf"satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(1)\)){_BRACKETS_END}"
+).match
+_NAMES: Final = re.compile(rf"{_NAME}(?:-\w+)*").finditer
+_PATHS: Final = re.compile(rf"(?:Quality ?= ?|)({_PATH})").finditer
+# A name has a follower, for in `Ready?`, `M->` and `a#` it is more or less than a name.
+_TOKEN: Final = re.compile(
+    rf"[ \t]*(?:({_NAME}(?:-\w+)*)(?=[ \t,()=:.<>\r\n])|({_STRING})|([0-9]+)|(==?|,|::?|\.|[<>]=?))"
+).match
+_TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups of _TOKEN
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+value_kind: Final = (dict.fromkeys("\"'", STRING) | dict.fromkeys("-0123456789", NUMBER) | {"{": BRACED}).get
+CATEGORY: Final = -1
+NO_NODE: Final = -2  # a line may begin with it and perhaps be no node, or end brackets
+role_of: Final = (
+    dict.fromkeys(SYMBOLS, SYMBOL)
+    | dict.fromkeys(CATEGORIES, CATEGORY)
+    | dict.fromkeys((*NODE_CLAUSES, *DIRECTIONS, "xml", "BehaviorTree", "Root", "TreeNodesModel"), NO_NODE)
+).get

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 
-from btq_lang.patterns import Head, read_head, read_pairs
+from btq_lang.patterns import read_attributes, read_clause
 from btq_lang.scan import COMPILED, blanks_end, braced_end, line_end, line_opening, name_end, number_at, symbol_at
 from btq_lang.syntax import (
     Node,
@@ -47,23 +47,22 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
         The node without what its block adds, and where the next line begins.
     """
     try:
-        head = None if COMPILED else read_head(text, start, base)
-        category, kind, label, end = _head(text, start, base) if head is None else head
+        category, kind, label, end = _head(text, start, base)
         at = end + 1 if text.startswith(" (", end) else _behind_word(text, end)
         pairs: list[Pair] = []
         clauses: list[NodeClause] = []
         if text[at] == "(":
-            at = end = _attributes(text, at + 1, blanks, base, pairs, clauses)
+            at = end = attributes(text, at + 1, blanks, base, pairs, clauses)
         if text[at] == "\n":
             at += 1
         else:
             known = len(clauses)
-            at = _line_clauses(text, at, base, clauses)
+            at = line_clauses(text, at, base, clauses)
             if len(clauses) > known:
                 end = clauses[-1].end + base
         inner = tuple(clauses) if clauses else ()
         return Node(start - base, end - base, category, kind, label, tuple(pairs), inner, ()), at
-    except (_Unusual, IndexError):
+    except (Unusual, IndexError):
         return None
 
 
@@ -71,19 +70,19 @@ def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], i
     """NodeClause { NodeClause } NL: a line of its own in the block of a node; arguments and result as of a node."""
     clauses: list[NodeClause] = []
     try:
-        return clauses, _line_clauses(text, start, base, clauses)
-    except (_Unusual, IndexError):
+        return clauses, line_clauses(text, start, base, clauses)
+    except (Unusual, IndexError):
         return None
 
 
-def _head(text: str, start: int, base: int) -> Head:
+def _head(text: str, start: int, base: int) -> tuple[Word | None, Word | None, Word | None, int]:
     """Kind [ Label ]: the category, the kind, the label, and where they end"""
     if symbol := symbol_at(text, start):
         kind = Word(SYMBOL, start - base, symbol)
     else:
         kind = _name(text, start, base)
         if kind.raw in _PERHAPS_NO_NODE:
-            raise _Unusual
+            raise Unusual
     end = start + len(kind.raw)
     at = _behind_word(text, end)
     second = _label(text, at, base)
@@ -97,7 +96,7 @@ def _head(text: str, start: int, base: int) -> Head:
     return kind, second, third, end if third is None else at + len(third.raw)
 
 
-class _Unusual(Exception):
+class Unusual(Exception):
     """The full path has to read this line."""
 
 
@@ -110,11 +109,11 @@ def _name(text: str, start: int, base: int) -> Word:
     if character.isalpha() or character == "_":
         raw = text[start : name_end(text, start)]
         if raw in _NO_NAMES:
-            raise _Unusual
+            raise Unusual
         return Word(NAME, start - base, raw)
     if character == '"' or character == "'":
         return Word(STRING, start - base, _string(text, start))
-    raise _Unusual
+    raise Unusual
 
 
 def _label(text: str, start: int, base: int) -> Word | None:
@@ -129,7 +128,7 @@ def _behind_word(text: str, end: int) -> int:
     """Behind the blanks that follow a word outside brackets; nothing else but a bracket or the line's end may."""
     character = text[end]
     if character not in " \t(\r\n":
-        raise _Unusual
+        raise Unusual
     while character == " " or character == "\t":
         end += 1
         character = text[end]
@@ -144,7 +143,7 @@ def _value(text: str, start: int, base: int) -> Word:
     elif character.isalpha() or character == "_":
         raw = text[start : name_end(text, start)]
         if raw in _NO_NAMES:
-            raise _Unusual
+            raise Unusual
         word = Word(NAME, start - base, raw)
     elif character == "{":
         word = Word(BRACED, start - base, text[start : braced_end(text, start)])
@@ -152,11 +151,11 @@ def _value(text: str, start: int, base: int) -> Word:
         kind, end = number_at(text, start)
         word = Word(kind, start - base, text[start:end])
         if kind == ERROR:
-            raise _Unusual
+            raise Unusual
     else:
-        raise _Unusual
+        raise Unusual
     if text[start + len(word.raw)] not in " ,)\r\n\t":
-        raise _Unusual
+        raise Unusual
     return word
 
 
@@ -164,18 +163,25 @@ def _string(text: str, start: int) -> str:
     """STRING without a backslash, none of whose lines may be the start of an item"""
     raw = text[start : text.find(text[start], start + 1) + 1]
     if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
-        raise _Unusual
+        raise Unusual
     return raw
 
 
 # ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
 
 
-def _attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]) -> int:
+def attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]) -> int:
     """{ Attribute [ "," ] } ")", from behind the `(`"""
     while True:
         if not COMPILED:
-            at = read_pairs(text, at, blanks, base, pairs)
+            at, word = read_attributes(text, at, blanks, base, pairs)
+            if word == ")":
+                return at
+            if word is not None:
+                at = _clause(text, at, word, blanks, base, clauses)
+                if text[at] == ",":
+                    at += 1
+                continue
         character = text[at]
         if character == ")":
             return at + 1
@@ -183,14 +189,14 @@ def _attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], c
             at = _gap(text, at, blanks)
             continue
         if not (character.isalpha() or character == "_"):
-            raise _Unusual
+            raise Unusual
         end = name_end(text, at)
         key = text[at:end]
         start = _behind_equals(text, end)
         if start < 0:
             at = _clause(text, at, key, blanks, base, clauses)
         elif key in _NO_NAMES:
-            raise _Unusual
+            raise Unusual
         else:
             value = _value(text, start, base)
             pairs.append(Pair(Word(NAME, at - base, key), value))
@@ -227,25 +233,25 @@ def _gap(text: str, at: int, blanks: str | None) -> int:
         at = end
         character = text[at]
         if character == "/" and text[at + 1] != "/":
-            raise _Unusual
+            raise Unusual
         if character != "#" and character != "/":
             break
         at = _comment_end(text, at)
     if line >= 0 and not text.startswith(blanks, line):
-        raise _Unusual
+        raise Unusual
     return at
 
 
 def _comment_end(text: str, at: int) -> int:
     if text[at - 1] not in " \t\r\n(),":
-        raise _Unusual
+        raise Unusual
     return line_end(text, at)
 
 
 # ---- qualities and requirements -------------------------------------------------------------------------------------
 
 
-def _line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
+def line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
     """{ NodeClause } NL, outside brackets; returns where the next line begins"""
     at = _gap(text, at, None)
     while (character := text[at]).isalpha():
@@ -253,20 +259,23 @@ def _line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> i
         at = _clause(text, at, word, None, base, clauses)
     if character == "#" or character == "/":
         if character == "/" and text[at + 1] != "/":
-            raise _Unusual
+            raise Unusual
         at = _comment_end(text, at)
         character = text[at]
     if character == "\n" or (character == "\r" and text[at + 1] != "\n"):
         return at + 1
     if character == "\r":
         return at + 2
-    raise _Unusual
+    raise Unusual
 
 
 def _clause(text: str, start: int, word: str, blanks: str | None, base: int, clauses: list[NodeClause]) -> int:
     """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
     if word not in NODE_CLAUSES:
-        raise _Unusual
+        raise Unusual
+    if not COMPILED and (read := read_clause(text, start, blanks, base)) is not None:
+        clauses.append(read[0])
+        return _gap(text, read[1], blanks)
     qualities: list[Quality] = []
     uses: list[Requirement | ReqRef] = []
     tags: list[Word] = []
@@ -278,7 +287,7 @@ def _clause(text: str, start: int, word: str, blanks: str | None, base: int, cla
             qualities.append(quality)
         elif word == "satisfies" and text.startswith("QualityReq", at):
             if blanks is None:
-                raise _Unusual  # clauses may follow, here or in a block
+                raise Unusual  # clauses may follow, here or in a block
             requirement, end = _requirement(text, at, blanks, base)
             uses.append(requirement)
         else:
@@ -321,7 +330,7 @@ def _element(text: str, at: int, base: int) -> Word:
     """Name, and behind it what may follow in a list"""
     name = _name(text, at, base)
     if text[at + len(name.raw)] not in " ,)\r\n\t":
-        raise _Unusual
+        raise Unusual
     return name
 
 
@@ -331,7 +340,7 @@ def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality
     if classic:
         at = _behind_equals(text, at + len("Quality"))
         if at < 0:
-            raise _Unusual
+            raise Unusual
     name = _name(text, at, base)
     names = [name]
     end = at + len(name.raw)
@@ -340,7 +349,7 @@ def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality
         names.append(name)
         end += 1 + len(name.raw)
     if text[end] not in " ,()\r\n\t":
-        raise _Unusual
+        raise Unusual
     requirements: list[Requirement] = []
     if classic and text[bracket := _gap(text, end, blanks)] == "(":
         inner = _blanks_before(text, bracket)
@@ -368,10 +377,10 @@ def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[
     end = start + len("QualityReq")
     at = _gap(text, end, blanks)
     if at == end or not (text.startswith("QualityReq", start) and text.startswith("ID", at)):
-        raise _Unusual
+        raise Unusual
     at = _behind_equals(text, at + len("ID"))
     if at < 0:
-        raise _Unusual
+        raise Unusual
     name = _element(text, at, base)
     end = at + len(name.raw)
     at = _gap(text, end, blanks)

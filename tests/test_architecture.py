@@ -18,8 +18,8 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
-        {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "patterns", "plain", "parser"}
-        | {"comments", "script"}
+        {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "lines", "patterns", "plain"}
+        | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),
     frozenset({"toml_places", "project", "symbols", "mentions", "workspace", "placeholders", "requirements"}),

@@ -1,0 +1,184 @@
+"""The short cuts of the parser change nothing: with and without them the same tree and the same diagnostics.
+
+Three readers of one language are held against each other: the usual one, whose `lines` and `patterns` read what is
+spelt as usual; the one made of characters alone, which is what gets compiled; and the full one, which cuts every line
+into tokens.  The texts are the examples, made-up missions, and thousands of torn ones.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from missions import mission
+
+from btq_lang import lexer, lines, nodes, plain, scan
+from btq_lang.parser import Parsed, parse
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))
+CLASSIC, SHORT = mission(30, 7, "classic"), mission(30, 7, "short")
+
+Reader = Callable[[str], Parsed]
+
+
+def parse_by_characters(text: str) -> Parsed:
+    """As the compiled parser reads: no patterns."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (lexer, nodes, plain, scan):
+            patch.setattr(module, "COMPILED", True)
+        return parse(text)
+
+
+def parse_in_full(text: str) -> Parsed:
+    """Every line is cut into tokens, character by character."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (lexer, nodes, plain, scan):
+            patch.setattr(module, "COMPILED", True)
+        patch.setattr(nodes, "plain_node", lambda *_: None)
+        patch.setattr(nodes, "plain_clauses", lambda *_: None)
+        return parse(text)
+
+
+READERS = pytest.mark.parametrize("reader", [parse_by_characters, parse_in_full])
+
+
+def assert_alike(text: str, reader: Reader) -> None:
+    usual, other = parse(text), reader(text)
+    assert usual.diagnostics == other.diagnostics, text
+    assert usual.entries == other.entries, text
+
+
+@READERS
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
+def test_examples_read_alike(path: Path, reader: Reader) -> None:
+    assert_alike(path.read_bytes().decode("utf-8"), reader)
+
+
+@READERS
+@pytest.mark.parametrize("spelling", ["classic", "short"])
+@pytest.mark.parametrize("seed", range(3))
+def test_missions_read_alike(spelling: str, seed: int, reader: Reader) -> None:
+    assert_alike(mission(300, seed, spelling), reader)  # type: ignore[arg-type]  # one of the two spellings
+
+
+@pytest.mark.parametrize("text", [CLASSIC, SHORT], ids=["classic", "short"])
+def test_tokens_are_cut_alike(text: str) -> None:
+    assert parse(text).tokens == parse_by_characters(text).tokens
+
+
+def test_the_usual_reader_takes_the_short_cuts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else the other tests compare nothing: of the lines of a mission nearly all are read by patterns."""
+    by_characters = []
+    plain_node = nodes.plain_node
+
+    def counted(text: str, start: int, blanks: str, base: int) -> object:
+        by_characters.append(start)
+        return plain_node(text, start, blanks, base)
+
+    monkeypatch.setattr(nodes, "plain_node", counted)
+    parse(mission(1_000, 1, "classic"))
+    assert len(by_characters) < 50
+    assert lines.read_lines is nodes.read_lines
+
+
+# ---- torn texts -----------------------------------------------------------------------------------------------------
+
+PIECE = re.compile(r"\r\n|\n|[ \t]+|\"[^\"]*\"|[\w-]+|.")
+STRANGE = (
+    *(
+        " ",
+        "  ",
+        "\t",
+        "\n",
+        "\r\n",
+        "\r",
+        "\n\n",
+        "\n    ",
+        "\n  ",
+        "\x0b",
+        "\xa0",
+        "\ufeff",
+        "\\",
+        "\n#\n",
+        " // c\n",
+    ),
+    *("(", ")", "=", "==", " = ", ",", ", ", "{", "}", "{x}", '"', "'", '""', "'a b'", "-", "?", "!", "#", "//", "/*"),
+    *("*/", "/* c */", "->", "R?", "M->", "All||", "→", "ä", "é1", "٣", "x", "1", "-1", "0.5", "1e3", "30 s", "6 m/s"),
+    *("A?", "Foo-bar", "Ready?", "done!", "a.b", "Quality", "Quality = ", "QualityReq", "QualityReq ID = ", "ID"),
+    *(
+        "satisfices ",
+        "satisfies ",
+        "tags ",
+        "satisficesx",
+        "parameters ",
+        "description = ",
+        "xml ",
+        "input ",
+        "Action ",
+    ),
+    *("SubTree ", "BehaviorTree ", "Root", "TreeNodesModel", "takes ", "mission ", 'a = "b"', "a = b,", "(a = 1)"),
+)
+
+
+def torn(text: str, draw: random.Random) -> str:
+    """The text with one to three pieces or lines missing, doubled, exchanged or replaced by something strange."""
+    for _ in range(draw.randint(1, 3)):
+        pieces = PIECE.findall(text) if draw.random() < 0.7 else text.splitlines(keepends=True)
+        if not pieces:
+            return text
+        at = draw.randrange(len(pieces))
+        kind = draw.randrange(6)
+        if kind == 0:
+            del pieces[at]
+        elif kind == 1:
+            pieces.insert(at, pieces[at])
+        elif kind == 2:
+            pieces.insert(at, draw.choice(STRANGE))
+        elif kind == 3:
+            pieces[at] = draw.choice(STRANGE)
+        elif kind == 4:
+            other = draw.randrange(len(pieces))
+            pieces[at], pieces[other] = pieces[other], pieces[at]
+        else:
+            pieces[at] = pieces[at].replace("    ", draw.choice(("\t", "  ", "   ", "     ")))
+        text = "".join(pieces)
+    return text
+
+
+@READERS
+@pytest.mark.parametrize("text", [CLASSIC, SHORT], ids=["classic", "short"])
+def test_torn_missions_read_alike(text: str, reader: Reader) -> None:
+    draw = random.Random(f"{len(text)}")
+    for _ in range(1_000):
+        assert_alike(torn(text, draw), reader)
+
+
+@READERS
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
+def test_torn_examples_read_alike(path: Path, reader: Reader) -> None:
+    draw = random.Random(path.name)
+    text = path.read_bytes().decode("utf-8")
+    for _ in range(60):
+        assert_alike(torn(text, draw), reader)
+
+
+@READERS
+@pytest.mark.parametrize("newline", ["\r\n", "\r"])
+@pytest.mark.parametrize("text", [CLASSIC, SHORT], ids=["classic", "short"])
+def test_other_line_ends_read_alike(text: str, newline: str, reader: Reader) -> None:
+    text = text.replace("\n", newline)
+    assert_alike(text, reader)
+    draw = random.Random(newline)
+    for _ in range(100):
+        assert_alike(torn(text, draw), reader)
+
+
+@READERS
+def test_every_prefix_reads_alike(reader: Reader) -> None:
+    for text in (CLASSIC, SHORT):
+        for end in range(0, len(text), 7):
+            assert_alike(text[:end], reader)
