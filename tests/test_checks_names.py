@@ -143,12 +143,12 @@ def test_subtrees_without_a_name_of_their_own() -> None:
     assert_clean(tree("->", "    SubTree Pick", "    SubTree Pick") + pick)
     assert_problems(
         tree("->", "    SubTree Pick Pick", "    SubTree Pick Pick") + pick,
-        "4:22 error duplicate-instance-name «Pick» "
+        "4:22 warning duplicate-instance-name «Pick» "
         "two SubTrees of this tree are called `Pick`: the engine refuses that",
     )
     assert_problems(
         tree('SubTree Pick ""') + pick,
-        '2:18 error forbidden-name «""» '
+        '2:18 warning forbidden-name «""» '
         "the engine refuses the instance name ``: it is empty, as that of the main tree is",
     )
     assert_clean(tree("SubTree Pick") + 'BehaviorTree Pick\n    SubTree Place ""\nBehaviorTree Place\n    X\n')

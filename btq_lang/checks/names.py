@@ -10,6 +10,7 @@ from btq_lang.checks.kinds import likely_category, written
 from btq_lang.checks.view import SeenNode, View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.placeholders import is_placeholder
+from btq_lang.record import replace
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Include, Model, Models, Tree, Word
@@ -56,7 +57,9 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         related = (Related(Place(other.span), "the first one"),)
         if seen.is_subtree:
             message = f"two SubTrees of this tree are called `{text}`: the engine refuses that"
-            yield Diagnostic("duplicate-instance-name", name.span, message, related=related, severity=Severity.ERROR)
+            severity = Severity.ERROR if view.is_xml else Severity.WARNING
+            notes = () if view.is_xml else ("`btq build` writes the second one under another name",)
+            yield Diagnostic("duplicate-instance-name", name.span, message, related, notes, severity=severity)
         else:
             message = f"two nodes of this tree are called `{text}`: in logs both have the same path"
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related)
@@ -75,7 +78,9 @@ def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator
     if label is not None and label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE):
         main = view.main_tree
         if main is not None and view.is_this(main, entry):
-            yield _refused("instance", label, "it is empty, as that of the main tree is")
+            refused = _refused("instance", label, "it is empty, as that of the main tree is")
+            note = "`btq build` leaves it out"
+            yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
 
 
 def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
