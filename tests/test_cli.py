@@ -50,7 +50,7 @@ def test_version(btq: Run) -> None:
 def test_help_says_what_there_is(btq: Run) -> None:
     done = btq("--help")
     assert done.returncode == 0
-    for command in ("check", "format", "explain", "init", "completion"):
+    for command in ("check", "format", "build", "import", "explain", "init", "completion"):
         assert f"  {command} " in done.stdout
     assert "exit codes: 0 clean, 1 findings, 2 usage or I/O" in done.stdout
 
@@ -204,6 +204,71 @@ def test_xml_is_not_formatted(btq: Run, tmp_path: Path) -> None:
     done = btq("format", "tree.xml")
     assert done.returncode == 2
     assert done.stderr.startswith("btq: tree.xml: this is XML, which `btq format` leaves alone: see `btq import`\n")
+
+
+OLD = """\
+<!-- one tube -->
+<root main_tree_to_execute="Main">
+  <BehaviorTree ID="Main">
+    <SequenceStar>
+      <SubTree ID="Pick" tube="current"/>
+    </SequenceStar>
+  </BehaviorTree>
+</root>
+"""
+
+
+def test_import_writes_beside_the_xml_and_says_what_changed(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "old.xml").write_text(OLD)
+    done = btq("import", "old.xml")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert done.stderr == (
+        'old.xml:2:2: BTCPP_format="4" is added\n'
+        "old.xml:4:6: SequenceStar is now SequenceWithMemory\n"
+        'old.xml:5:26: tube="current" of a SubTree names an entry: now "{current}"\n'
+        "1 file imported with 3 changes\n"
+        "Next: btq check old.btq\n"
+    )
+    text = "# one tube\n\nRoot Main\n\nBehaviorTree Main\n    M->\n        SubTree Pick (tube = {current})\n"
+    assert (tmp_path / "old.btq").read_text() == text
+
+
+def test_import_keeps_version_3_if_asked(btq: Run) -> None:
+    done = btq("import", "--keep-v3", "-", stdin=OLD)
+    assert done.stdout == (
+        '# one tube\n\nRoot Main ()\n\nBehaviorTree Main\n    SequenceStar\n        SubTree Pick (tube = "current")\n'
+    )
+    assert (done.returncode, done.stderr) == (0, "1 file imported\n")
+
+
+def test_import_writes_over_nothing(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "x.xml").write_text(XML)
+    (tmp_path / "x.xml").write_text(XML)
+    (tmp_path / "x.btq").write_text("mine")
+    done = btq("import", "x.xml")
+    assert (done.returncode, (tmp_path / "x.btq").read_text()) == (2, "mine")
+    assert done.stderr == "btq: x.btq: is there already: --force writes it anew\n0 files imported\n"
+    done = btq("import", "x.xml", "a/x.xml", "-o", "made")
+    assert done.returncode == 2
+    assert "btq: a/x.xml: not imported: x.xml becomes made/x.btq, too\n" in done.stderr
+    assert (tmp_path / "made" / "x.btq").read_text() == (
+        "Root (BTCPP_format = 4)\n\nBehaviorTree Main\n    SubTree Pick\n"
+    )
+    assert btq("import", "--force", "x.xml").returncode == 0
+    assert (tmp_path / "x.btq").read_text() == (tmp_path / "made" / "x.btq").read_text()
+
+
+def test_import_of_broken_xml_writes_nothing_and_shows_it(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "x.xml").write_text(XML.replace("</BehaviorTree>", "</Sequence>"))
+    done = btq("import", "x.xml")
+    assert (done.returncode, (tmp_path / "x.btq").exists()) == (1, False)
+    assert done.stderr.startswith(
+        "error[xml-syntax]: </Sequence> stands where </BehaviorTree> is expected\n --> x.xml:4:3\n"
+    )
+    assert done.stderr.endswith("0 files imported, 1 file that cannot be read left alone\n")
+    assert btq("import", "nowhere.xml").returncode == 2
+    assert btq("import").returncode == 2
 
 
 def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import gc
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
+from btq_lang.btcpp.generated import without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, string, string_of, type_, value
@@ -73,6 +74,7 @@ def import_xml(text: str, keep_v3: bool = False) -> Imported:
             problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
             return Imported("", (), (*done.problems, problem), Places(()))
         writer = _Writer(text)
+        without_generated(done.document, writer.changes)
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
         writer.document(done.document)

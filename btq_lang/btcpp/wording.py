@@ -84,8 +84,9 @@ def comment(text: str) -> str:
     if "\n" not in text and "*/" in text:
         return f"#{text.rstrip(_BLANKS)}"
     if "\n" not in text:
-        said = text[:-1] if text[:1] == " " and text[-1:] == " " and len(text) > 1 else text
-        if said == said.rstrip(_BLANKS) and (said[:1] != " ") == (said is text):
+        begins_blank = text[:1] in _FIRST_BLANKS
+        said = text[:-1] if begins_blank and text[-1:] == " " and len(text) > 1 else text
+        if said == said.rstrip(_BLANKS) and begins_blank == (said is not text):
             return f"#{said}"
     return f"/*{text.replace('*/', '* /')}*/"
 
@@ -96,7 +97,7 @@ def is_kept(text: str) -> bool:
     if written.startswith("/*"):
         return written[2:-2] == text
     said = written[1:]
-    return (f"{said} " if said[:1] == " " else said) == text
+    return (f"{said} " if said[:1] in _FIRST_BLANKS else said) == text
 
 
 def _written(part: re.Match[str]) -> str:
@@ -122,6 +123,7 @@ def _quoted(inside: str) -> str:
 
 _MEANING: Final = frozenset((*CATEGORIES, *DIRECTIONS, *NODE_CLAUSES, *ITEM_WORDS, *HEADS, *VERBS))
 _BLANKS: Final = " \t"
+_FIRST_BLANKS: Final = (" ", "\t")
 _ESCAPED: Final = {"\n": "\\n", "\r": "\\n", "\t": "\\t", "\\": "\\\\"}
 _NUMBER: Final = r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
 _BARE: Final = re.compile(rf"\{{[^{{}}\"'\r\n&]*\}}|{_NUMBER}").fullmatch

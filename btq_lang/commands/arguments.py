@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 TARGETS = ("4.6", "4.7", "4.8", "4.9", "4.10")
 SEVERITIES = ("error", "warning", "info", "hint")
+_MODULES = {"import": "import_xml"}  # of commands whose own name cannot be a module's
 
 
 def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
@@ -20,6 +21,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_check(commands)
     _add_format(commands)
     _add_build(commands)
+    _add_import(commands)
     _add_explain(commands)
     _add_init(commands)
     _add_completion(commands)
@@ -33,14 +35,14 @@ def _command(commands: _SubParsersAction[ArgumentParser], name: str, help: str, 
         formatter_class=RawDescriptionHelpFormatter,
         **more,
     )
-    parser.set_defaults(run=lambda options: _run(name, options))
+    parser.set_defaults(run=lambda options: _run(_MODULES.get(name, name), options))
     return parser
 
 
-def _run(name: str, options: Namespace) -> int:
+def _run(module: str, options: Namespace) -> int:
     from importlib import import_module
 
-    code: int = import_module(f"btq_lang.commands.{name}").run(options)
+    code: int = import_module(f"btq_lang.commands.{module}").run(options)
     return code
 
 
@@ -101,6 +103,23 @@ def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
     parser.add_argument("--force", action="store_true", help="write over XML that btq did not make")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
+    _add_color(parser)
+
+
+def _add_import(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "import",
+        "make .btq files of BehaviorTree.CPP XML",
+        epilog="exit codes: 0 imported; 1 XML that cannot be read; 2 usage or I/O\n\n"
+        "examples:\n  btq import mission.xml          writes mission.btq beside it\n"
+        "  btq import trees/*.xml -o btq   and into a folder\n"
+        "  btq import - < mission.xml      to standard output\n",
+    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
+    parser.add_argument("-o", "--output", metavar="DIR", help="the folder to write into; default: that of each file")
+    parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
+    parser.add_argument("--force", action="store_true", help="write over .btq files that are there")
     _add_color(parser)
 
 

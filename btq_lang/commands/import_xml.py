@@ -1,0 +1,123 @@
+"""`btq import`: BehaviorTree.CPP XML as .btq files."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Iterable
+
+from btq_lang.btcpp.importing import Imported, import_xml
+from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
+from btq_lang.record import record
+from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.render.colour import wants_colour
+from btq_lang.text import LineIndex
+
+_STDIN = "-"
+
+
+@record
+class _Job:
+    """An XML file, what became of it, and where that goes; None: to standard output."""
+
+    path: str
+    xml: str
+    done: Imported
+    target: str | None
+
+
+def run(options: Namespace) -> int:
+    """Import each file; one that cannot be read as XML stops none of the others."""
+    jobs: list[_Job] = []
+    problems: list[LoadProblem] = []
+    for path in options.files:
+        job = _job(path, options, problems)
+        if job is not None:
+            jobs.append(job)
+    jobs = [job for job in jobs if not _clashes(job, jobs, options.force, problems)]
+    _show_findings(jobs, options)
+    good = [job for job in jobs if job.done.is_complete]
+    written = [job for job in good if _write(job, problems)]
+    for job in written:
+        _show_changes(job)
+    for problem in problems:
+        print(f"btq: {problem}", file=sys.stderr)
+    _sum_up(written, len(jobs) - len(good))
+    if problems:
+        return 2
+    return int(len(good) < len(jobs))
+
+
+def _job(path: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:
+    if path == _STDIN:
+        xml = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
+        return _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
+    path = absolute(path)
+    text, problem = read(path)
+    if text is None or problem is not None:  # what is no UTF-8 would lose something
+        problems.extend([problem] if problem else [])
+        return None
+    name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
+    target = absolute(os.path.join(options.output or os.path.dirname(path), name))
+    return _Job(path, text, import_xml(text, options.keep_v3), target)
+
+
+def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
+    """Whether a file would be lost by writing this one."""
+    if job.target is None:
+        return False
+    same = next(other for other in jobs if other.target == job.target)
+    if same is not job:
+        problems.append(LoadProblem(job.path, f"not imported: {shown(same.path)} becomes {shown(job.target)}, too"))
+        return True
+    if job.target == job.path or (os.path.lexists(job.target) and not force):
+        problems.append(LoadProblem(job.target, "is there already: --force writes it anew"))
+        return True
+    return False
+
+
+def _write(job: _Job, problems: list[LoadProblem]) -> bool:
+    if job.target is None:
+        sys.stdout.write(job.done.text)
+        return True
+    try:
+        os.makedirs(os.path.dirname(job.target), exist_ok=True)
+        write_whole(job.target, job.done.text)
+    except OSError as error:
+        problems.append(LoadProblem(job.target, f"cannot be written: {error.strerror}"))
+        return False
+    return True
+
+
+def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
+    """What is wrong with the XML, shown on it."""
+    findings = [Finding(job.path, job.xml, each) for job in jobs for each in job.done.diagnostics]
+    if not findings:
+        return
+    report = with_paths(Report(tuple(findings), {job.path: job.xml for job in jobs}, ()), shown)
+    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stderr.isatty(), os.environ))
+    for piece in render("full", report, colour=colour, width=120):
+        sys.stderr.write(piece)
+
+
+def _show_changes(job: _Job) -> None:
+    """What the new file says otherwise than the XML, a line each."""
+    lines = LineIndex(job.xml)
+    for change in job.done.changes:
+        line, column = lines.position(change.span.start)
+        print(f"{shown(job.path)}:{line + 1}:{column + 1}: {change.message}", file=sys.stderr)
+
+
+def _sum_up(written: list[_Job], refused: int) -> None:
+    def files(number: int) -> str:
+        return f"{number} file{'' if number == 1 else 's'}"
+
+    changes = sum(len(job.done.changes) for job in written)
+    told = f" with {changes} change{'' if changes == 1 else 's'}" if changes else ""
+    parts = [f"{files(len(written))} imported{told}"]
+    if refused:
+        parts.append(f"{files(refused)} that cannot be read left alone")
+    print(", ".join(parts), file=sys.stderr)
+    if len(written) == 1 and written[0].target is not None:
+        print(f"Next: btq check {shown(written[0].target)}", file=sys.stderr)
