@@ -3,97 +3,41 @@
 from __future__ import annotations
 
 import json
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
+from lsp_editor import SERVER, Editor, Message
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 RIGHT = WRONG.replace("Sequnce", "Sequence")
-
-
-class Editor:
-    """An editor with one server: requests are answered in order, notifications are kept until asked for."""
-
-    def __init__(self, root: Path, encodings: tuple[str, ...] = ()) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "btq_lang.server", "--stdio"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
-        self.root = root
-        self.count = 0
-        general = {"general": {"positionEncodings": list(encodings)}} if encodings else {}
-        self.capabilities = self.request("initialize", capabilities=general, rootUri=root.as_uri(), processId=None)
-        self.notify("initialized")
-
-    def send(self, **message: Any) -> None:
-        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
-        assert self.process.stdin is not None
-        self.process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
-        self.process.stdin.flush()
-
-    def receive(self) -> dict[str, Any]:
-        assert self.process.stdout is not None
-        length = 0
-        while (line := self.process.stdout.readline()) not in (b"\r\n", b""):
-            if line.lower().startswith(b"content-length:"):
-                length = int(line.split(b":")[1])
-        message: dict[str, Any] = json.loads(self.process.stdout.read(length))
-        return message
-
-    def notify(self, method: str, **params: Any) -> None:
-        self.send(method=method, params=params)
-
-    def request(self, method: str, **params: Any) -> Any:
-        self.count += 1
-        self.send(id=self.count, method=method, params=params)
-        while (message := self.receive()).get("id") != self.count or "method" in message:
-            pass
-        assert "error" not in message, message
-        return message["result"]
-
-    def uri(self, name: str) -> str:
-        return (self.root / name).as_uri()
-
-    def open(self, name: str, text: str) -> None:
-        document = {"uri": self.uri(name), "languageId": "btq", "version": 1, "text": text}
-        self.notify("textDocument/didOpen", textDocument=document)
-
-    def change(self, name: str, text: str, version: int = 2) -> None:
-        document = {"uri": self.uri(name), "version": version}
-        self.notify("textDocument/didChange", textDocument=document, contentChanges=[{"text": text}])
-
-    def diagnostics(self, name: str) -> list[tuple[str, int, int, int]]:
-        """What is published next for a file: rule, line, first and last column."""
-        while True:
-            message = self.receive()
-            if message.get("method") == "textDocument/publishDiagnostics" and message["params"]["uri"] == self.uri(
-                name
-            ):
-                return [
-                    (
-                        each["code"],
-                        each["range"]["start"]["line"],
-                        each["range"]["start"]["character"],
-                        each["range"]["end"]["character"],
-                    )
-                    for each in message["params"]["diagnostics"]
-                ]
-
-    def close(self) -> None:
-        self.request("shutdown")
-        self.notify("exit")
-        with self.process:
-            assert self.process.wait(20) == 0
+MISSION = 'include "skills.btq"\nBehaviorTree Main\n    Pick (from = shelf)\n'
+SKILLS = "Action Pick\n    input from : string\n"
 
 
 @pytest.fixture
 def editor(tmp_path: Path) -> Iterator[Editor]:
     editor = Editor(tmp_path)
     yield editor
-    editor.close()
+    assert editor.close() == ""
+
+
+def edits(changes: list[Message]) -> list[tuple[int, int, int, str]]:
+    return [
+        (
+            each["range"]["start"]["line"],
+            each["range"]["start"]["character"],
+            each["range"]["end"]["character"],
+            each["newText"],
+        )
+        for each in changes
+    ]
+
+
+# ---- diagnostics that are pushed ----
 
 
 def test_diagnostics_come_and_go_as_one_types(editor: Editor) -> None:
@@ -101,8 +45,8 @@ def test_diagnostics_come_and_go_as_one_types(editor: Editor) -> None:
     assert editor.diagnostics("main.btq") == [("unknown-node", 2, 8, 15)]
     editor.change("main.btq", RIGHT)
     assert editor.diagnostics("main.btq") == []
-    editor.change("main.btq", "", version=3)
-    assert editor.diagnostics("main.btq") == []
+    editor.change("main.btq", "")
+    assert editor.published("main.btq") == {"uri": editor.uri("main.btq"), "diagnostics": [], "version": 3}
 
 
 def test_an_edit_in_one_file_reaches_the_file_that_includes_it(editor: Editor) -> None:
@@ -114,25 +58,356 @@ def test_an_edit_in_one_file_reaches_the_file_that_includes_it(editor: Editor) -
     assert editor.diagnostics("main.btq") == []
 
 
-def test_closing_a_file_clears_it(editor: Editor) -> None:
+def test_an_edit_reaches_files_that_are_closed(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "skills.btq").write_text(SKILLS, encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("skills.btq", SKILLS)
+    assert editor.diagnostics("skills.btq") == []
+    editor.change("skills.btq", SKILLS.replace("from", "shelf"))
+    assert [found[0] for found in editor.diagnostics("main.btq")] == ["unknown-port"]
+    editor.shut("skills.btq")  # without saving: the file on the disk counts again
+    assert editor.diagnostics("main.btq") == []
+    assert editor.close() == ""
+
+
+def test_closed_files_are_checked_from_the_start(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path)
+    assert editor.diagnostics("main.btq") == [("unknown-node", 2, 8, 15)]
+    editor.open("main.btq", RIGHT)
+    assert editor.diagnostics("main.btq") == []
+    editor.shut("main.btq")
+    assert editor.diagnostics("main.btq") == [("unknown-node", 2, 8, 15)]
+    assert editor.close() == ""
+
+
+def test_closing_a_file_that_is_on_no_disk_clears_it(editor: Editor) -> None:
     editor.open("main.btq", WRONG)
     assert editor.diagnostics("main.btq") != []
-    editor.notify("textDocument/didClose", textDocument={"uri": editor.uri("main.btq")})
+    editor.shut("main.btq")
     assert editor.diagnostics("main.btq") == []
+
+
+def test_files_that_change_on_the_disk(tmp_path: Path) -> None:
+    watching = {"workspace": {"didChangeWatchedFiles": {"dynamicRegistration": True}}}
+    editor = Editor(tmp_path, capabilities=watching)
+    editor.open("main.btq", MISSION)
+    assert editor.diagnostics("main.btq")[0][0] == "missing-include"
+    editor.write("skills.btq", SKILLS)
+    assert editor.diagnostics("main.btq") == []
+    editor.write("btq.toml", '[rules]\nunknown-node = "off"\n')
+    editor.change("main.btq", WRONG)
+    assert editor.diagnostics("main.btq") == []
+    editor.write("btq.toml", '[rules]\nunknown-node = "error"\n')
+    assert [each["severity"] for each in editor.published("main.btq")["diagnostics"]] == [1]
+    (tmp_path / "btq.toml").unlink()
+    editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri("btq.toml"), "type": 3}])
+    assert [each["severity"] for each in editor.published("main.btq")["diagnostics"]] == [2]
+    assert [asked["method"] for asked in editor.asked] == ["client/registerCapability"]
+    assert editor.close() == ""
+
+
+def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
+    editor.open("main.btq", "Root Main\n" + WRONG.replace("Dock", "Pick satisfices usability.user-interface-aesthetics"))
+    found = {each["code"]: each for each in editor.published("main.btq")["diagnostics"]}
+    page = Path(found["unknown-node"]["codeDescription"]["href"].removeprefix("file://"))
+    assert page.read_text(encoding="utf-8").startswith("# unknown-node")
+    assert found["old-quality-name"]["tags"] == [2]
+    assert {each["source"] for each in found.values()} == {"btq"}
+
+
+def test_folders_come_and_go(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "main.btq").write_text(WRONG, encoding="utf-8")
+    one, two = ({"uri": (tmp_path / name).as_uri(), "name": name} for name in ("one", "two"))
+    editor = Editor(tmp_path, workspaceFolders=[one])
+    assert editor.diagnostics("one/main.btq") != []
+    editor.notify("workspace/didChangeWorkspaceFolders", event={"added": [two], "removed": [one]})
+    assert editor.diagnostics("two/main.btq") != []
+    assert editor.diagnostics("one/main.btq") == []
+    assert editor.close() == ""
+
+
+def test_settings_change_live(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, initializationOptions={"rules": {"unknown-node": "error"}})
+    editor.open("main.btq", WRONG)
+    assert [each["severity"] for each in editor.published("main.btq")["diagnostics"]] == [1]
+    editor.notify("workspace/didChangeConfiguration", settings={"btq": {"rules": {"unknown-node": "off"}}})
+    assert editor.diagnostics("main.btq") == []
+    editor.notify("workspace/didChangeConfiguration", settings=None)
+    assert editor.close() == ""
+
+
+def test_settings_are_asked_for_where_the_editor_has_them(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities={"workspace": {"configuration": True}})
+    assert editor.diagnostics("main.btq") != []
+    editor.settings = {"checkClosedFiles": False}
+    editor.notify("workspace/didChangeConfiguration", settings=None)
+    assert editor.diagnostics("main.btq") == []
+    assert editor.close() == ""
+
+
+def test_many_files_are_checked_with_progress(tmp_path: Path) -> None:
+    for number in range(60):
+        (tmp_path / f"main{number}.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities={"window": {"workDoneProgress": True}})
+    begin = editor.wait_for(lambda message: message.get("method") == "$/progress")
+    assert begin["params"]["value"]["kind"] == "begin"
+    end = editor.wait_for(lambda message: message.get("params", {}).get("value", {}).get("kind") == "end")
+    assert end["params"]["value"]["message"] == "60 files checked"
+    assert editor.close() == ""
+
+
+# ---- diagnostics that are pulled ----
+
+PULLS: Message = {"textDocument": {"diagnostic": {}}, "workspace": {"diagnostics": {"refreshSupport": True}}}
+
+
+def test_diagnostics_are_pulled(tmp_path: Path) -> None:
+    (tmp_path / "closed.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities=PULLS)
+    editor.open("main.btq", WRONG)
+    first = editor.request("textDocument/diagnostic", **editor.document("main.btq"))
+    assert (first["kind"], [each["code"] for each in first["items"]]) == ("full", ["unknown-node"])
+    again = editor.request("textDocument/diagnostic", **editor.document("main.btq"), previousResultId=first["resultId"])
+    assert again == {"kind": "unchanged", "resultId": first["resultId"]}
+    editor.change("main.btq", RIGHT)
+    last = editor.request("textDocument/diagnostic", **editor.document("main.btq"), previousResultId=first["resultId"])
+    assert (last["kind"], last["items"]) == ("full", [])
+    assert not [message for message in editor.kept if message["method"] == "textDocument/publishDiagnostics"]
+    assert editor.close() == ""
+
+
+def test_the_diagnostics_of_the_whole_workspace_are_pulled(tmp_path: Path) -> None:
+    (tmp_path / "closed.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities=PULLS)
+    editor.open("main.btq", RIGHT)
+    first = editor.request("workspace/diagnostic", previousResultIds=[])["items"]
+    found = {Path(each["uri"]).name: (each["version"], len(each["items"])) for each in first}
+    assert found == {"main.btq": (1, 0), "closed.btq": (None, 1)}
+    known = [{"uri": each["uri"], "value": each["resultId"]} for each in first]
+    again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
+    assert [each["kind"] for each in again] == ["unchanged", "unchanged"]
+    assert editor.close() == ""
+
+
+# ---- requests ----
 
 
 def test_formatting(editor: Editor) -> None:
     editor.open("main.btq", "BehaviorTree Main\n  Dock\n")
     options = {"tabSize": 4, "insertSpaces": True}
-    edits = editor.request("textDocument/formatting", textDocument={"uri": editor.uri("main.btq")}, options=options)
-    assert [(edit["range"]["start"], edit["newText"]) for edit in edits] == [({"line": 1, "character": 2}, "  ")]
+    found = editor.request("textDocument/formatting", **editor.document("main.btq"), options=options)
+    assert edits(found) == [(1, 2, 2, "  ")]
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 2, "character": 0}}
+    ranged = editor.request("textDocument/rangeFormatting", **editor.document("main.btq"), range=whole, options=options)
+    assert edits(ranged) == [(1, 2, 2, "  ")]
+
+
+def test_from_a_name_to_its_definition_and_back(editor: Editor) -> None:
+    editor.open("skills.btq", SKILLS)
+    editor.open("main.btq", MISSION)
+    there = {"start": {"line": 0, "character": 7}, "end": {"line": 0, "character": 11}}
+    for method in ("definition", "declaration"):
+        found = editor.request(f"textDocument/{method}", **editor.at("main.btq", 2, 5))
+        assert found == [{"uri": editor.uri("skills.btq"), "range": there}]
+    context = {"includeDeclaration": False}
+    uses = editor.request("textDocument/references", **editor.at("skills.btq", 0, 8), context=context)
+    assert [(each["uri"], each["range"]["start"]["line"]) for each in uses] == [(editor.uri("main.btq"), 2)]
+    shown = editor.request("textDocument/documentHighlight", **editor.at("main.btq", 2, 5))
+    assert [each["kind"] for each in shown] == [2]
+
+
+def test_an_editor_that_takes_links_gets_them(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, capabilities={"textDocument": {"definition": {"linkSupport": True}}})
+    editor.open("main.btq", SKILLS + "BehaviorTree Main\n    Pick\n")
+    (link,) = editor.request("textDocument/definition", **editor.at("main.btq", 3, 6))
+    assert link["originSelectionRange"] == {"start": {"line": 3, "character": 4}, "end": {"line": 3, "character": 8}}
+    assert link["targetSelectionRange"]["start"] == {"line": 0, "character": 7}
+    assert editor.close() == ""
+
+
+def test_rename(editor: Editor) -> None:
+    editor.open("skills.btq", SKILLS)
+    editor.open("main.btq", MISSION)
+    ready = editor.request("textDocument/prepareRename", **editor.at("main.btq", 2, 5))
+    assert ready["placeholder"] == "Pick"
+    made = editor.request("textDocument/rename", **editor.at("main.btq", 2, 5), newName="Grasp")["changes"]
+    assert {uri: edits(changes) for uri, changes in made.items()} == {
+        editor.uri("main.btq"): [(2, 4, 8, "Grasp")],
+        editor.uri("skills.btq"): [(0, 7, 11, "Grasp")],
+    }
+    refused = editor.ask("textDocument/rename", **editor.at("main.btq", 2, 5), newName="Retry")
+    assert refused["error"] == {"code": -32803, "message": "`Retry` is a node of the engine"}
+
+
+def test_rename_names_versions_to_an_editor_that_compares_them(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, capabilities={"workspace": {"workspaceEdit": {"documentChanges": True}}})
+    editor.open("main.btq", RIGHT)
+    editor.change("main.btq", RIGHT)
+    made = editor.request("textDocument/rename", **editor.at("main.btq", 3, 13), newName="Land")
+    assert [each["textDocument"] for each in made["documentChanges"]] == [{"uri": editor.uri("main.btq"), "version": 2}]
+    assert editor.close() == ""
+
+
+def test_completion_is_documented_when_it_is_looked_at(tmp_path: Path) -> None:
+    snippets = {"textDocument": {"completion": {"completionItem": {"snippetSupport": True}}}}
+    for capabilities, text in (({}, "Pick"), (snippets, "Pick (from = ${1:{=\\}})")):
+        editor = Editor(tmp_path, capabilities=capabilities)
+        editor.open("main.btq", SKILLS + "BehaviorTree Main\n    P")
+        found = editor.request("textDocument/completion", **editor.at("main.btq", 3, 5))
+        first = found["items"][0]
+        assert (first["label"], first["textEdit"]["newText"]) == ("Pick", text)
+        resolved = editor.request("completionItem/resolve", **first)
+        assert "`input from : string` (required)" in resolved["documentation"]["value"]
+        assert editor.close() == ""
+
+
+def test_hover_and_signature(editor: Editor) -> None:
+    editor.open("main.btq", SKILLS + "BehaviorTree Main\n    Pick (")
+    shown = editor.request("textDocument/hover", **editor.at("main.btq", 3, 5))
+    assert shown["contents"]["kind"] == "markdown"
+    assert shown["range"]["start"] == {"line": 3, "character": 4}
+    help_ = editor.request("textDocument/signatureHelp", **editor.at("main.btq", 3, 10))
+    assert help_["signatures"][0]["label"] == "Pick (input from : string)"
+    assert editor.request("textDocument/hover", **editor.at("main.btq", 2, 0)) is None
+
+
+def test_structure(editor: Editor) -> None:
+    editor.open("skills.btq", SKILLS)
+    editor.open("main.btq", MISSION)
+    outline = editor.request("textDocument/documentSymbol", **editor.document("main.btq"))
+    assert [each["name"] for each in outline] == ["skills.btq", "Main"]
+    folds = editor.request("textDocument/foldingRange", **editor.document("main.btq"))
+    assert [(each["startLine"], each["endLine"]) for each in folds] == [(1, 2)]
+    links = editor.request("textDocument/documentLink", **editor.document("main.btq"))
+    assert [each["target"] for each in links] == [editor.uri("skills.btq")]
+    (selection,) = editor.request(
+        "textDocument/selectionRange", **editor.document("main.btq"), positions=[{"line": 2, "character": 5}]
+    )
+    assert selection["parent"]["range"]["start"] == {"line": 2, "character": 4}
+    found = editor.request("workspace/symbol", query="pick")
+    assert [(each["name"], each["location"]["uri"]) for each in found] == [("Pick", editor.uri("skills.btq"))]
+
+
+def test_the_deepest_tree_has_an_outline(editor: Editor) -> None:
+    lines = "".join(f"{'  ' * depth}Inverter\n" for depth in range(1, 256)) + "  " * 256 + "Pick\n"
+    editor.open("main.btq", f"BehaviorTree Main\n{lines}")
+    (symbol,) = editor.request("textDocument/documentSymbol", **editor.document("main.btq"))
+    depth = 0
+    while symbol["children"]:
+        (symbol,) = symbol["children"]
+        depth += 1
+    assert depth == 256
+
+
+def test_semantic_tokens(editor: Editor) -> None:
+    editor.open("main.btq", RIGHT)
+    full = editor.request("textDocument/semanticTokens/full", **editor.document("main.btq"))
+    editor.change("main.btq", RIGHT + "        Pick\n")
+    changed = editor.request(
+        "textDocument/semanticTokens/full/delta", **editor.document("main.btq"), previousResultId=full["resultId"]
+    )
+    (edit,) = changed["edits"]
+    after = full["data"][: edit["start"]] + edit["data"] + full["data"][edit["start"] + edit["deleteCount"] :]
+    new = editor.request("textDocument/semanticTokens/full", **editor.document("main.btq"))
+    assert new["data"] == after
+    stale = editor.request(
+        "textDocument/semanticTokens/full/delta", **editor.document("main.btq"), previousResultId="another"
+    )
+    assert stale["data"] == after
+    line = {"start": {"line": 2, "character": 0}, "end": {"line": 2, "character": 99}}
+    part = editor.request("textDocument/semanticTokens/range", **editor.document("main.btq"), range=line)
+    assert part["data"] == [2, 8, 8, 6, 2]
+
+
+def test_what_the_server_does_not_know_is_nothing(editor: Editor) -> None:
+    for method in ("hover", "completion", "prepareRename"):
+        assert editor.request(f"textDocument/{method}", **editor.at("nowhere.btq", 0, 0)) is None
+    for method in ("documentSymbol", "foldingRange", "documentLink"):
+        assert editor.request(f"textDocument/{method}", **editor.document("nowhere.btq")) == []
+    report = editor.request("textDocument/diagnostic", **editor.document("nowhere.btq"))
+    assert report == {"kind": "full", "items": []}
+
+
+# ---- the way there ----
 
 
 @pytest.mark.parametrize(("encoding", "column"), [("utf-8", 17), ("utf-16", 15), ("utf-32", 14)])
 def test_columns_are_counted_as_agreed(tmp_path: Path, encoding: str, column: int) -> None:
-    editor = Editor(tmp_path, (encoding,))
-    assert editor.capabilities["capabilities"]["positionEncoding"] == encoding
+    editor = Editor(tmp_path, capabilities={"general": {"positionEncodings": [encoding]}})
+    assert editor.capabilities["positionEncoding"] == encoding
     editor.open("main.btq", 'BehaviorTree Main\n    Dock "🤖" (_skipif = x)\n')
     found = editor.diagnostics("main.btq")
     assert (found[0][0], found[0][2]) == ("unknown-attribute", column)
-    editor.close()
+    shown = editor.request("textDocument/hover", **editor.at("main.btq", 1, 5))
+    assert shown["range"]["end"] == {"line": 1, "character": 8}
+    assert editor.close() == ""
+
+
+def test_lines_end_where_editors_end_them(editor: Editor) -> None:
+    editor.open("main.btq", "# a\u2028b\fc\r# d\r\nBehaviorTree Main\n    Sequnce\n        Pick\n")
+    assert editor.diagnostics("main.btq") == [("unknown-node", 3, 4, 11)]
+
+
+def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: Path) -> None:
+    program = (
+        "import btq_lang.handlers.explaining as explaining\n"
+        "def broken(*_): raise ZeroDivisionError('broken')\n"
+        "explaining.hover = broken\n"
+        "from btq_lang.server import main; main([])\n"
+    )
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor.open("main.btq", WRONG)
+    answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
+    assert "broken" in answer["error"]["message"]
+    assert editor.diagnostics("main.btq") != []
+    assert "ZeroDivisionError: broken" in editor.close()
+
+
+def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None:
+    answer = editor.ask("textDocument/somethingNew", **editor.document("main.btq"))
+    assert answer["error"]["code"] == -32601
+    editor.notify("textDocument/somethingElse")
+    editor.open("main.btq", RIGHT)
+    assert editor.diagnostics("main.btq") == []
+
+
+def test_a_cancelled_request_is_answered_as_cancelled(tmp_path: Path) -> None:
+    for number in range(20):
+        (tmp_path / f"main{number}.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities=PULLS)
+    editor.send(id="slow", method="workspace/diagnostic", params={"previousResultIds": []})
+    editor.notify("$/cancelRequest", id="slow")
+    answer = editor.wait_for(lambda message: message.get("id") == "slow")
+    assert answer["error"]["code"] == -32800
+    assert editor.close() == ""
+
+
+def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = (sys.executable, "-m", "btq_lang", "lsp", "--tcp", str(port), "--log", "info")
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        log = next(line for line in process.stderr if "Serving on" in line)
+        assert f"('127.0.0.1', {port})" in log
+        with socket.create_connection(("127.0.0.1", port)) as connection, connection.makefile("rwb") as stream:
+            body = json.dumps(
+                {"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {"capabilities": {}, "processId": None}}
+            ).encode()
+            stream.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+            stream.flush()
+            assert stream.readline().startswith(b"Content-Length:")
+        process.terminate()
+
+
+def test_btq_lsp_is_the_same_server(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, command=(sys.executable, "-m", "btq_lang", "lsp"))
+    assert editor.initialized["serverInfo"]["name"] == "btq"
+    assert editor.close() == ""
+    assert SERVER[-1] == "--stdio"

@@ -25,6 +25,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_explain(commands)
     _add_init(commands)
     _add_completion(commands)
+    _add_lsp(commands)
 
 
 def _command(commands: _SubParsersAction[ArgumentParser], name: str, help: str, **more: Any) -> ArgumentParser:
@@ -150,6 +151,18 @@ def _add_completion(commands: _SubParsersAction[ArgumentParser]) -> None:
         "  btq completion fish > ~/.config/fish/completions/btq.fish\n",
     )
     parser.add_argument("shell", choices=SHELLS)
+
+
+def _add_lsp(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(commands, "lsp", "serve an editor: the language server, also called btq-lsp")
+    add_server_options(parser)
+
+
+def add_server_options(parser: ArgumentParser) -> None:
+    """The options of `btq lsp` and of `btq-lsp`."""
+    parser.add_argument("--stdio", action="store_true", help="over standard input and output: the default")
+    parser.add_argument("--tcp", type=int, metavar="PORT", help="one editor, over a port of this machine")
+    parser.add_argument("--log", choices=("error", "warning", "info", "debug"), default="error", help="default: error")
 
 
 def _add_color(parser: ArgumentParser) -> None:

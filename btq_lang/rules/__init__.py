@@ -35,8 +35,17 @@ def page(rule: str) -> str:
     Raises:
         KeyError: there is no such rule.
     """
-    with open(f"{os.path.dirname(__file__)}/{RULES[rule].name}.md", encoding="utf-8") as file:
+    with open(page_path(rule), encoding="utf-8") as file:
         return file.read()
+
+
+def page_path(rule: str) -> str:
+    """The file of a rule's page.
+
+    Raises:
+        KeyError: there is no such rule.
+    """
+    return f"{os.path.abspath(os.path.dirname(__file__))}/{RULES[rule].name}.md"
 
 
 _E, _W, _H = Severity.ERROR, Severity.WARNING, Severity.HINT

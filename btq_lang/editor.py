@@ -1,0 +1,168 @@
+"""The editor at the other end: what it can do, what it has open, and what it has been told.
+
+Every answer is made in the terms of `convert`; which request asks which feature, `handlers` says.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+from pygls.lsp.server import LanguageServer
+
+from btq_lang import __version__
+from btq_lang.convert import Converter
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.session import Session
+from btq_lang.workspace import Workspace
+
+T = TypeVar("T")
+
+
+class Refused(JsonRpcException):
+    """A request that cannot be granted, with the reason for the user: no failure of the server."""
+
+    CODE = -32803  # RequestFailed
+
+
+class Server(LanguageServer):
+    """The server: a session, the way to the editor's terms, and what the editor has been told."""
+
+    def __init__(self) -> None:
+        super().__init__("btq", __version__, text_document_sync_kind=types.TextDocumentSyncKind.Full)
+        self.session = Session()
+        self.convert = Converter()
+        self.versions: dict[str, int] = {}
+        self.published: dict[str, tuple[tuple[Diagnostic, ...], int | None]] = {}
+        self.tokens: dict[str, tuple[str, list[int]]] = {}
+        self.count = 0
+        self.waiting: dict[str, None] = {}
+        self.task: asyncio.Task[None] | None = None
+
+    # ---- what an editor can do ----
+
+    @property
+    def pulls(self) -> bool:
+        """The editor asks for diagnostics itself."""
+        document = self.client_capabilities.text_document
+        return document is not None and document.diagnostic is not None
+
+    @property
+    def takes_snippets(self) -> bool:
+        document = self.client_capabilities.text_document
+        completion = document.completion if document else None
+        item = completion.completion_item if completion else None
+        return bool(item and item.snippet_support)
+
+    @property
+    def takes_links(self) -> bool:
+        document = self.client_capabilities.text_document
+        return bool(document and document.definition and document.definition.link_support)
+
+    def versions_for_edits(self) -> dict[str, int] | None:
+        """The versions of open files, for an editor that compares them."""
+        workspace = self.client_capabilities.workspace
+        edit = workspace.workspace_edit if workspace else None
+        return self.versions if edit and edit.document_changes else None
+
+    def can_refresh(self, what: str) -> bool:
+        """Whether the editor asks again when told so."""
+        capabilities = getattr(self.client_capabilities.workspace, what, None)
+        return bool(capabilities and capabilities.refresh_support)
+
+    # ---- asking features ----
+
+    def at(self, document: types.TextDocumentIdentifier) -> tuple[Workspace, str] | None:
+        """The workspace and the path of a document; None where it is unknown, or written in another language."""
+        path = self.convert.path(document.uri)
+        workspace = self.session.workspace_of(path)
+        if workspace is None or workspace.files[path].origin is not None:
+            return None
+        return workspace, path
+
+    def ask(
+        self,
+        document: types.TextDocumentIdentifier,
+        position: types.Position,
+        feature: Callable[[Workspace, str, int], T],
+    ) -> tuple[Workspace, str, T] | None:
+        """What a feature answers at a position, and the workspace and path that its spans are of."""
+        place = self.at(document)
+        if place is None:
+            return None
+        workspace, path = place
+        return workspace, path, feature(workspace, path, self.convert.offset(workspace, path, position))
+
+    # ---- telling diagnostics ----
+
+    def check_soon(self, paths: Iterable[str]) -> None:
+        """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
+        self.waiting = dict.fromkeys((*paths, *self.waiting))
+        if self.task is None or self.task.done():
+            self.task = asyncio.ensure_future(self._check())
+
+    async def _check(self) -> None:
+        """Check file by file, and listen between two: an edit that comes meanwhile is checked first."""
+        await asyncio.sleep(0)
+        if self.pulls:
+            self.waiting.clear()
+            if self.can_refresh("diagnostics"):
+                self.workspace_diagnostic_refresh(None)
+            return
+        while self.waiting:
+            path = next(iter(self.waiting))
+            del self.waiting[path]
+            try:
+                self.publish(path)
+            except Exception:
+                logging.getLogger(__name__).exception("checking %s", path)
+            await asyncio.sleep(0)
+        for path in [path for path in self.published if self.session.workspace_of(path) is None]:
+            self.publish(path)
+
+    def publish(self, path: str) -> None:
+        """Tell the diagnostics of a file, unless the editor knows them."""
+        workspace = self.session.workspace_of(path)
+        version = self.versions.get(path)
+        if workspace is None or not (path in self.session.open or self.session.setting("checkClosedFiles", True)):
+            if self.published.pop(path, ((), None))[0]:
+                params = types.PublishDiagnosticsParams(self.convert.uri(path), [])
+                self.text_document_publish_diagnostics(params)
+            self.session.forget(path)
+            return
+        found = self.session.diagnostics(path)
+        known = self.published.get(path)
+        if known is not None and known[0] is found and known[1] == version:
+            return
+        self.published[path] = found, version
+        if found or known is not None or path in self.session.open:
+            shown = [self.convert.diagnostic(workspace, path, each) for each in found]
+            uri = self.convert.uri(path)
+            self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, shown, version))
+
+    def report(self, path: str, previous: str | None) -> types.DocumentDiagnosticReport:
+        """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
+        workspace = self.session.workspace_of(path)
+        found = self.session.diagnostics(path)
+        result = f"{path in self.session.open}:{hash(found):x}"
+        if workspace is None:
+            return types.RelatedFullDocumentDiagnosticReport([])
+        if previous == result:
+            return types.RelatedUnchangedDocumentDiagnosticReport(result)
+        shown = [self.convert.diagnostic(workspace, path, each) for each in found]
+        return types.RelatedFullDocumentDiagnosticReport(shown, result_id=result)
+
+    def reload(self) -> None:
+        """Read folders and projects again, and tell what has changed."""
+        self.check_soon(self.session.reload())
+        for what, refresh in (
+            ("semantic_tokens", self.workspace_semantic_tokens_refresh),
+            ("inlay_hint", self.workspace_inlay_hint_refresh),
+            ("code_lens", self.workspace_code_lens_refresh),
+        ):
+            if self.can_refresh(what):
+                refresh(None)

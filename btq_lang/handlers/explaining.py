@@ -1,0 +1,49 @@
+"""Hover, signature help and completion."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from btq_lang.convert import markdown
+from btq_lang.editor import Server
+from btq_lang.features.completion import complete
+from btq_lang.features.documentation import documentation
+from btq_lang.features.hover import hover
+from btq_lang.features.signature import signature_help
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    def show(params: types.HoverParams) -> types.Hover | None:
+        asked = server.ask(params.text_document, params.position, hover)
+        if asked is None or asked[2] is None:
+            return None
+        return types.Hover(markdown(asked[2].markdown), convert.range(asked[0], asked[1], asked[2].span))
+
+    @server.feature(
+        types.TEXT_DOCUMENT_SIGNATURE_HELP,
+        types.SignatureHelpOptions(trigger_characters=["("], retrigger_characters=["=", " ", ","]),
+    )
+    def signature(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
+        asked = server.ask(params.text_document, params.position, signature_help)
+        return convert.signature(asked[2]) if asked and asked[2] else None
+
+    @server.feature(
+        types.TEXT_DOCUMENT_COMPLETION,
+        types.CompletionOptions(trigger_characters=list('({=.<"@:/,['), resolve_provider=True),
+    )
+    def completion(params: types.CompletionParams) -> types.CompletionList | None:
+        asked = server.ask(params.text_document, params.position, complete)
+        return convert.completion(*asked, snippets=server.takes_snippets) if asked else None
+
+    @server.feature(types.COMPLETION_ITEM_RESOLVE)
+    def resolve(item: types.CompletionItem) -> types.CompletionItem:
+        data = item.data if isinstance(item.data, dict) else {}
+        path = str(data.get("path"))
+        workspace = session.workspace_of(path)
+        if workspace is not None:
+            text = documentation(workspace, path, str(data.get("kind")), str(data.get("name")))
+            item.documentation = markdown(text) if text else None
+        return item

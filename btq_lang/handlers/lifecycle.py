@@ -1,0 +1,98 @@
+"""The beginning, the folders, the settings, and files that change on the disk."""
+
+from __future__ import annotations
+
+import asyncio
+
+from lsprotocol import types
+
+from btq_lang.editor import Server
+from btq_lang.session import Session
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+
+    @server.feature(types.INITIALIZE)
+    def initialize(params: types.InitializeParams) -> None:
+        convert.agree(server.workspace.position_encoding)
+        folders = [folder.uri for folder in params.workspace_folders or ()]
+        if not folders and (root := params.root_uri):
+            folders = [root]
+        session.folders = tuple(map(convert.path, folders))
+        _settle(session, params.initialization_options)
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(_: types.InitializedParams) -> None:
+        capabilities = server.client_capabilities.workspace
+        await _register_watchers(server)
+        if capabilities is not None and capabilities.configuration:
+            await _ask_settings(server)
+        await _first_check(server)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
+    async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:
+        capabilities = server.client_capabilities.workspace
+        if capabilities is not None and capabilities.configuration:
+            await _ask_settings(server)
+        else:
+            settings = params.settings
+            _settle(session, settings.get("btq", settings) if isinstance(settings, dict) else None)
+        server.reload()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def did_change_workspace_folders(params: types.DidChangeWorkspaceFoldersParams) -> None:
+        gone = {convert.path(folder.uri) for folder in params.event.removed}
+        new = [convert.path(folder.uri) for folder in params.event.added]
+        session.folders = (*(folder for folder in session.folders if folder not in gone), *new)
+        server.reload()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def did_change_watched_files(_: types.DidChangeWatchedFilesParams) -> None:
+        server.reload()
+
+
+async def _register_watchers(server: Server) -> None:
+    """Ask the editor to tell which files change, if it can be asked."""
+    workspace = server.client_capabilities.workspace
+    watching = workspace.did_change_watched_files if workspace else None
+    if watching is None or not watching.dynamic_registration:
+        return
+    patterns = ("**/*.btq", "**/*.qualitybtcpp", "**/*.xml", "**/btq.toml", "**/pyproject.toml")
+    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(one) for one in patterns])
+    wanted = types.Registration("watch", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+    await server.client_register_capability_async(types.RegistrationParams([wanted]))
+
+
+async def _ask_settings(server: Server) -> None:
+    wanted = types.ConfigurationParams([types.ConfigurationItem(section="btq")])
+    answer = await server.workspace_configuration_async(wanted)
+    _settle(server.session, answer[0] if answer else None)
+
+
+def _settle(session: Session, settings: object) -> None:
+    if isinstance(settings, dict):
+        session.settings = {str(name): value for name, value in settings.items()}
+
+
+async def _first_check(server: Server) -> None:
+    """All files of the folders, after those that are open; with progress, where there are many."""
+    server.check_soon(server.session.paths())
+    await asyncio.sleep(0)
+    paths = server.session.reload()
+    window = server.client_capabilities.window
+    if len(paths) < MANY_FILES or window is None or not window.work_done_progress or server.pulls:
+        server.check_soon(paths)
+        return
+    token = "btq/check"
+    await server.work_done_progress.create_async(token)
+    server.work_done_progress.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
+    server.check_soon(paths)
+    while server.task is not None and not server.task.done():
+        done = 100 - 100 * min(len(server.waiting), len(paths)) // len(paths)
+        server.work_done_progress.report(token, types.WorkDoneProgressReport(percentage=done))
+        await asyncio.wait((server.task,), timeout=0.2)
+    server.work_done_progress.end(token, types.WorkDoneProgressEnd(message=f"{len(paths)} files checked"))
+
+
+MANY_FILES = 50

@@ -1,0 +1,81 @@
+"""From a name to its definition, its uses, and to another name."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from btq_lang.editor import Refused, Server
+from btq_lang.features.navigation import find_references, goto_definition, highlights
+from btq_lang.features.outline import workspace_symbols
+from btq_lang.features.rename import Refusal, prepare_rename, rename
+from btq_lang.text import Span
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+
+    def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
+        asked = server.ask(params.text_document, params.position, goto_definition)
+        if asked is None:
+            return []
+        workspace, path, targets = asked
+        if not server.takes_links:
+            return [convert.location(workspace, target.path, target.name) for target in targets]
+        return [
+            types.LocationLink(
+                convert.uri(target.path),
+                convert.range(workspace, target.path, Span(*target.span)),
+                convert.range(workspace, target.path, target.name),
+                convert.range(workspace, path, target.origin),
+            )
+            for target in targets
+        ]
+
+    server.feature(types.TEXT_DOCUMENT_DEFINITION)(definition)
+    server.feature(types.TEXT_DOCUMENT_DECLARATION)(definition)
+
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    def references(params: types.ReferenceParams) -> list[types.Location]:
+        wanted = params.context.include_declaration
+        asked = server.ask(
+            params.text_document, params.position, lambda *at: find_references(at[0], at[1], at[2], wanted)
+        )
+        return [convert.location(asked[0], path, span) for path, span in asked[2]] if asked else []
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
+    def highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
+        asked = server.ask(params.text_document, params.position, highlights)
+        kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
+        return [
+            types.DocumentHighlight(convert.range(asked[0], asked[1], each.span), kinds[each.writes])
+            for each in (asked[2] if asked else ())
+            if asked
+        ]
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
+        asked = server.ask(params.text_document, params.position, prepare_rename)
+        if asked is None:
+            return None
+        if isinstance(asked[2], Refusal):
+            raise Refused(asked[2].reason)
+        return types.PrepareRenamePlaceholder(convert.range(asked[0], asked[1], asked[2].span), asked[2].name)
+
+    @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
+    def rename_all(params: types.RenameParams) -> types.WorkspaceEdit | None:
+        asked = server.ask(
+            params.text_document, params.position, lambda *at: rename(at[0], at[1], at[2], params.new_name)
+        )
+        if asked is None:
+            return None
+        if isinstance(asked[2], Refusal):
+            raise Refused(asked[2].reason)
+        return convert.workspace_edit(asked[0], asked[2].edits, server.versions_for_edits())
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    def symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        return [
+            convert.symbol(workspace, match)
+            for workspace in session.workspaces()
+            for match in workspace_symbols(workspace, params.query)
+        ]

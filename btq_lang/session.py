@@ -1,0 +1,151 @@
+"""A session: what an editor has open, in the workspaces of its folders.
+
+One invariant: what is open counts, not what is on the disk; and every workspace is the one that would be read afresh
+now.  An edit makes a new workspace of the old one; only what may bring or lose files reads the disk again.  No protocol
+is known here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.checks import check
+from btq_lang.commands.files import Files
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.project import Project
+from btq_lang.record import replace
+from btq_lang.rules import RULES, Severity
+from btq_lang.workspace import Workspace
+
+
+class Session:
+    """The state of a server: folders, open texts, workspaces, and the diagnostics that were found in them.
+
+    Attributes:
+        folders: the editor's folders; empty where single files are open.
+        open: the texts of open files, by path.
+        settings: what the editor's user has set.
+    """
+
+    def __init__(self) -> None:
+        self.folders: tuple[str, ...] = ()
+        self.settings: dict[str, object] = {}
+        self._files = Files()
+        self.open = self._files.overlay
+        self._workspaces: list[Workspace] = []
+        self._home: dict[str, int] = {}
+        self._checked: dict[str, tuple[Workspace, tuple[Diagnostic, ...]]] = {}
+
+    # ---- what changes ----
+
+    def edit(self, path: str, text: str) -> tuple[str, ...]:
+        """An open file says something else: the files to check again, those first that matter most."""
+        is_new = path not in self.open
+        self.open[path] = text
+        home = self._home.get(path)
+        if home is None or is_new or self._workspaces[home].files[path].origin is not None:
+            return (path, *self.reload())
+        before = self._workspaces[home]
+        for index, workspace in enumerate(self._workspaces):
+            if path in workspace.files:
+                self._workspaces[index] = workspace.with_file(path, text)
+        after = self._workspaces[home]
+        if _includes(before, path) != _includes(after, path):
+            return (path, *self.reload())
+        if _defines(before, path) != _defines(after, path):
+            return self._in_order(path, after.files)
+        return self._in_order(path, _linked(after, path))
+
+    def close(self, path: str) -> tuple[str, ...]:
+        """A file is not open any more: the one on the disk counts again."""
+        self.open.pop(path, None)
+        return self.reload()
+
+    def reload(self) -> tuple[str, ...]:
+        """Read folders and projects again; all files that there are."""
+        severities = self._severities()
+        groups, _ = self._files.groups((*self.folders, *self.open))
+        self._workspaces = []
+        self._home = {}
+        for index, group in enumerate(groups):
+            workspace = group.workspace
+            if severities:
+                project = workspace.project
+                workspace = workspace.with_project(replace(project, severities=(*project.severities, *severities)))
+            self._workspaces.append(workspace)
+            for path in workspace.files:
+                if path in group.given or path not in self._home:
+                    self._home[path] = index
+        return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
+
+    def _severities(self) -> tuple[tuple[str, Severity | None], ...]:
+        """The severities that the editor's user has set, over those of the project."""
+        rules = self.settings.get("rules")
+        found: list[tuple[str, Severity | None]] = []
+        for name, word in rules.items() if isinstance(rules, dict) else ():
+            if name in RULES and word in _SEVERITIES:
+                found.append((name, _SEVERITIES[word]))
+        return tuple(found)
+
+    def _in_order(self, path: str, others: Iterable[str]) -> tuple[str, ...]:
+        return (
+            path,
+            *sorted((other for other in others if other != path), key=lambda one: (one not in self.open, one)),
+        )
+
+    # ---- what is asked ----
+
+    def workspace_of(self, path: str) -> Workspace | None:
+        """The workspace of a file; None for a file that is not known, as one that was closed meanwhile."""
+        home = self._home.get(path)
+        return None if home is None else self._workspaces[home]
+
+    def workspaces(self) -> tuple[Workspace, ...]:
+        return tuple(self._workspaces)
+
+    def paths(self) -> tuple[str, ...]:
+        """Every file that is known, those that are open first."""
+        return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
+
+    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
+        """All that is wrong with a file now."""
+        workspace = self.workspace_of(path)
+        if workspace is None:
+            return ()
+        known = self._checked.get(path)
+        if known is not None and known[0] is workspace:
+            return known[1]
+        found = check(workspace, path)
+        if known is not None and known[1] == found:
+            found = known[1]  # the same object: nothing new to tell
+        self._checked[path] = workspace, found
+        return found
+
+    def forget(self, path: str) -> None:
+        """A file is gone."""
+        self._checked.pop(path, None)
+
+    def setting(self, name: str, default: bool) -> bool:
+        """What the user has set, if it is a yes or a no."""
+        value = self.settings.get(name)
+        return value if isinstance(value, bool) else default
+
+    def projects(self) -> Iterator[Project]:
+        return (workspace.project for workspace in self._workspaces)
+
+
+def _includes(workspace: Workspace, path: str) -> list[str]:
+    return [include.path.text for include in workspace.files[path].includes if include.path is not None]
+
+
+def _defines(workspace: Workspace, path: str) -> set[object]:
+    return {(one.symbol.kind, one.symbol.name) for one in workspace.defined_in(path)}
+
+
+def _linked(workspace: Workspace, path: str) -> list[str]:
+    """The files that see the file, and those that it sees: what is used is known in both directions."""
+    mission = workspace.missions[path]
+    return [other for other, of in workspace.missions.items() if of == mission]
+
+
+_SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
