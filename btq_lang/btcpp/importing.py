@@ -54,12 +54,13 @@ class Imported:
         return all((each.severity or RULES[each.rule].severity) is not Severity.ERROR for each in self.diagnostics)
 
 
-def import_xml(text: str, keep_v3: bool = False) -> Imported:
+def import_xml(text: str, keep_v3: bool = False, symbols: bool = True) -> Imported:
     """Read an XML file as a .btq file.
 
     Args:
         text: the XML, any string at all.
         keep_v3: leave what version 3 of the engine says as it is, instead of saying it as version 4 does.
+        symbols: write `->` for Sequence and so on.
     """
     collecting = gc.isenabled()
     gc.disable()  # as in `reader`: nothing made here is garbage
@@ -73,7 +74,7 @@ def import_xml(text: str, keep_v3: bool = False) -> Imported:
             span = Span(root.start + 1, root.start + 1 + len(root.tag))
             problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
             return Imported("", (), (*done.problems, problem), Places(()))
-        writer = _Writer(text)
+        writer = _Writer(text, symbols)
         without_generated(done.document, writer.changes)
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
@@ -92,8 +93,9 @@ def _start(change: Change) -> Span:
 class _Writer:
     """A .btq file, written up to some line."""
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source: str, symbols: bool) -> None:
         self.source: Final = source
+        self.symbols: Final = symbols
         self.out: Final[list[str]] = []
         self.size = 0  # of all that is in `out`
         self.places: Final[list[tuple[int, int, int, int]]] = []
@@ -214,7 +216,7 @@ class _Writer:
         index = 0
         if tag not in CATEGORIES:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
-            word = kind(tag, False, has_code)
+            word = kind(tag, False, has_code, self.symbols)
             head: list[Piece] = [(word, start, start + len(tag))]
         else:
             head = [(tag, start, start + len(tag))]

@@ -59,15 +59,16 @@ def name(raw: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def kind(tag: str, category: bool = False, has_code: bool = True) -> str:
+def kind(tag: str, category: bool = False, has_code: bool = True, symbols: bool = True) -> str:
     """The kind of a node: a symbol where it has one, and in quotes where the bare word would mean something else.
 
     Args:
         category: the word stands behind `Action`, `Control` …, where symbols do not.
         has_code: the node has a script: without one, `Script` is a placeholder.
+        symbols: whether they are wanted.
     """
     builtin = BUILTINS.get(tag)
-    if builtin is not None and builtin.symbols and not category:
+    if builtin is not None and builtin.symbols and symbols and not category:
         return builtin.symbols[0]
     changes = not is_name(tag) or xml_tag(tag) != tag or (tag in PLACEHOLDERS and not has_code)
     return string(tag) if changes or tag in (NODE_CLAUSES if category else _MEANING) else tag

@@ -55,6 +55,8 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.nodes(entry):
         known = _ports(view, seen) or ()
         given = {pair.key.text for pair in seen.node.attributes}
+        if seen.is_subtree:  # the engine gives a tree only what it takes for ports
+            given = set(filter(is_port_name, given))
         missing = [port for port in known if port.required and port.name not in given]
         if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(entry, seen):
             continue  # a value may be what could not be read
@@ -69,7 +71,10 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"{seen.shown} needs {'a value' if len(missing) == 1 else 'values'} for its "
             f"port{'s' if len(missing) > 1 else ''} {names}",
             related=_declared(view, seen),
-            notes=tuple(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
+            notes=(
+                *(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
+                *(f"`{port.name}` can have none: take it out of the model" for port in missing if port.name[:1] == "_"),
+            ),
             fixes=_passing_on(view, entry, seen, missing),
             # Whether the robot's program asks for an input is known to nobody but the program.
             severity=None if seen.kind or seen.is_subtree else Severity.WARNING,
