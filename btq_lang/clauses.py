@@ -458,9 +458,8 @@ class ClauseParser(Cursor):
             if not self.at_word("if"):
                 self.expected("`if` and a condition, or `else` instead of the comma")
                 return Table(tuple(cases))
-        if self.expect_word("else") and (value := self.amount()) is not None:
-            cases.append(Case(value, None))
-        return Table(tuple(cases))
+        otherwise = self.amount() if self.expect_word("else") else None
+        return Table(tuple(cases), otherwise)
 
     def amount(self, strings: bool = False) -> Amount | None:
         """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""

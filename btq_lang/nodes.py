@@ -23,6 +23,7 @@ from btq_lang.syntax import (
     Satisfices,
     Satisfies,
     Tags,
+    TypeWord,
     Verbatim,
     Word,
     quote,
@@ -309,7 +310,7 @@ class NodeParser(ClauseParser):
                 self.advance()
                 last = self.name("the rest of the type")
                 if last is not None:
-                    type_ = Word(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
+                    type_ = TypeWord(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
             if type_ is not None and self.at("<") and self.adjacent(self.index):
                 type_ = self.unquoted_type(type_)
         default = self.value() if self.accept("=") else None

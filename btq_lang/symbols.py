@@ -48,6 +48,8 @@ class Kind(Enum):
     CONTEXT = "context"
     QUALITY = "quality"
 
+    __hash__ = object.__hash__  # half of all keys are a kind and a name, and Enum's own hash is slow
+
 
 Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _ESCAPE = re.compile(r"\\([\"'\\nt])")
 _ESCAPED = {"n": "\n", "t": "\t"}
 _LINE_END = re.compile(r"\r\n?")
+_BETWEEN_WORDS = re.compile(r"\s+|/\*.*?\*/", re.DOTALL)
 
 
 class Word:
@@ -67,6 +68,17 @@ class Word:
 
     def __repr__(self) -> str:
         return f"{self.raw}@{self.start}"
+
+
+class TypeWord(Word):
+    """The type of a port, `std::string`: several words of the source, with or without blanks between them."""
+
+    __slots__ = ()
+
+    @property
+    def text(self) -> str:
+        """What it says: without blanks and comments."""
+        return _BETWEEN_WORDS.sub("", self.raw)
 
 
 class Pair:
@@ -331,7 +343,7 @@ class Amount:
 
 @record
 class Case:
-    """`20 s if not humans_near` of a value table; no condition: the `else`."""
+    """`20 s if not humans_near` of a value table."""
 
     value: Amount
     condition: Condition | None
@@ -339,9 +351,10 @@ class Case:
 
 @record
 class Table:
-    """A value for each context."""
+    """A value for each context.  otherwise: the value behind `else`."""
 
     cases: tuple[Case, ...]
+    otherwise: Amount | None = None
 
 
 Bounded: TypeAlias = Amount | Table

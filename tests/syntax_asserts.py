@@ -544,10 +544,8 @@ def show_bound(bound: Bound | None) -> str:
 def show_bounded(value: Bounded | None) -> str:
     if not isinstance(value, Table):
         return show_amount(value)
-    cases = [
-        words(show_amount(case.value), f"if {show_condition(case.condition)}" if case.condition else "else")
-        for case in value.cases
-    ]
+    cases = [words(show_amount(case.value), f"if {show_condition(case.condition)}") for case in value.cases]
+    cases += [words(show_amount(value.otherwise), "else")] if value.otherwise else []
     return f"[{', '.join(cases)}]"
 
 

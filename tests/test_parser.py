@@ -12,7 +12,7 @@ import pytest
 from syntax_asserts import assert_fix, assert_parse, dump
 
 from btq_lang.parser import parse
-from btq_lang.syntax import Root, Skipped, Tree, is_name, quote, unquote
+from btq_lang.syntax import Model, Root, Skipped, Tree, is_name, quote, unquote
 
 # ---- File -----------------------------------------------------------------------------------------------------------
 
@@ -288,6 +288,15 @@ def test_model_with_attributes() -> None:
 def test_port(port: str, tree: str) -> None:
     assert_parse(f"Action A\n  {port}", f"model Action A\n  {tree}")
     assert_parse(f"BehaviorTree A\n  {port}\n  X", f"tree A\n  {tree}\n  X")
+
+
+def test_a_type_of_several_words_is_one() -> None:
+    parsed = parse("Action A\n    input b : geometry_msgs :: /* a message */ Pose\n    input c : a::b\n")
+    model = parsed.entries[0].item
+    assert isinstance(model, Model)
+    assert [port.type and port.type.text for port in model.ports] == ["geometry_msgs::Pose", "a::b"]
+    assert model.ports[0].type is not None
+    assert model.ports[0].type.raw == "geometry_msgs :: /* a message */ Pose"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from btq_lang.tokens import NAME
 
 def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`full-empty`, one name, where only `full` and `empty` are known: a subtraction needs blanks."""
-    for operand in _operands(entry):
+    for operand in _operands(view, entry):
         word = operand.word
         if word.kind != NAME or "-" not in word.text or _is_known(view, entry, word.text):
             continue
@@ -30,10 +30,10 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
                 break
 
 
-def _operands(entry: Entry) -> Iterator[Operand]:
+def _operands(view: View, entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
-        clauses = (item.clauses, *(node.clauses for node in item.walk() if node.clauses))
+        clauses = (item.clauses, *(seen.node.clauses for seen in view.nodes(entry) if seen.node.clauses))
         roots: tuple[object, ...] = tuple(requirement for each in clauses for requirement in requirements_at(each))
     elif isinstance(item, Requirement | Context):
         roots = (item,)

@@ -43,8 +43,6 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose tail the engine drops."""
     version = view.workspace.project.target
     for target, value in _values(view, entry):
-        if value.kind == BRACED:
-            continue
         if value.kind == QUANTITY:
             yield from _converted(target, value, version)
             continue
@@ -109,10 +107,10 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
 
 
 def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple[_Target, Word]]:
-    """Each value (of one kind) that goes to a port, with what it goes to, where a type or a unit is in question."""
+    """Each literal (of one kind) that goes to a port, with what it goes to, where a type or a unit is in question."""
     for port in _declared_ports(entry):
         value = port.default
-        if value is None or kind not in (None, value.kind) or not value.text:
+        if value is None or value.kind == BRACED or kind not in (None, value.kind) or not value.text:
             continue
         if (target := _declared(port, False)) is not None:
             yield target, value
@@ -121,7 +119,7 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
             continue
         for pair in seen.node.attributes:
             value = pair.value
-            if value is None or kind not in (None, value.kind):
+            if value is None or value.kind == BRACED or kind not in (None, value.kind):
                 continue
             if (target := _target(view, seen, pair, value)) is not None:
                 yield target, value

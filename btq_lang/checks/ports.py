@@ -237,7 +237,7 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
         for port in item.ports:
             yield port.attributes, _said(port)
         for node in item.walk():
-            if node.attributes:
+            if len(node.attributes) > 1 or (node.attributes and (node.label or node.category)):
                 yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
     elif isinstance(item, Include):
         yield item.attributes, {"path": item.path}

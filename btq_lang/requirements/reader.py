@@ -259,10 +259,13 @@ class Reader:
         for case in written.cases:
             value = self.bounded(case.value, wanted)
             condition = self.condition(case.condition) if case.condition is not None else None
-            if value is None or isinstance(value, Table) or (case.condition is not None and condition is None):
+            if value is None or isinstance(value, Table) or condition is None:
                 return None
             cases.append(Case(value, condition))
-        return Table(tuple(cases)) if cases else None
+        otherwise = self.bounded(written.otherwise, wanted)
+        if otherwise is None or isinstance(otherwise, Table):
+            return None
+        return Table((*cases, Case(otherwise, None)))
 
     def argument(self, parameter: Parameter, written: WrittenBounded) -> Bounded | None:
         """A value for a parameter, or a first one for a signal."""
@@ -613,8 +616,9 @@ def _amounts(found: Bounded | None, written: WrittenBounded) -> tuple[tuple[Simp
     if found is None:
         return ()
     if isinstance(found, Table) and isinstance(written, WrittenTable):
-        pairs = zip(found.cases, written.cases, strict=True)
-        return tuple((case.value, other.value.word.span) for case, other in pairs)
+        amounts = (*(case.value for case in written.cases), written.otherwise)
+        pairs = zip(found.cases, amounts, strict=True)
+        return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
     assert not isinstance(found, Table), "a table is read from a table"
     assert isinstance(written, Amount), "a table is read from a table"
     return ((found, written.word.span),)
