@@ -109,7 +109,9 @@ def test_files_that_change_on_the_disk(tmp_path: Path) -> None:
 
 
 def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
-    editor.open("main.btq", "Root Main\n" + WRONG.replace("Dock", "Pick satisfices usability.user-interface-aesthetics"))
+    editor.open(
+        "main.btq", "Root Main\n" + WRONG.replace("Dock", "Pick satisfices usability.user-interface-aesthetics")
+    )
     found = {each["code"]: each for each in editor.published("main.btq")["diagnostics"]}
     page = Path(found["unknown-node"]["codeDescription"]["href"].removeprefix("file://"))
     assert page.read_text(encoding="utf-8").startswith("# unknown-node")
