@@ -19,6 +19,7 @@ from btq_lang.rules import RULES
 from btq_lang.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace import Workspace
 
+MAIN = "main.btq"
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")
 COMMENT_WITH_MARKERS = re.compile(r"(?:#|<!--)\s*(?=(?:next-line |file )?(?:error|warning|info|hint): \[).*")
 
@@ -131,6 +132,35 @@ def apply(files: Mapping[str, str], path: str, fix: Fix) -> dict[str, str]:
         changes = [change for change in fix.changes if (change.place.path or path) == target]
         texts[target] = apply_edits(texts[target], [Edit(change.place.span, change.text) for change in changes])
     return texts
+
+
+def problems(text: str, *rules: str, project: Project | None = None, **others: str) -> list[Diagnostic]:
+    """The diagnostics of some rules in a text, main.btq; `others` are files beside it, by names without `.btq`.  For
+    texts in which other rules find something, too."""
+    workspace = Workspace.of({**{f"{name}.btq": other for name, other in others.items()}, MAIN: text}, project)
+    return [diagnostic for diagnostic in check(workspace, MAIN) if diagnostic.rule in rules]
+
+
+def findings(text: str, *rules: str, project: Project | None = None, **others: str) -> list[str]:
+    """As `problems`, each as `line severity «the text it points at» message`, lines counted from 1."""
+    lines = LineIndex(text)
+    return [
+        f"{lines.position(found.span.start).line + 1} {found.effective_severity.value} "
+        f"«{text[found.span.start : found.span.end]}» {found.message}"
+        for found in problems(text, *rules, project=project, **others)
+    ]
+
+
+def fixes(text: str, *rules: str, project: Project | None = None, **others: str) -> list[tuple[str, bool, str]]:
+    """Title, safety and resulting text of every fix that the rules offer."""
+    found = problems(text, *rules, project=project, **others)
+    return [(fix.title, fix.safe, after(text, fix)) for diagnostic in found for fix in diagnostic.fixes]
+
+
+def after(text: str, fix: Fix) -> str:
+    """The text after a fix that changes nothing but it."""
+    (changed,) = apply({MAIN: text}, MAIN, fix).values()
+    return changed
 
 
 def show(text: str, diagnostics: Sequence[Diagnostic]) -> list[str]:

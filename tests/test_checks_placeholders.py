@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from findings import after, diagnostics, findings, fixes
+from check_asserts import after, findings, fixes, problems
 
 from btq_lang.parser import parse
 from btq_lang.syntax import Node, shape
@@ -53,7 +53,7 @@ def tree(node: str) -> str:
 def test_the_short_form(classic: str, short: str) -> None:
     text = tree(classic)
     assert [(safe, mended) for _, safe, mended in fixes(text, "classic-placeholder")] == [(True, tree(short))]
-    assert diagnostics(tree(short), "classic-placeholder", "unknown-node", "clause-as-node") == []
+    assert problems(tree(short), "classic-placeholder", "unknown-node", "clause-as-node") == []
     assert parse(tree(short)).diagnostics == ()
 
 
@@ -69,7 +69,7 @@ def test_the_short_form(classic: str, short: str) -> None:
     ],
 )
 def test_what_is_no_placeholder(node: str) -> None:
-    assert diagnostics(tree(node), "classic-placeholder", "placeholder-clash") == []
+    assert problems(tree(node), "classic-placeholder", "placeholder-clash") == []
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_what_is_no_placeholder(node: str) -> None:
     ],
 )
 def test_where_the_name_stands_in_an_unusual_place_no_fix_is_offered(node: str) -> None:
-    assert len(diagnostics(tree(node), "classic-placeholder")) == 1
+    assert len(problems(tree(node), "classic-placeholder")) == 1
     assert fixes(tree(node), "classic-placeholder") == []
 
 
@@ -102,7 +102,7 @@ def test_with_models_a_skill_is_held_against_them_so_the_fix_is_not_safe() -> No
 def test_the_example_of_the_paper(shared: Path) -> None:
     """All fixes at once: the same nodes with the same attributes, clauses and children."""
     text = (shared / "original" / "paper_example.qualitybtcpp").read_text("utf-8")
-    found = diagnostics(text, "classic-placeholder")
+    found = problems(text, "classic-placeholder")
     assert [diagnostic.fixes[0].title for diagnostic in found] == [
         'Write `Condition BatteryLow "BatteryLow?"`',
         "Write `MoveBase`",
@@ -115,7 +115,7 @@ def test_the_example_of_the_paper(shared: Path) -> None:
     mended = text
     for diagnostic in reversed(found):
         mended = after(mended, diagnostic.fixes[0])
-    assert diagnostics(mended, "classic-placeholder") == []
+    assert problems(mended, "classic-placeholder") == []
     assert parse(mended).diagnostics == ()
     assert [without_name(node) for node in nodes(mended)] == [without_name(node) for node in nodes(text)]
     assert [node.name.text for node in nodes(mended) if node.name] == [
@@ -138,7 +138,7 @@ def test_two_names_that_become_one_id() -> None:
         '        SubTree Other\n\nBehaviorTree Other\n    ScriptAction (name = "Low!")\n'
     )
     assert findings(text, "placeholder-clash") == ['8 error «"Low!"» `Low?` and `Low!` both become the node ID `Low`']
-    (found,) = diagnostics(text, "placeholder-clash")
+    (found,) = problems(text, "placeholder-clash")
     (related,) = found.related
     assert text[related.place.span.start : related.place.span.end] == '"Low?"'
 
@@ -152,7 +152,7 @@ def test_a_clash_with_an_included_file_shows_its_place_there() -> None:
     assert findings(text, "placeholder-clash", skills=skills) == [
         '6 error «"Low"» `Low?` and `Low` both become the node ID `Low`'
     ]
-    (found,) = diagnostics(text, "placeholder-clash", skills=skills)
+    (found,) = problems(text, "placeholder-clash", skills=skills)
     place = found.related[0].place
     assert (place.path, skills[place.span.start : place.span.end]) == ("skills.btq", "'Low?'")
 

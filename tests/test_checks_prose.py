@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from findings import diagnostics, findings, fixes
+from check_asserts import findings, fixes, problems
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -151,7 +151,7 @@ def test_the_fix_adds_the_clause_and_the_sentence_stays() -> None:
     assert (title, safe) == ("Add `takes at most 30 s`", False)
     assert mended == text.replace('sec"', 'sec" takes at most 30 s')
     assert parse(mended).diagnostics == ()
-    assert diagnostics(mended, "prose-constraint") == []
+    assert problems(mended, "prose-constraint") == []
 
 
 def test_one_bound_said_twice_is_one_clause_and_two_bounds_are_two() -> None:
@@ -173,7 +173,7 @@ def test_signals_are_those_in_scope() -> None:
     text = 'include "signals.btq"\n' + requirement("FailureIf the battery falls below 10 %")
     ((title, _, _),) = fixes(text, "prose-constraint", signals="signal battery : % from {b}\n")
     assert title == "Add `keeps battery >= 10 %`"
-    (found,) = diagnostics(requirement("FailureIf the battery falls below 10 %"), "prose-constraint")
+    (found,) = problems(requirement("FailureIf the battery falls below 10 %"), "prose-constraint")
     assert found.fixes == ()
 
 
@@ -185,7 +185,7 @@ def test_a_requirement_with_a_clause_is_no_longer_prose() -> None:
 def test_a_requirement_that_is_repeated_is_told_where_it_is_defined() -> None:
     node = 'satisfies QualityReq ID = "rq1" description = "FailureIf it takes longer than 5 s"'
     text = f"BehaviorTree Main\n    ->\n        Pick ({node})\n        Place ({node})\n"
-    (found,) = diagnostics(text, "prose-constraint")
+    (found,) = problems(text, "prose-constraint")
     assert found.span.start < text.index("Place")
     assert found.fixes == ()  # with a clause in one of the two places there would be two requirements
     assert found.notes == ("as a clause that can be checked: `takes at most 5 s`",)
@@ -194,5 +194,5 @@ def test_a_requirement_that_is_repeated_is_told_where_it_is_defined() -> None:
 @given(st.text(alphabet=st.sampled_from("Su cesIfFailr:.\"'\\\n\r(){}=<>3 s%#/*"), max_size=40))
 def test_any_description_at_all(text: str) -> None:
     source = requirement(f"SuccessIf {text} FailureIf {text}")
-    for found in diagnostics(source, "prose-constraint"):
+    for found in problems(source, "prose-constraint"):
         assert source[found.span.start : found.span.end] in ("SuccessIf", "FailureIf")

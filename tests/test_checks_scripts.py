@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from findings import diagnostics, findings, fixes
+from check_asserts import findings, fixes, problems
 
 from btq_lang.project import Project
 
@@ -68,7 +68,7 @@ def test_a_condition_has_to_give_a_value_and_other_scripts_have_not() -> None:
 )
 def test_a_place_in_a_script_is_a_place_in_the_source(value: str, place: str, mended: str) -> None:
     text = tree(f"AlwaysSuccess (_skipIf = {value})")
-    (found,) = diagnostics(text, "script-error")
+    (found,) = problems(text, "script-error")
     assert text[found.span.start : found.span.end] == place
     assert [(safe, after) for _, safe, after in fixes(text, "script-error")] == [(True, text.replace(value, mended))]
 
@@ -103,7 +103,7 @@ def test_only_the_versions_of_the_project_count() -> None:
 def test_a_project_that_names_no_version_is_told_how() -> None:
     text = tree('AlwaysSuccess (_skipIf = "a + b == c")')
     pin = 'if that is what you run, say `engine = "4.10"` in btq.toml'
-    (found,) = diagnostics(text, "script-version")
+    (found,) = problems(text, "script-version")
     assert pin in found.notes
-    (found,) = diagnostics(text, "script-version", project=Project(engines=("4.6", "4.8")))
+    (found,) = problems(text, "script-version", project=Project(engines=("4.6", "4.8")))
     assert pin not in found.notes

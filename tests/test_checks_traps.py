@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from findings import after, diagnostics, findings
+from check_asserts import after, findings, problems
 
 from btq_lang.project import Project
 
@@ -85,7 +85,7 @@ def test_an_action_may_complete_at_once_so_it_gives_a_hint() -> None:
     assert findings(text, REACTIVE) == [
         "5 hint «->» if `GoTo` takes longer than one tick, it starts again whenever `-> Rest` is RUNNING, and halts it"
     ]
-    (found,) = diagnostics(text, REACTIVE)
+    (found,) = problems(text, REACTIVE)
     assert [text[related.place.span.start : related.place.span.end] for related in found.related] == ["GoTo"]
 
 
@@ -129,10 +129,10 @@ def test_a_choice_at_the_top_of_a_mission() -> None:
 )
 def test_the_fix_asks_at_every_tick(kind: str, mended: str) -> None:
     text = tree(kind, *PRIORITY[1:])
-    (found,) = diagnostics(text, RECHECK)
+    (found,) = problems(text, RECHECK)
     (fix,) = found.fixes
     assert (fix.safe, after(text, fix)) == (False, tree(mended, *PRIORITY[1:]))
-    assert diagnostics(after(text, fix), *TRAPS) == []
+    assert problems(after(text, fix), *TRAPS) == []
 
 
 @pytest.mark.parametrize(
@@ -353,4 +353,4 @@ def test_every_prefix_of_a_mission_full_of_traps() -> None:
         "        ScriptAction (name = 'B?' _skipIf = 'x')",
     )
     for end in range(len(text)):
-        diagnostics(text[:end], *TRAPS, "classic-placeholder", "placeholder-clash", "script-error")
+        problems(text[:end], *TRAPS, "classic-placeholder", "placeholder-clash", "script-error")
