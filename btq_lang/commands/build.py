@@ -11,6 +11,7 @@ from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import Comment, Document, write
 from btq_lang.btcpp.export import Export, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark, is_generated
+from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, usage_problem
@@ -27,13 +28,11 @@ class Output:
     """A file to be written.
 
     Attributes:
-        source: what it is made from.
         old: what stands there now; None: nothing.
     """
 
     path: str
     text: str
-    source: str
     old: str | None
 
 
@@ -102,7 +101,11 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
             if path == files.stdin:
                 sys.stdout.write(_text(path, done.document, options))
         return 0, watched
-    outputs = [Output(place, _text(path, done.document, options), path, _old_text(place)) for path, place, done in made]
+    exports = {path: done for path, _, done in made}
+    outputs: list[Output] = []
+    for group in groups:
+        for path in _missions(group) if options.bundle else _sources(group):
+            outputs += _outputs(group.workspace, path, places, exports, options)
     return (_compare if options.check else _write)(outputs, options), watched
 
 
@@ -204,6 +207,25 @@ def _text(path: str, document: Document, options: Namespace) -> str:
     return write(Document([Comment(generated_mark(os.path.basename(path))), *document.contents]))
 
 
+def _outputs(
+    workspace: Workspace, path: str, places: _Places, exports: dict[str, Export], options: Namespace
+) -> Iterator[Output]:
+    """The XML of a mission, and its side file, where it says more than that."""
+    done = exports[path]
+    place = places.of(path)
+    text = _text(path, done.document, options)
+    yield Output(place, text, _old_text(place))
+    if options.verbatim:
+        return
+    parts: tuple[Export, ...] = (done,)
+    if not options.bundle:  # XML that it includes is read as this language says it
+        parts = tuple(exports.get(each) or export(workspace, each) for each in workspace.closure(path))
+    elements = {key: element for part in parts for key, element in part.elements.items()}
+    side = side_file(workspace, Built(path, place, text, tuple(part.document for part in parts), elements))
+    if side is not None:
+        yield Output(side_path(place), side, _old_text(side_path(place)))
+
+
 def _old_text(path: str) -> str | None:
     return read(path)[0] if os.path.exists(path) else None
 
@@ -246,7 +268,7 @@ def _write(outputs: list[Output], options: Namespace) -> int:
 
 
 def _is_foreign(text: str | None) -> bool:
-    return text is not None and not is_generated(text)
+    return text is not None and not is_generated(text) and not is_side_file(text)
 
 
 def _take_back(outputs: list[Output]) -> None:

@@ -1,0 +1,87 @@
+"""The tree that the engine makes of documents: every node with the number and the path that logs know it by.
+
+One invariant: numbers and paths are those of the engine: numbers depth first from 1, with each subtree in the place of
+its SubTree node; a path is that of the SubTree node above and the name, with the number behind it where the node has no
+name of its own.  It knows elements, and nothing of missions.
+
+Source: XMLParser::PImpl::recursivelyCreateSubtree and createNodeFromXML in src/xml_parsing.cpp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btq_lang.btcpp.document import Element, Raw
+from btq_lang.btcpp.reader import read
+from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+@record
+class Instance:
+    """A node of the tree that runs.
+
+    Attributes:
+        uid: its number; None behind a SubTree whose tree is not at hand, for nobody knows how many nodes that has.
+        path: as the engine's `fullPath`.
+        element: the element that it is made from; one element may be many nodes.
+        callers: the SubTree elements that it is inside of, the outermost first.
+    """
+
+    uid: int | None
+    path: str
+    element: Element
+    callers: tuple[Element, ...]
+
+
+def instances(trees: Mapping[str, Element], main: str) -> Iterator[Instance]:
+    """The nodes of a tree and of the subtrees in it, in the order of their numbers.
+
+    Args:
+        trees: the elements `BehaviorTree`, by ID.
+        main: the ID of the tree that runs.
+    """
+    uid: int | None = 0
+    top = trees.get(main)
+    callers: tuple[Element, ...] = ()
+    waiting = [(child, "", callers) for child in _children(top)] if top is not None else []
+    while waiting:
+        element, prefix, callers = waiting.pop()
+        if uid is not None:
+            uid = uid + 1 if uid < _MOST else None
+        path = prefix + _own_path(element, uid)
+        yield Instance(uid, path, element, callers)
+        if element.tag != "SubTree":
+            waiting += [(child, prefix, callers) for child in _children(element)]
+            continue
+        name = element.get("ID") or ""
+        tree = trees.get(name)
+        if uid is None or tree is None or name == main or any(name == caller.get("ID") for caller in callers):
+            uid = None
+        else:
+            waiting += [(child, f"{path}/", (*callers, element)) for child in _children(tree)]
+
+
+def _own_path(element: Element, uid: int | None) -> str:
+    ID = element.tag if element.tag not in _WITH_ID else element.get("ID") or ""
+    name = element.get("name")
+    return name if name is not None and name != ID else f"{ID}::{'?' if uid is None else uid}"
+
+
+def _children(element: Element) -> list[Element]:
+    """The elements in it, the last one first; an element that a mission spells out is read."""
+    found = []
+    for child in element.children:
+        if isinstance(child, Element):
+            found.append(child)
+        elif isinstance(child, Raw) and (document := read(child.text).document) is not None:
+            found.append(document.root)
+    found.reverse()
+    return found
+
+
+_WITH_ID: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
+_MOST: Final = 65_535  # the engine numbers nodes with 16 bits

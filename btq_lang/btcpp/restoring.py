@@ -1,0 +1,190 @@
+"""The way back: a mission from its XML and the side file beside it, with what the XML has no place for.
+
+One invariant: from the very XML that was built comes the mission as it was, character by character; from XML that
+somebody has changed comes what the XML says now, with the items of the mission that have no element in front of the
+trees, and the clauses at the nodes that are still there.  What is not is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.btcpp.side_file import FORMAT, VERSION
+from btq_lang.catalog.names import legal_name
+from btq_lang.catalog.nodes import xml_tag
+from btq_lang.lexer import tokens
+from btq_lang.parser import Parsed, parse
+from btq_lang.placeholders import is_placeholder
+from btq_lang.record import record
+from btq_lang.syntax import (
+    Apply,
+    Context,
+    Entry,
+    Include,
+    Models,
+    Node,
+    NodeClause,
+    Qualities,
+    QualityDecl,
+    Requirement,
+    Root,
+    Satisfies,
+    Signal,
+    Tree,
+)
+from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
+
+
+@record
+class Restored:
+    """A mission.
+
+    Attributes:
+        text: of the .btq file.
+        is_whole: it is the mission as it was.
+        lost: clauses of nodes that are not there any more, as they were written.
+    """
+
+    text: str
+    is_whole: bool
+    lost: tuple[str, ...] = ()
+
+
+def restored(xml: str, imported: str, side: str) -> Restored | None:
+    """A mission from the XML that was built from it, or from what became of that; None: the side file is no such one.
+
+    Args:
+        xml: the XML file as it stands.
+        imported: what an import makes of it, without the marks of a build.
+        side: the side file.
+    """
+    import hashlib
+    import json
+
+    try:
+        data = json.loads(side)
+        is_known = data["format"] == FORMAT and data["version"] == VERSION
+        mission, built = data["mission"]["text"], data["xml"]["sha256"]
+    except (ValueError, LookupError, TypeError, RecursionError):
+        return None
+    if not is_known or not isinstance(mission, str):
+        return None
+    if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
+        return Restored(mission, True)
+    return _merged(parse(imported), parse(mission))
+
+
+def _merged(now: Parsed, then: Parsed) -> Restored:
+    """What the XML says now, with what the mission said beyond it."""
+    edits: list[Edit] = []
+    lost: list[str] = []
+    items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
+    if items:
+        at = _place_of_items(now)
+        edits.append(Edit(Span(at, at), "".join(f"{item}\n" for item in items)))
+    nodes = {name: _nodes(entry) for entry, name in _trees(now)}
+    for entry, name in _trees(then):
+        known = nodes.get(name, {})
+        assert isinstance(entry.item, Tree)
+        if entry.item.clauses:
+            other = next((each for each, of in _trees(now) if of == name), None)
+            edit = _tree_clauses(now, other, _clauses(then, entry, entry.item.clauses)) if other is not None else None
+            edits += [edit] if edit is not None else []
+            lost += [_clauses(then, entry, entry.item.clauses)] if edit is None else []
+        for key, (_, node) in _nodes(entry).items():
+            if not node.clauses:
+                continue
+            text = _clauses(then, entry, node.clauses)
+            if key in known:
+                there, match = known[key]
+                end = there.start + match.end
+                edits.append(Edit(Span(end, end), f" {text}"))
+            else:
+                lost.append(text)
+    return Restored(apply_edits(now.text, edits), False, tuple(lost))
+
+
+def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:
+    for entry in parsed.entries:
+        if isinstance(entry.item, Tree):
+            yield entry, legal_name(entry.item.name.text) if entry.item.name is not None else ""
+
+
+def _nodes(entry: Entry) -> dict[tuple[str, str, int], tuple[Entry, Node]]:
+    """The nodes of a tree by what they are, what they are called, and which of those they are."""
+    found: dict[tuple[str, str, int], tuple[Entry, Node]] = {}
+    assert isinstance(entry.item, Tree)
+    for node in entry.item.walk():
+        ID, name = _called(node)
+        number = 0
+        while (ID, name, number) in found:
+            number += 1
+        found[ID, name, number] = entry, node
+    return found
+
+
+def _called(node: Node) -> tuple[str, str]:
+    """The ID and the name that a node has in XML."""
+    name = node.name.text if node.name is not None else ""
+    if is_placeholder(node):
+        ID = legal_name(name)
+        return ID, "" if name == ID else name
+    word = node.id
+    return xml_tag(word.text, word.quoted, len(node.children)) if word is not None else "", name
+
+
+def _place_of_items(parsed: Parsed) -> int:
+    """Behind the Root line and the includes, at the start of a line."""
+    at = 0
+    for entry in parsed.entries:
+        if isinstance(entry.item, Root | Include):
+            end = parsed.text.find("\n", entry.start + entry.item.end)
+            at = end + 1 if end >= 0 else len(parsed.text)
+        elif isinstance(entry.item, Tree | Models):
+            break
+    return at
+
+
+def _lines(parsed: Parsed, entry: Entry) -> str:
+    """An item with its block and the comments in it, at the left margin."""
+    start = entry.start + entry.item.start
+    end = parsed.text.find("\n", max(start, entry.start + entry.item.end - 1))
+    margin = parsed.text[entry.start : start]
+    lines = parsed.text[start : end if end >= 0 else len(parsed.text)].rstrip().splitlines()
+    return "\n".join(line.removeprefix(margin) for line in lines)
+
+
+def _clauses(parsed: Parsed, entry: Entry, clauses: tuple[NodeClause, ...]) -> str:
+    """Clauses on one line; those that define requirements last, for nothing else can stand behind them."""
+    ordered = sorted(clauses, key=lambda clause: isinstance(clause, Satisfies) and _defines(clause))
+    return " ".join(_on_one_line(parsed.text[entry.start + each.start : entry.start + each.end]) for each in ordered)
+
+
+def _defines(clause: Satisfies) -> bool:
+    return any(isinstance(use, Requirement) and not use.is_reference for use in clause.uses)
+
+
+def _on_one_line(text: str) -> str:
+    words = []
+    for token in tokens(text):
+        if token.kind == COMMENT:
+            words.append(f"/* {token.text.lstrip('#/').removeprefix('*').removesuffix('*/').strip()} */ ")
+        elif token.kind in (BLANK, NEWLINE, INDENT, DEDENT):
+            words.append(" ")
+        else:
+            words.append(token.text)
+    return "".join(words).strip()
+
+
+def _tree_clauses(parsed: Parsed, entry: Entry, text: str) -> Edit | None:
+    """Clauses of a tree on a line of their own, above its node."""
+    tree = entry.item
+    if not isinstance(tree, Tree) or not tree.children:
+        return None
+    first = entry.start + tree.children[0].start
+    line = parsed.text.rfind("\n", 0, first) + 1
+    return Edit(Span(line, line), f"{parsed.text[line:first]}{text}\n")
+
+
+_WITHOUT_ELEMENT = (Qualities, QualityDecl, Signal, Context, Requirement, Apply)

@@ -1,0 +1,251 @@
+"""`<name>.qreq.json`: what a mission says beyond its XML, for the tools that read logs, and for the way back.
+
+The engine's logs drop descriptions and know nodes by number and path only; so the file says for each node of the tree
+that runs where it is written, and which requirements and qualities hold for it.  `qreq.schema.json` is its format.  One
+invariant: it speaks of one XML file, byte for byte, whose SHA-256 it holds.  It judges nothing.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterator, Mapping
+
+from btq_lang.btcpp.document import Document, Element
+from btq_lang.btcpp.instances import Instance, instances
+from btq_lang.diagnostics import Place
+from btq_lang.record import record
+from btq_lang.requirements import requirements
+from btq_lang.requirements.model import Applied, Requirement, Signal, SourceNode, Target
+from btq_lang.requirements.nodes import Nodes
+from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
+from btq_lang.syntax import Requirement as RequirementItem
+from btq_lang.syntax import Signal as SignalItem
+from btq_lang.units import Unit
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
+FORMAT: Final = "btq-requirements"
+VERSION: Final = 1
+
+
+@record
+class Built:
+    """An XML file that was built.
+
+    Attributes:
+        path: of the mission.
+        place: of the XML file.
+        text: what is in it.
+        documents: the mission's and those of all that it includes, included ones first; a bundle is one.
+        elements: of every node in them, by `id(node)`.
+    """
+
+    path: str
+    place: str
+    text: str
+    documents: tuple[Document, ...]
+    elements: Mapping[int, Element]
+
+
+def side_path(xml: str) -> str:
+    """The place of the side file of an XML file."""
+    return f"{posixpath.splitext(xml)[0]}.qreq.json"
+
+
+def is_side_file(text: str) -> bool:
+    """Whether a file is a side file, seen without reading it."""
+    return text.startswith(f'{{\n"format": "{FORMAT}",\n')
+
+
+def side_file(workspace: Workspace, built: Built) -> str | None:
+    """The text of the side file; None where the mission says nothing that its XML does not."""
+    paths = workspace.closure(built.path)
+    if not any(_says_more(entry) for path in paths for entry in workspace.files[path].parsed.entries):
+        return None
+    import hashlib
+
+    found = requirements(workspace, built.path)
+    place = _Places(workspace, posixpath.dirname(built.place))
+    main = built.documents[-1].root.get("main_tree_to_execute")
+    running = _Running(built, found.nodes, main)
+    return _text(
+        {
+            "format": FORMAT,
+            "version": VERSION,
+            "xml": {
+                "file": posixpath.basename(built.place),
+                "sha256": hashlib.sha256(built.text.encode("utf-8")).hexdigest(),
+            },
+            "mission": {"file": place.name(built.path), "text": workspace.files[built.path].text},
+            "files": [place.name(path) for path in paths],
+            "main_tree": main,
+            "signals": [_plain(signal, place) for signal in found.signals.values()],
+            "requirements": [_plain(each, place) for each in found.all.values()],
+            "applied": [_applied(each, running, place) for each in found.applied],
+            "traces": [
+                {"requirement": each.requirement, "nodes": running.uids(Target(each.node))} for each in found.traces
+            ],
+            "concerns": list(_concerns(workspace, paths, found.nodes, running)),
+            "nodes": [_node(instance, node, place) for instance, node in running.all],
+        }
+    )
+
+
+def _says_more(entry: Entry) -> bool:
+    """Whether an item says something that has no element."""
+    item = entry.item
+    if isinstance(item, Tree):
+        return bool(item.clauses) or any(node.clauses for node in item.walk())
+    return isinstance(item, Qualities | QualityDecl | SignalItem | Context | RequirementItem | Apply)
+
+
+def _text(data: dict[str, Json]) -> str:
+    """JSON, a line for each thing in a list, so that differences can be read."""
+    import json
+
+    def one_line(value: Json) -> str:
+        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+    def lines(value: Json) -> str:
+        if isinstance(value, list) and value:
+            return "[\n" + ",\n".join(f" {one_line(each)}" for each in value) + "\n]"
+        return one_line(value)
+
+    return "{\n" + ",\n".join(f'"{key}": {lines(value)}' for key, value in data.items()) + "\n}\n"
+
+
+# ---- the tree that runs ----
+
+
+class _Running:
+    """The nodes of the tree that runs, each with what it was written as; None where that is no node of a mission."""
+
+    def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
+        written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
+        trees: dict[str, Element] = {}
+        for document in built.documents:
+            for element in document.root.elements:
+                if element.tag == "BehaviorTree" and (ID := element.get("ID")) is not None:
+                    trees[ID] = element
+        self._written = written
+        self._of: dict[int, list[Instance]] = {}
+        self.all = [
+            (instance, written.get(id(instance.element)))
+            for instance in (instances(trees, main) if main is not None else ())
+        ]
+        for instance, node in self.all:
+            if node is not None:
+                self._of.setdefault(id(node), []).append(instance)
+
+    def uids(self, target: Target) -> list[Json]:
+        """The numbers of a node's instances, of those that the path goes through."""
+        return [each.uid for each in self._of.get(id(target.node), ()) if self._leads_to(each, target.through)]
+
+    def _leads_to(self, instance: Instance, through: tuple[str, ...]) -> bool:
+        """Whether the names are met, in their order, on the way to an instance."""
+        left = list(through)
+        for caller in reversed(instance.callers):
+            at = self._written.get(id(caller))
+            while left and at is not None:
+                if left[-1] in at.names or (at.parent is None and left[-1] == at.tree):
+                    left.pop()
+                at = at.parent
+        return not left
+
+
+def _node(instance: Instance, node: SourceNode | None, place: _Places) -> Json:
+    found: dict[str, Json] = {"uid": instance.uid, "path": instance.path}
+    return {**found, **place.of(node.place)} if node is not None else found
+
+
+def _applied(applied: Applied, running: _Running, place: _Places) -> Json:
+    subject = applied.subject
+    found: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
+    if applied.arguments:
+        found["arguments"] = {each.name: _plain(each.value, place) for each in applied.arguments}
+        found["claims"] = [_plain(each, place) for each in applied.requirement.claims]
+    if isinstance(subject, Target):
+        found["nodes"] = running.uids(subject)
+    else:
+        found["subject"] = _plain(subject, place)
+        if applied.node is not None:
+            found["nodes"] = running.uids(Target(applied.node))
+    return found
+
+
+def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, running: _Running) -> Iterator[Json]:
+    """What `satisfices` says, of a tree as of its node."""
+    for path in paths:
+        for entry in workspace.files[path].parsed.entries:
+            if not isinstance(entry.item, Tree):
+                continue
+            parts = [(nodes.root_of(entry), entry.item.clauses)]
+            parts += [(nodes.of(node), node.clauses) for node in entry.item.walk() if node.clauses]
+            for node, clauses in parts:
+                qualities: list[Json] = [
+                    ".".join(name.text for name in quality.path.names)
+                    for clause in clauses
+                    if isinstance(clause, Satisfices)
+                    for quality in clause.qualities
+                ]
+                if node is not None and qualities:
+                    yield {"qualities": qualities, "nodes": running.uids(Target(node))}
+
+
+# ---- values ----
+
+
+class _Places:
+    """Places as the file says them: the name of the file, seen from the side file, and the line."""
+
+    def __init__(self, workspace: Workspace, folder: str) -> None:
+        self._workspace = workspace
+        self._folder = folder or "."
+
+    def name(self, path: str) -> str:
+        return posixpath.relpath(path, self._folder)
+
+    def of(self, place: Place) -> dict[str, Json]:
+        if place.path is None:
+            return {}
+        file = self._workspace.files[place.path]
+        start = place.span.start + (file.start_of(place.anchor) if place.anchor is not None else 0)
+        if file.origin is not None:  # XML is read as this language would say it: its lines are others
+            return {"file": self.name(place.path)}
+        return {"file": self.name(place.path), "line": file.lines.position(start).line + 1}
+
+
+def _plain(value: object, place: _Places) -> Json:
+    """A value of the model: its fields, `is` says what it is; signals and nodes by what they are called."""
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return value if abs(value) < float("inf") else None
+    if isinstance(value, tuple):
+        return [_plain(each, place) for each in value]
+    if isinstance(value, Unit):
+        return value.symbol
+    if isinstance(value, SourceNode):
+        return {"name": value.node.head.text, **place.of(value.place)}
+    fields: tuple[str, ...] = type(value).__slots__  # type: ignore[attr-defined]  # every record has them
+    found: dict[str, Json] = {}
+    if not isinstance(value, Requirement | Signal):
+        found["is"] = type(value).__name__.lower()
+    for field in fields:
+        part = getattr(value, field)
+        if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
+            continue
+        key = _RENAMED.get(field, field) if isinstance(value, Requirement) else field
+        found[key] = part.name if isinstance(part, Signal) else _plain(part, place)
+    if isinstance(value, Requirement | Signal):
+        found |= place.of(value.place)
+    return found
+
+
+_LEFT_OUT: Final = frozenset(("place", "action_place", "path", "entry"))
+_RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}
