@@ -4,6 +4,9 @@ document    the elements, comments and texts of one file, and how they are writt
 reader      XML text to document, as the engine reads it
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
             and `spelling` the parts, `fragment` looks at elements that a mission spells out
+bundle      a mission and all that it includes as one document
+side_file   what a mission says beyond its XML; `instances` numbers the nodes as the engine does
+restoring   a mission from its XML and its side file
 marks       what a build puts into the XML so that an import knows it
 
 One invariant: only what stands here knows XML.

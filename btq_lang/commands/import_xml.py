@@ -8,8 +8,9 @@ from argparse import Namespace
 from collections.abc import Iterable
 
 from btq_lang.btcpp.importing import Imported, import_xml
+from btq_lang.btcpp.side_file import side_path
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
-from btq_lang.record import record
+from btq_lang.record import record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.text import LineIndex
@@ -60,7 +61,26 @@ def _job(path: str, options: Namespace, problems: list[LoadProblem]) -> _Job | N
         return None
     name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
     target = absolute(os.path.join(options.output or os.path.dirname(path), name))
-    return _Job(path, text, import_xml(text, options.keep_v3), target)
+    return _Job(path, text, _with_side_file(path, text, import_xml(text, options.keep_v3)), target)
+
+
+def _with_side_file(path: str, xml: str, done: Imported) -> Imported:
+    """What became of a file that `btq build` made, with what the mission said beyond it: that stands beside it."""
+    side = side_path(path)
+    text, problem = read(side) if os.path.isfile(side) else (None, None)
+    if text is None or problem is not None or not done.is_complete:
+        return done
+    from btq_lang.btcpp.restoring import restored
+    from btq_lang.formatter import format_text
+
+    mission = restored(xml, done.text, text)
+    if mission is None:
+        return done
+    if mission.is_whole:
+        return replace(done, text=mission.text, changes=())
+    for lost in mission.lost:
+        print(f"{shown(path)}: its node is not there any more: {lost}", file=sys.stderr)
+    return replace(done, text=format_text(mission.text).text)
 
 
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:

@@ -13,6 +13,7 @@ from missions import mission
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export, xml_name
+from btq_lang.btcpp.instances import instances
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.loader import open_workspace
@@ -132,6 +133,10 @@ def assert_same_tree(answer: Answer, workspace: Workspace, path: str) -> None:
     main = workspace.main_tree(path)
     assert main is not None
     assert [(node.ID, node.name, node.parent) for node in answer.tree] == list(said(workspace, path, main.symbol.name))
+    documents = [export(workspace, each).document for each in workspace.closure(path)]
+    trees = {str(each.get("ID")): each for document in documents for each in document.root.elements}
+    numbered = instances(trees, str(documents[-1].root.get("main_tree_to_execute")))
+    assert [(node.uid, node.path) for node in answer.tree] == [(each.uid, each.path) for each in numbered]
 
 
 def said(workspace: Workspace, path: str, tree: str) -> Iterator[tuple[str, str, int]]:

@@ -1,0 +1,273 @@
+"""Side files: what they say, that they keep their schema, and the way back."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from missions import mission
+from test_build import Btq, btq  # noqa: F401  # the fixture
+
+from btq_lang.btcpp.document import write
+from btq_lang.btcpp.export import export
+from btq_lang.btcpp.importing import import_xml
+from btq_lang.btcpp.restoring import restored
+from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
+from btq_lang.cli import main
+from btq_lang.symbols import Kind
+from btq_lang.workspace import Workspace
+
+ROOT = Path(__file__).resolve().parents[1]
+SCHEMA = json.loads((ROOT / "btq_lang" / "btcpp" / "qreq.schema.json").read_text(encoding="utf-8"))
+
+MISSION = """\
+signal speed : m/s from {speed} # how fast
+QualityReq slow(limit : m/s = 0.25 m/s) : safety "Slowly"
+    keeps speed <= limit
+apply slow(limit = 36 m/h) to Part/Move
+QualityReq quick : time-behaviour
+    takes at most 0.5 min
+    on violation fail
+Root Main
+BehaviorTree Main
+    satisfices safety
+    ->
+        SubTree Part
+        SubTree Part Twice
+            satisfies quick
+        xml "<AlwaysSuccess/>"
+BehaviorTree Part
+    ->
+        Move satisfices ergonomics
+        Pick Again
+"""
+
+
+def built(text: str, **others: str) -> tuple[str, str | None]:
+    """The XML and the side file of a mission, `main.btq`, which may include others."""
+    workspace = Workspace.of({"main.btq": text, **{f"{name}.btq": other for name, other in others.items()}})
+    exports = [export(workspace, path) for path in workspace.closure("main.btq")]
+    xml = write(exports[-1].document)
+    elements = {key: element for each in exports for key, element in each.elements.items()}
+    documents = tuple(each.document for each in exports)
+    return xml, side_file(workspace, Built("main.btq", "main.xml", xml, documents, elements))
+
+
+def said(text: str, **others: str) -> dict[str, Any]:
+    _, side = built(text, **others)
+    assert side is not None
+    data: dict[str, Any] = json.loads(side)
+    assert list(violations(data, SCHEMA)) == []
+    return data
+
+
+def test_what_a_side_file_says() -> None:
+    data = said(MISSION)
+    assert data["main_tree"] == "Main"
+    assert data["mission"] == {"file": "main.btq", "text": MISSION}
+    assert data["nodes"] == [
+        {"uid": 1, "path": "Sequence::1", "file": "main.btq", "line": 11},
+        {"uid": 2, "path": "Part::2", "file": "main.btq", "line": 12},
+        {"uid": 3, "path": "Part::2/Sequence::3", "file": "main.btq", "line": 17},
+        {"uid": 4, "path": "Part::2/Move::4", "file": "main.btq", "line": 18},
+        {"uid": 5, "path": "Part::2/Again", "file": "main.btq", "line": 19},
+        {"uid": 6, "path": "Twice", "file": "main.btq", "line": 13},
+        {"uid": 7, "path": "Twice/Sequence::7", "file": "main.btq", "line": 17},
+        {"uid": 8, "path": "Twice/Move::8", "file": "main.btq", "line": 18},
+        {"uid": 9, "path": "Twice/Again", "file": "main.btq", "line": 19},
+        {"uid": 10, "path": "AlwaysSuccess::10"},
+    ]
+    assert data["concerns"] == [
+        {"qualities": ["safety"], "nodes": [1]},
+        {"qualities": ["ergonomics"], "nodes": [4, 8]},
+    ]
+    limit = {"is": "value", "text": "36 m/h", "si": 0.01, "unit": "m/h"}
+    assert data["applied"] == [
+        {
+            "requirement": "slow",
+            "how": "apply",
+            "arguments": {"limit": limit},
+            "claims": [
+                {
+                    "is": "claim",
+                    "verb": "keeps",
+                    "text": "keeps speed <= limit",
+                    "condition": {
+                        "is": "compare",
+                        "operators": ["<="],
+                        "operands": [{"is": "read", "signal": "speed"}, limit],
+                    },
+                }
+            ],
+            "nodes": [4, 8],
+        },
+        {"requirement": "quick", "how": "satisfies", "nodes": [6]},
+    ]
+    quick = next(each for each in data["requirements"] if each["id"] == "quick")
+    assert quick == {
+        "id": "quick",
+        "quality": "time-behaviour",
+        "classic": False,
+        "claims": [
+            {
+                "is": "claim",
+                "verb": "takes",
+                "text": "takes at most 0.5 min",
+                "limit": {
+                    "is": "limit",
+                    "relation": "<=",
+                    "value": {"is": "value", "text": "0.5 min", "si": 30.0, "unit": "min"},
+                },
+            }
+        ],
+        "on_violation": "fail",
+        "file": "main.btq",
+        "line": 5,
+    }
+
+
+def test_a_path_through_a_subtree_means_its_instance() -> None:
+    data = said(MISSION.replace("apply slow(limit = 36 m/h) to Part/Move", "apply slow to Twice/Move"))
+    assert data["applied"][0]["nodes"] == [8]
+
+
+def test_behind_a_tree_that_is_not_there_nobody_knows_the_numbers() -> None:
+    data = said(
+        "Root A\nBehaviorTree A\n    ->\n        SubTree Gone\n        Pick Up satisfices safety\n        Pick\n"
+    )
+    assert [(each["uid"], each["path"]) for each in data["nodes"]] == [
+        (1, "Sequence::1"),
+        (2, "Gone::2"),
+        (None, "Up"),
+        (None, "Pick::?"),
+    ]
+    assert data["concerns"] == [{"qualities": ["safety"], "nodes": [None]}]
+
+
+def test_a_mission_that_says_no_more_than_its_xml_has_none() -> None:
+    assert built("# a comment\nBehaviorTree Main\n    Pick\n")[1] is None
+
+
+def test_included_files_are_named() -> None:
+    data = said('include "part.btq"\nRoot A\nBehaviorTree A\n    SubTree P\n', part="BehaviorTree P\n    X tags a\n")
+    assert data["files"] == ["part.btq", "main.btq"]
+    assert data["nodes"][1] == {"uid": 2, "path": "P::1/X::2", "file": "part.btq", "line": 2}
+
+
+@pytest.mark.parametrize("spelling", ["classic", "short"])
+def test_side_files_of_missions_made_up_keep_the_schema_and_lead_back(spelling: Any) -> None:
+    text = mission(200, 3, spelling)
+    xml, side = built(text)
+    assert side is not None
+    assert list(violations(json.loads(side), SCHEMA)) == []
+    again = restored(xml, import_xml(xml).text, side)
+    assert again is not None
+    assert (again.text, again.is_whole) == (text, True)
+
+
+@pytest.mark.parametrize("example", ["classic", "hospital", "laboratory", "navigation", "pick-and-place"])
+def test_an_example_is_built_and_imported(btq: Btq, example: str) -> None:  # noqa: F811
+    shutil.copytree(ROOT / "examples" / example, btq.folder / "there")
+    assert btq.build("there", "-o", "out")[0] == 0
+    for xml in sorted((btq.folder / "out").rglob("*.xml")):
+        place = xml.relative_to(btq.folder / "out").with_suffix("")
+        sources = (btq.folder / "there").rglob(f"{place.name}.*")
+        (source,) = (each for each in sources if each.suffix in (".btq", ".qualitybtcpp"))
+        if xml.with_suffix(".qreq.json").exists():
+            assert main(["import", str(xml), "-o", "back"]) == 0
+            assert btq.read(f"back/{place.name}.btq") == source.read_text(encoding="utf-8")
+
+
+def test_of_xml_that_was_edited_the_rest_comes_back() -> None:
+    xml, side = built(MISSION)
+    assert side is not None
+    edited = xml.replace('<Pick name="Again"/>', '<Pick name="Again" x="1"/>').replace("<Move ", "<Drive ")
+    again = restored(edited, import_xml(edited).text, side)
+    assert again is not None
+    assert (again.is_whole, again.lost) == (False, ("satisfices ergonomics",))
+    now, then = (Workspace.of({"main.btq": text}) for text in (again.text, MISSION))
+    assert now.files["main.btq"].parsed.diagnostics == ()
+    for kind in (Kind.SIGNAL, Kind.REQUIREMENT, Kind.TREE):
+        assert now.scope("main.btq").names(kind) == then.scope("main.btq").names(kind)
+    assert "signal speed : m/s from {speed} # how fast\n" in again.text
+    assert "    keeps speed <= limit\n" in again.text
+    assert "apply slow(limit = 36 m/h) to Part/Move\n" in again.text
+    assert "    satisfices safety\n    ->\n" in again.text
+    assert "SubTree Part Twice satisfies quick\n" in again.text
+    assert "Pick Again (x = 1)\n" in again.text
+
+
+def test_clauses_over_several_lines_come_back_on_one() -> None:
+    text = (
+        "BehaviorTree A\n    Pick (\n        satisfices Quality = safety\n        (QualityReq ID = q\n"
+        '         description = "d" # why\n        ), Quality = x)\n'
+    )
+    xml, side = built(text)
+    assert side is not None
+    again = restored(xml + "\n", import_xml(xml).text, side)
+    assert again is not None
+    assert Workspace.of({"main.btq": again.text}).files["main.btq"].parsed.diagnostics == ()
+    assert " ".join(again.text.split()).endswith(
+        'Pick satisfices Quality = safety (QualityReq ID = q description = "d" /* why */ ), Quality = x TreeNodesModel'
+        " Action Pick"
+    )
+
+
+@pytest.mark.parametrize(
+    "side", ["", "{", "[]", "null", '{"format": "btq-requirements"}', '{"format": "x", "version": 1}', "[" * 100_000]
+)
+def test_what_is_no_side_file_is_none(side: str) -> None:
+    assert restored("<root/>", "", side) is None
+
+
+def test_places_and_marks() -> None:
+    assert side_path("a/b.xml") == "a/b.qreq.json"
+    _, side = built(MISSION)
+    assert side is not None
+    assert is_side_file(side)
+    assert not is_side_file('{"format": "something"}')
+
+
+def violations(value: Any, schema: dict[str, Any], at: str = "$") -> Any:
+    """Where a value does not keep a schema: as much of JSON Schema as the side file's uses."""
+    if "$ref" in schema:
+        yield from violations(value, SCHEMA["$defs"][schema["$ref"].rpartition("/")[2]], at)
+    if "const" in schema and value != schema["const"]:
+        yield f"{at}: {value!r}"
+    if "enum" in schema and value not in schema["enum"]:
+        yield f"{at}: {value!r}"
+    types = schema.get("type", [])
+    if types and not any(is_of(value, each) for each in ([types] if isinstance(types, str) else types)):
+        yield f"{at}: {value!r} is no {types}"
+    if "pattern" in schema and not re.search(schema["pattern"], value):
+        yield f"{at}: {value!r}"
+    if isinstance(value, dict):
+        yield from (f"{at}: no {key}" for key in schema.get("required", ()) if key not in value)
+        for key, part in value.items():
+            if key in schema.get("properties", {}):
+                yield from violations(part, schema["properties"][key], f"{at}.{key}")
+            elif schema.get("additionalProperties") is False:
+                yield f"{at}: unknown {key}"
+    for index, item in enumerate(value if isinstance(value, list) else ()):
+        yield from violations(item, schema.get("items", {}), f"{at}[{index}]")
+
+
+def is_of(value: object, type_: str) -> bool:
+    if type_ == "null":
+        return value is None
+    if type_ in ("integer", "number"):
+        return isinstance(value, int | float if type_ == "number" else int) and not isinstance(value, bool)
+    classes = {"object": dict, "array": list, "string": str, "boolean": bool}
+    return isinstance(value, classes[type_])
+
+
+def test_the_schema_refuses() -> None:
+    assert list(violations({"uid": "1", "x": 2}, SCHEMA["properties"]["nodes"]["items"])) == [
+        "$: no path",
+        "$.uid: '1' is no ['integer', 'null']",
+        "$: unknown x",
+    ]
