@@ -1,11 +1,12 @@
-"""The part of the parser that reads requirements, their clauses and conditions, and the lists that hold them.
+"""The part of the parser that reads requirements, their clauses, and the lists that hold them.
 
 Each function is a production of language.md §3 and named as it; its docstring shows the production.
 """
 
 from __future__ import annotations
 
-from btq_lang.cursor import Cursor, shown
+from btq_lang.conditions import HEADS, SUBJECT_HEADS, ConditionParser
+from btq_lang.cursor import shown
 from btq_lang.diagnostics import replace_fix
 from btq_lang.lexer import unknown_unit
 from btq_lang.near import near
@@ -15,14 +16,11 @@ from btq_lang.syntax import (
     Argument,
     Because,
     Between,
-    Binary,
     Bound,
     Bounded,
-    Call,
     Case,
     Claim,
     Clause,
-    Comparison,
     Condition,
     Confidence,
     Event,
@@ -30,12 +28,8 @@ from btq_lang.syntax import (
     Goal,
     How,
     Mission,
-    Negative,
-    NodeRuns,
-    Not,
     Odds,
     OnViolation,
-    Operand,
     Parameter,
     Path,
     QualityPath,
@@ -50,7 +44,7 @@ from btq_lang.syntax import (
     unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -59,38 +53,15 @@ if TYPE_CHECKING:
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
 )
-SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))
-HEADS: Final = SUBJECT_HEADS | {
-    "while",
-    "when",
-    "in",
-    "with",
-    "confidence",
-    "over",
-    "on",
-    "goal",
-    "because",
-    "verified",
-}
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
-FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
-COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
 
-MAX_NESTING: Final = 50  # of brackets in one condition
-MAX_OPERATORS: Final = 100  # in one condition
 
-
-class ClauseParser(Cursor):
+class ClauseParser(ConditionParser):
     """A cursor that can read requirements."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(text)
-        self._nesting = 0  # how many conditions are open, one in the brackets of another
-        self._operators = 0  # how many the outermost of them has so far
 
     # ---- requirements ----
 
@@ -148,15 +119,6 @@ class ClauseParser(Cursor):
                 break
         self.close_group("`,` or `)`")
         return ReqRef(name, tuple(found))
-
-    def close_group(self, what: str) -> None:
-        """The `)` of a group, whatever stands before it."""
-        while self.kind != CLOSE and self.kind != NEWLINE:
-            self.expected(what)
-            if self.kind != CLOSE:
-                self.advance()
-        self.group -= 1
-        self.advance()
 
     def quality_path(self) -> QualityPath | None:
         """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
@@ -380,19 +342,6 @@ class ClauseParser(Cursor):
             return Sum(start, self.last_end(), tuple(paths))
         return self.path("a node")
 
-    def path(self, what: str) -> Path | None:
-        """Path = Name { "/" Name }"""
-        first = self.name(what)
-        if first is None:
-            return None
-        names = [first]
-        while self.accept("/"):
-            name = self.name(what)
-            if name is None:
-                break
-            names.append(name)
-        return Path(tuple(names))
-
     def event(self) -> Event | None:
         """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
         start = self.start()
@@ -492,194 +441,12 @@ class ClauseParser(Cursor):
             self.advance()
         return Word(NAME, start, self.text[first:end])
 
-    # ---- conditions ----
-
-    def cond(self) -> Condition | None:
-        """Cond = Conj { "or" Conj }"""
-        if self._nesting == 0:
-            self._operators = 0
-        if self._nesting > MAX_NESTING:
-            self.too_deep(f"more than {MAX_NESTING} brackets in brackets")
-            return None
-        self._nesting += 1
-        left = self.conj()
-        while left is not None and (self.accept_word("or") or self.accept_instead("||", "or")):
-            right = self.conj()
-            if right is None:
-                break
-            left = self.binary("or", left, right)
-        self._nesting -= 1
-        return left
-
-    def accept_instead(self, sign: str, word: str) -> bool:
-        """What other languages write, reported and read as the word that is meant"""
-        if self.kind not in (SYMBOL, ERROR) or self.raw != sign:
-            return False
-        written = word if word != "not" else "not "
-        fix = replace_fix(f"Write `{word}`", self.here(), written, safe=True)
-        self.complain("syntax-error", self.here(), f"in conditions `{sign}` is written `{word}`", (), (fix,))
-        self.advance()
-        return True
-
-    def binary(self, operator: str, left: Condition, right: Condition) -> Condition:
-        """Two operands and what joins them; too many in one condition are reported, for a chain is a deep tree."""
-        self._operators += 1
-        if self._operators > MAX_OPERATORS:
-            self.too_deep(f"more than {MAX_OPERATORS} operators in one condition")
-            return left
-        return Binary(left.start, right.end, operator, left, right)
-
-    def too_deep(self, message: str) -> None:
-        note = "write a part of it as a context of its own: `context part : …`"
-        self.complain("nested-too-deep", self.here(), message, (note,))
-        self.recover()
-
-    def conj(self) -> Condition | None:
-        """Conj = Neg { "and" Neg }"""
-        left = self.neg()
-        while left is not None and (self.accept_word("and") or self.accept_instead("&&", "and")):
-            right = self.neg()
-            if right is None:
-                break
-            left = self.binary("and", left, right)
-        return left
-
-    def neg(self) -> Condition | None:
-        """Neg = [ "not" ] Atom"""
-        start = self.start()
-        if self.accept_word("not") or self.accept_instead("!", "not"):
-            operand = self.atom()
-            return Not(start, operand.end, operand) if operand else None
-        return self.atom()
-
-    def atom(self) -> Condition | None:
-        """Atom = Expr [ Cmp Expr [ Cmp Expr ] ] | "node" Path | "(" Cond ")\""""
-        if self.at_word("node") and self.kinds[self.index + 1] in (NAME, STRING) and not self.ends_condition():
-            start = self.start()
-            self.advance()
-            path = self.path("a node")
-            return NodeRuns(start, self.last_end(), path) if path else None
-        first = self.expr()
-        if first is None:
-            return None
-        operators: list[str] = []
-        operands = [first]
-        while self.kind == OPERATOR and (self.raw in COMPARISONS or self.raw == "="):
-            if self.raw == "=":
-                if self.group and self._nesting < 2:  # the next attribute's
-                    break
-                self.single_equals()
-            if len(operators) == 2:
-                self.expected("at most two comparisons in a row")
-                break
-            operators.append("==" if self.raw == "=" else self.raw)
-            self.advance()
-            if operators[-1] == "==" and (self.at("<") or self.at(">")) and self.adjacent(self.index):
-                self.advance()  # `=<`, told as a whole
-            operand = self.expr()
-            if operand is None:
-                return first
-            operands.append(operand)
-        if not operators:
-            return first
-        return Comparison(first.start, operands[-1].end, tuple(operators), tuple(operands))
-
-    def single_equals(self) -> None:
-        """A `=` where values are compared: `==` is meant, or in `=<` and `=>` another order."""
-        span = self.here()
-        following = self.index + 1
-        if self.raws[following] in ("<", ">") and self.adjacent(following):
-            meant = f"{self.raws[following]}="
-            span = Span(span.start, span.end + 1)
-            message = f"this comparison is written `{meant}`"
-        else:
-            meant, message = "==", "values are compared with `==`"
-        fix = replace_fix(f"Write `{meant}`", span, meant, safe=True)
-        self.complain("syntax-error", span, message, (), (fix,))
-
-    def ends_condition(self) -> bool:
-        """Whether the next word ends the operand at hand, so that a lone `node` is a name like any other."""
-        return self.raws[self.index + 1] in _ENDS_OPERAND
-
-    def at_keyword(self) -> bool:
-        """Whether the word at hand begins a clause or joins conditions; without what must follow it is a name."""
-        if self.raw not in _ENDS_OPERAND:
-            return False
-        following = self.index + 1
-        if self.raw in _FOLLOWED_BY:
-            return self.is_word(following, _FOLLOWED_BY[self.raw])
-        return self.kinds[following] in (NAME, STRING, NUMBER, QUANTITY) and not self.ends_condition()
-
-    def expr(self) -> Condition | None:
-        """Expr = Term { ( "+" | "-" ) Term }"""
-        left = self.term()
-        while left is not None and (self.at("+") or self.at("-")):
-            operator = self.raw
-            self.advance()
-            right = self.term()
-            if right is None:
-                break
-            left = self.binary(operator, left, right)
-        return left
-
-    def term(self) -> Condition | None:
-        """Term = Factor { ( "*" | "/" ) Factor }"""
-        left = self.factor()
-        while left is not None and (self.at("*") or self.at("/")):
-            operator = self.raw
-            self.advance()
-            right = self.factor()
-            if right is None:
-                break
-            left = self.binary(operator, left, right)
-        return left
-
-    def factor(self) -> Condition | None:
-        """[ "-" ] ( QUANTITY | NUMBER ) | NAME | STRING | Func "(" NAME ")" | "(" Expr ")\""""
-        start = self.start()
-        if self.at("-"):
-            self.advance()
-            if self.kind == QUANTITY or self.kind == NUMBER:
-                word = self.take()
-                return Negative(start, word.end, Operand(word))
-            self.expected("a number or a quantity behind `-`")
-            return None
-        if self.kind == QUANTITY or self.kind == NUMBER or self.kind == STRING:
-            return Operand(self.take())
-        if self.kind == NAME:
-            if self.raw in FUNCTIONS and self.kinds[self.index + 1] == OPEN:
-                function = self.take()
-                self.advance()
-                self.group += 1
-                signal = self.plain_name("a signal")
-                self.close_group("`)`")
-                return Call(start, self.last_end(), function, signal)
-            if not self.at_keyword():
-                return Operand(self.take())
-        if self.kind == OPEN:
-            self.advance()
-            self.group += 1
-            inner = self.cond()
-            self.close_group("`)`")
-            return inner
-        self.expected("a condition: a signal, a context, a value, …")
-        return None
-
 
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
-_ENDS_OPERAND: Final = HEADS | {"and", "or", "if", "else"}
-_FOLLOWED_BY: Final = {
-    "in": "at",
-    "with": "probability",
-    "over": "last",
-    "on": "violation",
-    "verified": "by",
-    "sum": "of",
-}
 _INSTEAD_OF_BOUNDS: Final = {
     "<=": ("at", "most"),
     ">=": ("at", "least"),

@@ -5,7 +5,8 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
-from btq_lang.clauses import HEADS, VERBS, ClauseParser
+from btq_lang.clauses import VERBS, ClauseParser
+from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.lines import MAX_DEPTH, Block, read_lines

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import gc
 
-from btq_lang.clauses import HEADS, VERBS
+from btq_lang.clauses import VERBS
+from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
 from btq_lang.lexer import tokens
 from btq_lang.near import near

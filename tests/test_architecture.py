@@ -18,7 +18,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
-        {"tokens", "scan", "lexer", "syntax", "cursor", "clauses", "nodes", "lines", "patterns", "plain"}
+        {"tokens", "scan", "lexer", "syntax", "cursor", "conditions", "clauses", "nodes", "lines", "patterns", "plain"}
         | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),

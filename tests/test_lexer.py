@@ -9,7 +9,8 @@ from __future__ import annotations
 import pytest
 from syntax_asserts import assert_fix, assert_invariants, assert_parse, escaped, show_problems, written
 
-from btq_lang.clauses import EXPERIMENTS, FUNCTIONS, HAPPENINGS, HEADS, VERBS
+from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, VERBS
+from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.lexer import Lexer, tokens
 from btq_lang.parser import ITEM_WORDS, parse
 from btq_lang.tokens import BLANK, DEDENT, DIRECTIONS, INDENT, NAMES, NEWLINE, NODE_CLAUSES, SYMBOLS, Token

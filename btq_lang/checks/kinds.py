@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from btq_lang.catalog.names import model_name_problem
 from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks.view import SeenNode, View, misspelt_clause
-from btq_lang.clauses import HEADS, VERBS
+from btq_lang.clauses import VERBS
+from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance
 from btq_lang.rules import Severity

@@ -8,7 +8,8 @@ from functools import lru_cache
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks.view import SeenNode, View
-from btq_lang.clauses import HEADS, VERBS
+from btq_lang.clauses import VERBS
+from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder

@@ -8,7 +8,8 @@ from functools import cache
 
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
-from btq_lang.clauses import HEADS, VERBS
+from btq_lang.clauses import VERBS
+from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.parser import parse
 from btq_lang.record import record

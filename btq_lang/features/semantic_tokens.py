@@ -9,7 +9,8 @@ from collections.abc import Iterable, Sequence
 
 from btq_lang.catalog.nodes import lookup
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
-from btq_lang.clauses import EXPERIMENTS, FUNCTIONS, HAPPENINGS, HEADS, METHODS, VERBS
+from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
+from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.meaning import quality_match
 from btq_lang.mentions import Mention, What
 from btq_lang.record import record
