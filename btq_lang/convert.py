@@ -13,6 +13,7 @@ from urllib.request import pathname2url, url2pathname
 from lsprotocol import types
 
 from btq_lang.diagnostics import Diagnostic, Place, Tag
+from btq_lang.features.actions import Action
 from btq_lang.features.completion import Completion
 from btq_lang.features.outline import Match, Outline
 from btq_lang.features.signature import Signature
@@ -116,6 +117,28 @@ class Converter:
                 for related in found.related
             ],
         )
+
+    def action(
+        self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None
+    ) -> types.CodeAction:
+        mends = action.diagnostic
+        return types.CodeAction(
+            action.title,
+            kind=action.kind,
+            diagnostics=[self.diagnostic(workspace, path, mends)] if mends is not None else None,
+            is_preferred=True if action.preferred else None,
+            edit=self.workspace_edit(workspace, action.edits, versions),
+        )
+
+    def merged(self, edits: Iterable[types.WorkspaceEdit]) -> types.WorkspaceEdit:
+        """Several edits of different files as one."""
+        merged = types.WorkspaceEdit()
+        for edit in edits:
+            if edit.changes is not None:
+                merged.changes = {**(merged.changes or {}), **edit.changes}
+            if edit.document_changes is not None:
+                merged.document_changes = [*(merged.document_changes or ()), *edit.document_changes]
+        return merged
 
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
         return types.DocumentSymbol(

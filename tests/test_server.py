@@ -335,6 +335,73 @@ def test_what_the_server_does_not_know_is_nothing(editor: Editor) -> None:
     assert report == {"kind": "full", "items": []}
 
 
+def test_code_actions(editor: Editor) -> None:
+    editor.open("main.btq", WRONG)
+    place = {"start": {"line": 2, "character": 9}, "end": {"line": 2, "character": 9}}
+    found = editor.request(
+        "textDocument/codeAction", **editor.document("main.btq"), range=place, context={"diagnostics": []}
+    )
+    assert [each["title"] for each in found[:2]] == [
+        "Replace `Sequnce` by `Sequence`",
+        "Silence `unknown-node` on this line",
+    ]
+    assert found[0]["diagnostics"][0]["code"] == "unknown-node"
+    assert edits(found[0]["edit"]["changes"][editor.uri("main.btq")]) == [(2, 8, 15, "Sequence")]
+    all_ = editor.request(
+        "textDocument/codeAction",
+        **editor.document("main.btq"),
+        range=place,
+        context={"diagnostics": [], "only": ["source.fixAll"]},
+    )
+    assert all_ == []
+
+
+def test_renamed_files_take_their_includes_with_them(tmp_path: Path) -> None:
+    (tmp_path / "skills.btq").write_text(SKILLS, encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("main.btq", MISSION)
+    files = [{"oldUri": editor.uri("skills.btq"), "newUri": editor.uri("lib/hands.btq")}]
+    made = editor.request("workspace/willRenameFiles", files=files)["changes"]
+    assert edits(made[editor.uri("main.btq")]) == [(0, 8, 20, '"lib/hands.btq"')]
+    other = [{"oldUri": editor.uri("nobody.btq"), "newUri": editor.uri("other.btq")}]
+    assert editor.request("workspace/willRenameFiles", files=other) is None
+    assert editor.close() == ""
+
+
+def test_while_one_types(editor: Editor) -> None:
+    editor.open("main.btq", "QualityReq slow(limit : m/s)\n    keeps v <= limit\nBehaviorTree Main\n\n")
+    options = {"tabSize": 4, "insertSpaces": True}
+    found = editor.request("textDocument/onTypeFormatting", **editor.at("main.btq", 3, 0), ch="\n", options=options)
+    assert edits(found) == [(3, 0, 0, "    ")]
+    linked = editor.request("textDocument/linkedEditingRange", **editor.at("main.btq", 0, 17))
+    assert [each["start"] for each in linked["ranges"]] == [
+        {"line": 0, "character": 16},
+        {"line": 1, "character": 15},
+    ]
+
+
+def test_call_hierarchy(editor: Editor) -> None:
+    editor.open("main.btq", "BehaviorTree Main\n    SubTree Dock\nBehaviorTree Dock\n    Pick\n")
+    (dock,) = editor.request("textDocument/prepareCallHierarchy", **editor.at("main.btq", 1, 13))
+    assert (dock["name"], dock["selectionRange"]["start"]) == ("Dock", {"line": 2, "character": 13})
+    (incoming,) = editor.request("callHierarchy/incomingCalls", item=dock)
+    assert (incoming["from"]["name"], incoming["fromRanges"][0]["start"]["line"]) == ("Main", 1)
+    (outgoing,) = editor.request("callHierarchy/outgoingCalls", item=incoming["from"])
+    assert outgoing["to"]["name"] == "Dock"
+
+
+def test_hints_and_lenses_can_be_switched_off(editor: Editor) -> None:
+    editor.open("main.btq", "BehaviorTree Main\n    Timeout (msec = 2 s)\n        Pick\n")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 9, "character": 0}}
+    (hint,) = editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole)
+    assert (hint["label"], hint["position"]) == ("= 2000", {"line": 1, "character": 23})
+    (lens,) = editor.request("textDocument/codeLens", **editor.document("main.btq"))
+    assert (lens["command"]["title"], lens["command"]["command"]) == ("0 calls", "btq.showReferences")
+    editor.notify("workspace/didChangeConfiguration", settings={"btq": {"inlayHints": False, "codeLens": False}})
+    assert editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole) == []
+    assert editor.request("textDocument/codeLens", **editor.document("main.btq")) == []
+
+
 # ---- the way there ----
 
 

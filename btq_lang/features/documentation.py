@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from btq_lang.checks.includes import include_fix
+from btq_lang.checks.view import View
 from btq_lang.features import describe
 from btq_lang.features.meaning import own_quality, quality_match
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.symbols import Kind
+from btq_lang.text import Edit
 from btq_lang.workspace import Definition, Workspace
 
 
@@ -42,6 +45,18 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
         known = known or ports_of_kind(workspace, path, called)
         return next((describe.port(one) for one in known if one.name == port), None)
     return None
+
+
+def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ...]:
+    """What brings a proposal that the file cannot see yet into its scope.
+
+    Args:
+        other: the file that defines it; empty: the file sees it.
+    """
+    if other not in workspace.files:
+        return ()
+    fix = include_fix(View(workspace, path), other)
+    return tuple(Edit(change.place.span, change.text) for change in fix.changes)
 
 
 def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:

@@ -115,9 +115,9 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
         elif token.kind in (NAME, SYMBOL, ERROR):
             span = Span(token.start, max(token.end, offset))
             index -= 1
-    words = _line(tokens, index)
+    words = words_before(tokens, index)
     group, depth = _innermost(words)
-    blanks = _blanks(file.text, words[0].start if words else span.start)
+    blanks = line_blanks(file.text, words[0].start if words else span.start)
     parents = _parents(file.text, tokens, words[0].start if words else span.start, blanks)
     block, parent = _block(parents)
     node = _node(words) if block in ("node", "tree") else None
@@ -140,7 +140,7 @@ def _is_closed(raw: str) -> bool:
     return len(raw) > 1 and raw[-1] == raw[0]
 
 
-def _line(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
+def words_before(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
     """The words of the logical line up to a token."""
     found: list[Token] = []
     while index >= 0 and tokens[index].kind != NEWLINE:
@@ -182,7 +182,7 @@ def _is_clause_word(word: Token) -> bool:
     return word.kind == NAME and word.text in NODE_CLAUSES
 
 
-def _blanks(text: str, start: int) -> str:
+def line_blanks(text: str, start: int) -> str:
     """What a line begins with."""
     begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
     line = text[begin:start]
@@ -195,12 +195,12 @@ def _parents(text: str, tokens: Sequence[Token], start: int, blanks: str) -> lis
     width = len(blanks.expandtabs(4))
     index = bisect_left(tokens, start, key=lambda token: token.start) - 1
     while index >= 0 and width > 0:
-        line = _line(tokens, index)
+        line = words_before(tokens, index)
         while index >= 0 and tokens[index].kind != NEWLINE:
             index -= 1
         index -= 1
         if line:
-            column = len(_blanks(text, line[0].start).expandtabs(4))
+            column = len(line_blanks(text, line[0].start).expandtabs(4))
             if column < width:
                 found.append(line)
                 width = column

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from btq_lang.editor import Server
-from btq_lang.handlers import colours, documents, explaining, layout, lifecycle, navigation, structure
+from btq_lang.handlers import acting, colours, documents, explaining, hints, layout, lifecycle, navigation, structure
 
 
 def register(server: Server) -> None:
     """Tell pygls who answers what."""
-    for group in (lifecycle, documents, navigation, explaining, structure, colours, layout):
+    for group in (lifecycle, documents, navigation, explaining, structure, colours, layout, acting, hints):
         group.register(server)

@@ -7,7 +7,7 @@ from lsprotocol import types
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
 from btq_lang.features.completion import complete
-from btq_lang.features.documentation import documentation
+from btq_lang.features.documentation import documentation, include_edits
 from btq_lang.features.hover import hover
 from btq_lang.features.signature import signature_help
 
@@ -46,4 +46,6 @@ def register(server: Server) -> None:
         if workspace is not None:
             text = documentation(workspace, path, str(data.get("kind")), str(data.get("name")))
             item.documentation = markdown(text) if text else None
+            edits = include_edits(workspace, path, str(data.get("include") or ""))
+            item.additional_text_edits = convert.edits(workspace, path, edits) or None
         return item

@@ -7,22 +7,28 @@ functions call a feature; each knows which markers it reads and refuses a fixtur
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from textwrap import dedent
 
 from check_asserts import split_files
 
+from btq_lang.features.actions import Action, code_actions
+from btq_lang.features.calls import called, callers, prepare_calls
 from btq_lang.features.completion import Completion, complete
-from btq_lang.features.documentation import documentation
+from btq_lang.features.documentation import documentation, include_edits
+from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.features.hover import hover
+from btq_lang.features.moves import moved_files
 from btq_lang.features.navigation import find_references, goto_definition, highlights
+from btq_lang.features.on_type import linked_ranges, on_type
 from btq_lang.features.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.features.proposals import Proposal
 from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import TYPES, delta, encode, semantic_tokens
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
+from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.text import LineIndex, Span, apply_edits
 from btq_lang.workspace import Workspace
@@ -285,6 +291,15 @@ def check_documentation(text: str, label: str, markdown: str) -> None:
     assert _documented(fixture, one) == dedent(markdown).strip()
 
 
+def check_include(text: str, label: str, line: str) -> None:
+    """Accepting a proposal also puts this line in, where it stands before everything else."""
+    fixture = Fixture(text)
+    workspace, path, _ = fixture.at
+    one = next(one for one in _complete(fixture).proposals if one.label == label)
+    made = apply_edits(fixture.files[path], include_edits(workspace, path, one.include))
+    assert made == line + fixture.files[path]
+
+
 def _complete(fixture: Fixture) -> Completion:
     found = complete(*fixture.at)
     offset = fixture.at[2]
@@ -298,6 +313,92 @@ def _complete(fixture: Fixture) -> Completion:
 
 def _documented(fixture: Fixture, one: Proposal) -> str | None:
     return documentation(fixture.workspace, fixture.at[1], one.kind, one.name)
+
+
+def check_action(text: str, title: str, after: str) -> None:
+    """What can be done at the cursor has this title, and makes this of the files; the syntax is as right as it was."""
+    fixture = Fixture(text)
+    action = next((one for one in _actions(fixture) if one.title == title), None)
+    assert action is not None, [one.title for one in _actions(fixture)]
+    files = dict(fixture.files)
+    for path, edits in action.edits.items():
+        files[path] = apply_edits(files[path], edits)
+    assert files == split_files(after)
+    for path, content in files.items():
+        assert len(parse(content).diagnostics) <= len(parse(fixture.files[path]).diagnostics)
+
+
+def check_actions(text: str, *titles: str, only: tuple[str, ...] = ()) -> None:
+    """All that can be done at the cursor, of some kinds."""
+    assert [one.title for one in _actions(Fixture(text), only)] == list(titles)
+
+
+def check_no_action(text: str, title: str) -> None:
+    """Nothing whose title begins so is offered."""
+    assert not [one.title for one in _actions(Fixture(text)) if one.title.startswith(title)]
+
+
+def _actions(fixture: Fixture, only: tuple[str, ...] = ()) -> tuple[Action, ...]:
+    workspace, path, offset = fixture.at
+    return code_actions(workspace, path, Span(offset, offset), only)
+
+
+def check_calls(text: str, name: str | None, callers_: Iterable[str] = (), called_: Iterable[str] = ()) -> None:
+    """The tree at the cursor, the trees that run it and those that it runs: `name ×how often`."""
+    fixture = Fixture(text)
+    tree = prepare_calls(*fixture.at)
+    assert (tree.name if tree else None) == name
+    if tree is not None:
+        for feature, expected in ((callers, callers_), (called, called_)):
+            found = feature(fixture.workspace, tree)
+            assert [f"{call.tree.name} ×{len(call.places)}" for call in found] == list(expected)
+            for call in found:
+                names = (tree.name, call.tree.name)
+                assert all(fixture.files[call.path][slice(*place)].strip('"') in names for place in call.places)
+
+
+def check_hints(text: str) -> None:
+    """`<hint>: quality</hint>` are the inlay hints of the first file: what they say is not part of it."""
+    shown = Fixture(re.sub("<hint>.*?</hint>", "", text), cursor=False)
+    path = next(iter(shown.files))
+    content = shown.files[path]
+    hints = inlay_hints(shown.workspace, path, Span(0, len(content)))
+    for hint in reversed(hints):
+        content = f"{content[: hint.offset]}<hint>{hint.label}</hint>{content[hint.offset :]}"
+    assert content == split_files(text)[path]
+    for hint in hints:
+        assert hint in inlay_hints(shown.workspace, path, Span(hint.offset, hint.offset))
+
+
+def check_lenses(text: str, *lenses: str) -> None:
+    """The code lenses of the first file: `name: title`."""
+    fixture = Fixture(text, cursor=False)
+    path = next(iter(fixture.files))
+    found = code_lenses(fixture.workspace, path)
+    assert [f"{fixture.files[path][slice(*lens.span)]}: {lens.title}" for lens in found] == list(lenses)
+
+
+def check_typed(text: str, after: str) -> None:
+    """The character before the cursor was typed: this is made of the text."""
+    fixture = Fixture(text)
+    workspace, path, offset = fixture.at
+    content = fixture.files[path]
+    typed = "\n" if not content[:offset].rsplit("\n", 1)[-1].strip() else content[offset - 1]
+    assert apply_edits(content, on_type(workspace, path, offset, typed)) == after
+
+
+def check_linked(text: str) -> None:
+    """`<name>` are the names that are written together with the one at the cursor."""
+    fixture = Fixture(text, "name")
+    fixture.expect("name", ((fixture.at[1], span) for span in linked_ranges(*fixture.at)))
+
+
+def check_moved(text: str, moves: Mapping[str, str], after: str) -> None:
+    """When files are called otherwise their includes are mended so."""
+    fixture = Fixture(text, cursor=False)
+    edits = moved_files(fixture.workspace, moves)
+    files = {path: apply_edits(content, edits.get(path, ())) for path, content in fixture.files.items()}
+    assert files == split_files(after)
 
 
 def answer_everything(text: str, offset: int) -> None:
@@ -329,6 +430,18 @@ def answer_everything(text: str, offset: int) -> None:
     for outline in document_symbols(workspace, "main.btq"):
         assert _lies_in(outline.span, whole)
     encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
+    for action in code_actions(workspace, "main.btq", Span(offset, offset)):
+        for changed in action.edits.values():
+            apply_edits(text, changed)
+    tree = prepare_calls(*at)
+    if tree is not None:
+        callers(workspace, tree)
+        called(workspace, tree)
+    inlay_hints(workspace, "main.btq", whole)
+    code_lenses(workspace, "main.btq")
+    for typed in ("\n", ")"):
+        apply_edits(text, on_type(*at, typed))
+    assert all(_lies_in(span, whole) for span in linked_ranges(*at))
 
 
 def _lies_in(span: Span, whole: Span) -> bool:

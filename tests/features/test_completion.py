@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from feature_asserts import check_accept, check_completion, check_documentation, check_offers
+from feature_asserts import check_accept, check_completion, check_documentation, check_include, check_offers
 
 FILES = """//- main.btq
 signal battery : % from {battery_level}
@@ -167,6 +167,12 @@ def test_documentation() -> None:
         "station",
         "`input station : string` (required): a name",
     )
+
+
+def test_what_the_file_cannot_see_brings_its_include() -> None:
+    check_include(typed("BehaviorTree X\n    Pick satisfies $0"), "far", 'include "lib.btq"\n')
+    check_include(typed("BehaviorTree X\n    Pick satisfies $0"), "slow", "")
+    check_include("//- a.btq\n# head\n\nRoot M$0\n//- b.btq\nBehaviorTree Far\n    Pick\n", "Far", 'include "b.btq"\n')
 
 
 def test_the_cursor_on_an_empty_line_between_others() -> None:

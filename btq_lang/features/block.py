@@ -1,0 +1,111 @@
+"""Blocks of lines: a node with all that belongs to it as text, moved to another depth or another place.
+
+One invariant: what stands in a string or a comment over several lines keeps its blanks, for there they are text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.record import record
+from btq_lang.syntax import Entry, Node, Tree
+from btq_lang.text import LINE_END, Edit, Span
+from btq_lang.tokens import COMMENT, STRING
+from btq_lang.workspace import File
+
+STEP = "    "
+
+
+@record
+class Block:
+    """The lines of a node.
+
+    Attributes:
+        span: from its first word to the end of its last line, without the line end.
+        blanks: what its first line begins with.
+    """
+
+    span: Span
+    blanks: str
+
+
+@record
+class Standing:
+    """A node and where it stands."""
+
+    node: Node
+    parent: Node | None
+    tree: Tree
+    entry: Entry
+
+
+def node_at(file: File, entry: Entry, offset: int) -> Standing | None:
+    """The node on whose own line (or lines, with brackets) an offset is."""
+    tree = entry.item
+    if not isinstance(tree, Tree):
+        return None
+    inside = offset - entry.start
+    waiting: list[tuple[Node, Node | None]] = [(child, None) for child in tree.children if isinstance(child, Node)]
+    while waiting:
+        node, parent = waiting.pop()
+        start = _line_start(file.text, entry.start + node.start) - entry.start
+        if start <= inside <= max(node.end, _line_end(file.text, entry.start + node.end) - entry.start):
+            return Standing(node, parent, tree, entry)
+        waiting += [(child, node) for child in node.nodes]
+    return None
+
+
+def block_of(file: File, entry: Entry, node: Node) -> Block:
+    """The lines of a node and all below it."""
+    start = entry.start + node.start
+    return Block(Span(start, _line_end(file.text, entry.start + node.block_end)), blanks_before(file.text, start))
+
+
+def moved(file: File, block: Block, blanks: str) -> str:
+    """The text of a block with its first line at other blanks; its first line's own are left out."""
+    text = file.text[block.span.start : block.span.end]
+    pieces: list[str] = []
+    at = 0
+    for start in _line_starts(file, block.span):
+        line = start - block.span.start
+        pieces.append(text[at:line])
+        at = line
+        if text.startswith(block.blanks, line):
+            pieces.append(blanks)
+            at = line + len(block.blanks)
+    return "".join([*pieces, text[at:]])
+
+
+def shifts(file: File, block: Block, blanks: str) -> Iterator[Edit]:
+    """The edits that move a block where it stands to other blanks, its first line too."""
+    text = file.text
+    first = block.span.start - len(block.blanks)
+    for start in (first, *_line_starts(file, block.span)):
+        if text.startswith(block.blanks, start) and LINE_END.match(text, start) is None:
+            yield Edit(Span(start, start + len(block.blanks)), blanks)
+
+
+def blanks_before(text: str, start: int) -> str:
+    """What the line of an offset begins with."""
+    line = text[_line_start(text, start) : start]
+    return line[: len(line) - len(line.lstrip(" \t"))]
+
+
+def _line_starts(file: File, span: Span) -> list[int]:
+    """The starts of the lines in a stretch, but of those that begin inside a text."""
+    texts = [
+        token
+        for token in file.parsed.tokens
+        if token.kind in (STRING, COMMENT) and token.start < span.end and token.end > span.start
+    ]
+    starts = (end.end() for end in LINE_END.finditer(file.text, span.start, span.end))
+    return [start for start in starts if not any(token.start < start < token.end for token in texts)]
+
+
+def _line_start(text: str, offset: int) -> int:
+    return max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
+
+
+def _line_end(text: str, offset: int) -> int:
+    found = LINE_END.search(text, offset)
+    return found.start() if found else len(text)

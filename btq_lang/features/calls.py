@@ -1,0 +1,86 @@
+"""Which tree runs which: the call hierarchy over subtrees."""
+
+from __future__ import annotations
+
+from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, home_of, subject
+from btq_lang.mentions import What
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Tree
+from btq_lang.text import Span
+from btq_lang.workspace import Definition, Workspace
+
+
+@record
+class TreeItem:
+    """A tree; `name_span` is where to stand."""
+
+    name: str
+    path: str
+    span: Span
+    name_span: Span
+
+
+@record
+class Call:
+    """A tree that runs another, or is run by one.  places: the SubTrees, in the caller's file."""
+
+    tree: TreeItem
+    path: str
+    places: tuple[Span, ...]
+
+
+def prepare_calls(workspace: Workspace, path: str, offset: int) -> TreeItem | None:
+    """The tree that is named at a place, or in which the place is a node."""
+    found = at(workspace, path, offset)
+    if found is not None:
+        wanted = subject(workspace, found)
+        place = definition(workspace, path, wanted) if wanted.what is What.TREE else None
+        if place is not None:
+            return _item(place)
+    return None
+
+
+def callers(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
+    """The trees that run a tree."""
+    wanted = Subject(What.TREE, tree.name, f"{tree.path}:{tree.name_span.start}")
+    found: dict[tuple[str, int], list[Found]] = {}
+    for one in everywhere(workspace, wanted):
+        if one.mention.node is not None and one.entry is not None:
+            found.setdefault((one.path, one.entry.start), []).append(one)
+    calls = []
+    for places in found.values():
+        caller = _tree_of(workspace, places[0])
+        if caller is not None:
+            calls.append(Call(_item(caller), caller.path, tuple(one.span for one in places)))
+    return tuple(calls)
+
+
+def called(workspace: Workspace, tree: TreeItem) -> tuple[Call, ...]:
+    """The trees that a tree runs, in the order in which they are named first."""
+    file = workspace.files.get(tree.path)
+    found: dict[str, tuple[Definition, list[Span]]] = {}
+    for entry in file.parsed.entries if file is not None else ():
+        item = entry.item
+        if not isinstance(item, Tree) or item.name is None or entry.start + item.name.start != tree.name_span.start:
+            continue
+        for mention in workspace.files[tree.path].mentions_of(entry):
+            if mention.what is What.TREE and mention.node is not None:
+                place = workspace.scope(tree.path).find(Kind.TREE, mention.name)
+                if place is not None:
+                    known = found.setdefault(home_of(place), (place, []))
+                    known[1].append(mention.span.shifted(entry.start))
+    return tuple(Call(_item(place), tree.path, tuple(spans)) for place, spans in found.values())
+
+
+def _tree_of(workspace: Workspace, found: Found) -> Definition | None:
+    """The tree in which a mention stands."""
+    for place in workspace.defined_in(found.path):
+        if place.symbol.kind is Kind.TREE and place.entry is found.entry:
+            return place
+    return None
+
+
+def _item(place: Definition) -> TreeItem:
+    item = place.symbol.target
+    return TreeItem(place.symbol.name, place.path, Span(item.start, item.end).shifted(place.entry.start), place.span)

@@ -1,0 +1,74 @@
+"""What an editor may write between the lines: inlay hints and code lenses."""
+
+from __future__ import annotations
+
+from btq_lang.features import describe
+from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, subject
+from btq_lang.features.outline import requirement_detail
+from btq_lang.features.ports import ports_of
+from btq_lang.mentions import What
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Requirement
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+@record
+class Hint:
+    """A remark behind a word.  tooltip: more about it."""
+
+    offset: int
+    label: str
+    tooltip: str
+
+
+@record
+class Lens:
+    """A remark above a line.  places: what it counts, by file."""
+
+    span: Span
+    title: str
+    places: tuple[tuple[str, Span], ...]
+
+
+def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ...]:
+    """The quality of each requirement that is only named, and what is written to the port for a quantity."""
+    file = workspace.files[path]
+    found: list[Hint] = []
+    for entry in file.parsed.entries:
+        for mention in file.mentions_of(entry):
+            span = mention.span.shifted(entry.start)
+            if span.end < within.start or span.start > within.end:
+                continue
+            if mention.what is What.REQUIREMENT and not mention.defines:
+                wanted = subject(workspace, Found(path, entry, mention))
+                place = definition(workspace, path, wanted)
+                item = place.symbol.target if place is not None and wanted.home else None
+                if isinstance(item, Requirement) and item.quality is not None:
+                    quality = item.quality.names[-1].text
+                    found.append(Hint(span.end, f": {quality}", requirement_detail(item)))
+            elif mention.what is What.QUANTITY and mention.node is not None and mention.pair is not None:
+                key = mention.pair.key.text
+                unit = next((port.unit for port in ports_of(workspace, path, mention.node) if port.name == key), None)
+                number = describe.in_unit(mention.name, unit)
+                if number is not None and mention.name.split() != [number, unit]:
+                    found.append(Hint(span.end, f"= {number}", describe.quantity(mention.name, unit) or ""))
+    return tuple(found)
+
+
+def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
+    """How many nodes satisfy a requirement, and how often a tree is run."""
+    found: list[Lens] = []
+    for place in workspace.defined_in(path):
+        kinds = {Kind.REQUIREMENT: (What.REQUIREMENT, "use", "uses"), Kind.TREE: (What.TREE, "call", "calls")}
+        if place.symbol.kind not in kinds or workspace.scope(path).find(place.symbol.kind, place.symbol.name) != place:
+            continue
+        what, one, many = kinds[place.symbol.kind]
+        uses = tuple(
+            (use.path, use.span)
+            for use in everywhere(workspace, Subject(what, place.symbol.name, home_of(place)))
+            if (use.path, use.span) != (place.path, place.span)
+        )
+        found.append(Lens(place.span, f"{len(uses)} {one if len(uses) == 1 else many}", uses))
+    return tuple(found)

@@ -1,0 +1,53 @@
+"""Files that are renamed or moved: the includes that follow them."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Mapping
+
+from btq_lang.project import include_candidates
+from btq_lang.syntax import Include, quote
+from btq_lang.text import Edit
+from btq_lang.workspace import Workspace
+
+
+def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tuple[Edit, ...]]:
+    """The edits, by the files as they are called before, that keep every include leading where it leads.
+
+    Args:
+        moves: new paths of files and folders by old ones.
+    """
+    new = {path: _after(path, moves) for path in workspace.files}
+    edits: dict[str, tuple[Edit, ...]] = {}
+    for path, file in workspace.files.items():
+        if file.origin is not None:
+            continue
+        for entry in file.parsed.entries:
+            include = entry.item
+            target = workspace.included_by(path, include) if isinstance(include, Include) else None
+            if target is None or not isinstance(include, Include) or include.path is None:
+                continue
+            if (new[path], new[target]) == (path, target):
+                continue
+            if new[target] in include_candidates(workspace.project, new[path], include.path.text)[:1]:
+                continue
+            shown = _shown(workspace, new[path], new[target])
+            if shown != include.path.text:
+                edit = Edit(include.path.span.shifted(entry.start), quote(shown))
+                edits[path] = (*edits.get(path, ()), edit)
+    return edits
+
+
+def _after(path: str, moves: Mapping[str, str]) -> str:
+    """Where a file is when it, or a folder above it, was moved."""
+    for old, new in moves.items():
+        if path == old or path.startswith(f"{old.rstrip('/')}/"):
+            return new.rstrip("/") + path[len(old.rstrip("/")) :]
+    return path
+
+
+def _shown(workspace: Workspace, path: str, target: str) -> str:
+    """A file as an include in another one names it, from an include path where one leads there."""
+    ways = [posixpath.relpath(target, posixpath.dirname(path) or ".")]
+    ways += [posixpath.relpath(target, folder) for folder in workspace.project.include_paths]
+    return min(ways, key=lambda way: (way.startswith(".."), len(way)))

@@ -1,0 +1,94 @@
+"""While one types: the indentation of a new line, the place of a `)`, and names that are written together."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+from btq_lang.catalog.nodes import lookup
+from btq_lang.features.block import STEP
+from btq_lang.features.meaning import at, everywhere, subject
+from btq_lang.features.place import line_blanks, place_at, word_text, words_before
+from btq_lang.mentions import What
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Model
+from btq_lang.text import Edit, Span
+from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
+from btq_lang.workspace import Workspace
+
+TRIGGERS = ("\n", ")")
+
+
+def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[Edit, ...]:
+    """What to change after a character was typed: the blanks that the line of the offset begins with.
+
+    A new line goes one level deeper behind what opens a block, a tree, a requirement, a control or a decorator, and in
+    brackets; else it stands as the line above.  A `)` that begins a line stands as the line that opened the brackets.
+    """
+    text = workspace.files[path].text
+    start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
+    place = place_at(workspace, path, offset)
+    if place.inside != "code":
+        return ()
+    if typed == ")":
+        if text[start:offset].strip() != ")" or not place.words:
+            return ()
+        wanted = line_blanks(text, place.words[0].start)
+    elif place.words and place.depth:
+        wanted = line_blanks(text, place.words[0].start) + STEP
+    else:
+        above = _line_above(workspace, path, start)
+        if not above:
+            return ()
+        wanted = line_blanks(text, above[0].start) + (STEP if _opens(workspace, path, above) else "")
+    line = text[start:]
+    blanks = line[: len(line) - len(line.lstrip(" \t"))]
+    return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
+
+
+def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, ...]:
+    """The places that change together with the name at a place, where all of them are in sight: the parameter of a
+    requirement in its clauses, an entry of a tree's blackboard, an instance name and the paths that name it."""
+    found = at(workspace, path, offset)
+    if found is None:
+        return ()
+    wanted = subject(workspace, found)
+    if wanted.what not in (What.PARAMETER, What.KEY, What.INSTANCE) or wanted.home.startswith("@"):
+        return ()
+    places = tuple(everywhere(workspace, wanted))
+    text = workspace.files[path].text
+    same = all(one.path == path and text[one.span.start : one.span.end] == wanted.name for one in places)
+    return tuple(one.span for one in places) if same and len(places) > 1 else ()
+
+
+def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:
+    """The words of the last logical line before an offset that has any."""
+    tokens = workspace.files[path].parsed.tokens
+    index = bisect_left(tokens, start, key=lambda token: token.start) - 1
+    while index >= 0:
+        words = words_before(tokens, index - 1 if tokens[index].kind not in (NAME, STRING, SYMBOL, CLOSE) else index)
+        if words:
+            return words
+        index -= 1
+    return ()
+
+
+def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
+    """Whether a line asks for a block."""
+    first = words[0]
+    if any(word.kind == NAME and word.text == "QualityReq" for word in words):
+        depth = sum((word.kind == OPEN) - (word.kind == CLOSE) for word in words)
+        return depth == 0 and first.text in ("QualityReq", "satisfies")
+    if first.kind == NAME and (first.text in _OPENERS or first.text in NODE_CLAUSES):
+        return first.text in _OPENERS
+    if first.kind == NAME and first.text in CATEGORIES:
+        is_model = not line_blanks(workspace.files[path].text, first.start)
+        return is_model or first.text in ("Control", "Decorator")
+    kind = lookup(word_text(first), first.kind == STRING)
+    if kind is not None:
+        return kind.category in ("Control", "Decorator")
+    found = workspace.scope(path).find(Kind.MODEL, word_text(first))
+    target = found.symbol.target if found is not None else None
+    return isinstance(target, Model) and target.category.raw in ("Control", "Decorator")
+
+
+_OPENERS = frozenset(("BehaviorTree", "TreeNodesModel"))

@@ -1,0 +1,286 @@
+"""Refactorings of a tree: a subtree taken out or put in, a node wrapped or unwrapped, a requirement lifted.
+
+One invariant: what the mission does stays what it does; a refactoring that cannot promise it is not offered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btq_lang.catalog.nodes import lookup
+from btq_lang.features.block import STEP, Standing, block_of, moved, node_at, shifts
+from btq_lang.features.meaning import entry_at
+from btq_lang.features.navigation import direction
+from btq_lang.mentions import Mention, What
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import (
+    Clause,
+    Entry,
+    Node,
+    Quality,
+    QualityPath,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tree,
+    is_name,
+    quote,
+)
+from btq_lang.text import Edit, Span
+from btq_lang.tokens import BRACED
+from btq_lang.workspace import File, Workspace
+
+
+@record
+class Refactoring:
+    """A change that keeps the meaning.  kind: as LSP has it."""
+
+    title: str
+    kind: str
+    edits: Mapping[str, tuple[Edit, ...]]
+
+
+def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refactoring]:
+    """What can be done with the node, or the requirement, at a place."""
+    file = workspace.files[path]
+    entry = entry_at(workspace, path, offset)
+    if entry is None or file.origin is not None or any(one.rule == "syntax-error" for one in entry.diagnostics):
+        return
+    yield from _lift(workspace, path, entry, offset)
+    standing = node_at(file, entry, offset)
+    if standing is None:
+        return
+    yield from _extract(workspace, path, standing)
+    yield from _inline(workspace, path, standing)
+    yield from _unwrap(workspace, path, standing)
+    yield from _wrap(workspace, path, standing)
+
+
+# ---- a subtree taken out ----
+
+
+def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+    node, entry = standing.node, standing.entry
+    if standing.parent is None or (node.category is not None and node.category.raw == "SubTree"):
+        return
+    file = workspace.files[path]
+    keys = _keys_in(workspace, path, entry, node)
+    if keys is None:
+        return
+    name = _free_name(workspace, path, node)
+    block = block_of(file, entry, node)
+    above = file.text[: entry.start + standing.tree.start]
+    margin = above[len(above.rstrip(" \t")) :]
+    lines = [f"{margin}BehaviorTree {_written(name)}"]
+    lines += [f"{margin}{STEP}{ways} {_written(key)}" for key, ways in keys.items()]
+    lines += [f"{margin}{STEP}{moved(file, block, margin + STEP)}"]
+    arguments = " ".join(f"{_written(key)} = {{=}}" for key in keys)
+    call = f"SubTree {_written(name)}{f' ({arguments})' if arguments else ''}"
+    end = _item_end(file, entry)
+    made = (Edit(block.span, call), Edit(Span(end, end), "\n\n" + "\n".join(lines)))
+    yield Refactoring(f"Extract into the tree `{name}`", "refactor.extract", {path: made})
+
+
+def _keys_in(workspace: Workspace, path: str, entry: Entry, top: Node) -> dict[str, str] | None:
+    """The entries of the tree's blackboard that nodes below one use, each with input, output or inout; None where one
+    cannot be passed on by its name."""
+    nodes = {id(node) for node in top.walk()}
+    found: dict[str, set[str]] = {}
+    for mention in workspace.files[path].mentions_of(entry):
+        if mention.what is not What.KEY or mention.root or mention.node is None or id(mention.node) not in nodes:
+            continue
+        if not is_name(mention.name) or mention.node.attribute("_autoremap") is not None:
+            return None
+        found.setdefault(mention.name, set()).add(_way(workspace, path, mention))
+    return {key: ways.pop() if len(ways) == 1 else "inout" for key, ways in found.items()}
+
+
+def _way(workspace: Workspace, path: str, mention: Mention) -> str:
+    if mention.writes:
+        return "output"
+    if mention.node is None or mention.pair is None or mention.pair.key.text.startswith("_"):
+        return "input"
+    way = direction(workspace, path, mention.node, mention.pair.key.text)
+    # A script reads what it does not assign; an undeclared port may do both.
+    return way or ("input" if mention.word.kind != BRACED else "inout")
+
+
+def _free_name(workspace: Workspace, path: str, node: Node) -> str:
+    base = node.name.text if node.name is not None and is_name(node.name.text) else "Extracted"
+    taken = {*workspace.scope(path).names(Kind.TREE), *workspace.scope(path).names(Kind.MODEL)}
+    taken |= {each.id.text for entry in _trees(workspace.files[path]) for each in entry.walk() if each.id is not None}
+    name, number = base, 2
+    while name in taken or lookup(name) is not None:
+        name, number = f"{base}{number}", number + 1
+    return name
+
+
+def _trees(file: File) -> Iterator[Tree]:
+    return (entry.item for entry in file.parsed.entries if isinstance(entry.item, Tree))
+
+
+def _item_end(file: File, entry: Entry) -> int:
+    """Where the last line of a tree ends."""
+    tree = entry.item
+    assert isinstance(tree, Tree), "only trees have nodes"
+    end = max([tree.end, *(child.block_end for child in tree.children if isinstance(child, Node))])
+    line = file.lines.position(entry.start + end).line
+    return file.lines.offset(file.lines.position(entry.start + end)._replace(column=len(file.lines.line(line))))
+
+
+# ---- a subtree put in ----
+
+
+def _inline(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+    node, entry = standing.node, standing.entry
+    if node.category is None or node.category.raw != "SubTree" or node.id is None or node.clauses or node.name:
+        return
+    found = workspace.scope(path).find(Kind.TREE, node.id.text)
+    tree = found.symbol.target if found is not None else None
+    if found is None or not isinstance(tree, Tree) or tree.clauses or len(tree.children) != 1:
+        return
+    top = tree.children[0]
+    source = workspace.files[found.path]
+    given = {pair.key.text: pair.value for pair in node.attributes if pair.key.text != "ID"}
+    if not isinstance(top, Node) or source.origin is not None or any(key.startswith("_") for key in given):
+        return
+    if found.path == path and found.entry is entry:
+        return
+    own = {one.name for one in workspace.files[path].mentions_of(entry) if one.what is What.KEY and not one.root}
+    defaults = {port.name.text for port in tree.ports if port.name is not None and port.default is not None}
+    edits: list[Edit] = []
+    for mention in source.mentions_of(found.entry):
+        if mention.what is not What.KEY or mention.root or mention.defines:
+            continue
+        value = given.get(mention.name)
+        start = found.entry.start
+        if value is None:
+            if mention.name in own or mention.name in defaults:
+                return  # another entry of the same name, or one that would have had a value
+            continue
+        if value.text.startswith("{@") or mention.pair is None:
+            return
+        passed = mention.name if value.text == "{=}" else value.text.strip("{}").strip()
+        is_entry = value.kind == BRACED or (value.text.startswith("{") and value.text.endswith("}"))
+        whole = mention.word.kind == BRACED or mention.word.text.startswith("{")
+        if not is_entry and not whole:
+            return  # a literal inside a script
+        if mention.word.raw.strip("{} \"'") == "=" and is_entry:
+            edits.append(Edit(mention.word.span.shifted(start), f"{{{passed}}}"))
+        elif is_entry:
+            edits.append(Edit(mention.span.shifted(start), passed))
+        else:
+            edits.append(Edit(mention.word.span.shifted(start), value.raw))
+    block = block_of(source, found.entry, top)
+    after = File(found.path, _applied(source.text, edits))
+    grown = len(after.text) - len(source.text)
+    changed = type(block)(Span(block.span.start, block.span.end + grown), block.blanks)
+    inlined = moved(after, changed, block_of(workspace.files[path], entry, node).blanks)
+    made = (Edit(node.span.shifted(entry.start), inlined),)
+    yield Refactoring(f"Inline the tree `{found.symbol.name}`", "refactor.inline", {path: made})
+
+
+def _applied(text: str, edits: list[Edit]) -> str:
+    for edit in sorted(edits, key=lambda edit: edit.span, reverse=True):
+        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    return text
+
+
+# ---- a node wrapped and unwrapped ----
+
+
+def _wrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+    file = workspace.files[path]
+    block = block_of(file, standing.entry, standing.node)
+    for head, what in _WRAPPERS:
+        first, *others = shifts(file, block, block.blanks + STEP)
+        opened = Edit(first.span, f"{block.blanks}{head}\n{first.text}")
+        yield Refactoring(f"Wrap in {what}", "refactor.rewrite", {path: (opened, *others)})
+
+
+def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Refactoring]:
+    node = standing.node
+    if len(node.children) != 1 or not isinstance(node.children[0], Node) or node.clauses:
+        return
+    file = workspace.files[path]
+    child = block_of(file, standing.entry, node.children[0])
+    own = block_of(file, standing.entry, node)
+    between = Span(own.span.start, child.span.start - len(child.blanks))
+    if "#" in file.text[slice(*between)] or "/" in file.text[slice(*between)]:
+        return  # a comment would be lost
+    first, *others = shifts(file, child, own.blanks)
+    removed = Edit(Span(own.span.start - len(own.blanks), first.span.end), own.blanks)
+    title = f"Unwrap: take `{node.head.text}` away"
+    yield Refactoring(title, "refactor.rewrite", {path: (removed, *others)})
+
+
+_WRAPPERS = (
+    ("Retry (num_attempts = 3)", "Retry"),
+    ("Timeout (msec = 30 s)", "Timeout"),
+    ("Inverter", "Inverter"),
+    ("ForceSuccess", "ForceSuccess"),
+    ("->", "a Sequence"),
+    ("?", "a Fallback"),
+)
+
+
+# ---- a requirement lifted to the file's level ----
+
+
+def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterator[Refactoring]:
+    """A requirement that is defined in place becomes an item of its own, and its place refers to it."""
+    tree = entry.item
+    if not isinstance(tree, Tree):
+        return
+    file = workspace.files[path]
+    for clause in (*tree.clauses, *(clause for node in tree.walk() for clause in node.clauses)):
+        for requirement, quality in _defined_in(clause):
+            if requirement.name is None or requirement.is_reference:
+                continue
+            if not entry.start + requirement.start <= offset <= entry.start + requirement.end:
+                continue
+            name = _written(requirement.name.text)
+            item = _item(file, entry, requirement, quality.path if quality else None)
+            put = Edit(Span(tree.start, tree.start).shifted(entry.start), f"{item}\n\n")
+            if quality is None:
+                refer = Edit(Span(requirement.start, requirement.end).shifted(entry.start), name)
+            else:
+                opened = file.text.rfind("(", 0, entry.start + requirement.start)
+                closed = file.text.find(")", entry.start + requirement.end)
+                between = file.text[opened + 1 : entry.start + requirement.start]
+                if len(quality.requirements) > 1 or opened < 0 or closed < 0 or between.strip():
+                    continue
+                refer = Edit(Span(opened, closed + 1), f"satisfies {name}")
+            yield Refactoring(
+                f"Lift `{requirement.name.text}` to the file's level", "refactor.extract", {path: (put, refer)}
+            )
+
+
+def _defined_in(clause: object) -> Iterator[tuple[Requirement, Quality | None]]:
+    if isinstance(clause, Satisfies):
+        yield from ((use, None) for use in clause.uses if isinstance(use, Requirement))
+    elif isinstance(clause, Satisfices):
+        yield from ((one, quality) for quality in clause.qualities for one in quality.requirements)
+
+
+def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPath | None) -> str:
+    assert requirement.name is not None, "what has no name cannot be referred to"
+    path = requirement.quality or quality
+    shown = f" : {'.'.join(_written(name.text) for name in path.names)}" if path is not None else ""
+    parameters = ""
+    if requirement.parameters:
+        first, last = requirement.parameters[0].name.start, file.text.find(")", entry.start + requirement.name.end)
+        parameters = f"({file.text[entry.start + first : last]})"
+    text = f" {quote(' '.join(requirement.text.text.split()))}" if requirement.text is not None else ""
+    lines = [f"QualityReq {_written(requirement.name.text)}{parameters}{shown}{text}"]
+    lines += [f"{STEP}{_clause(file, entry, clause)}" for clause in requirement.clauses]
+    return "\n".join(lines)
+
+
+def _clause(file: File, entry: Entry, clause: Clause) -> str:
+    return " ".join(file.text[entry.start + clause.start : entry.start + clause.end].split())
+
+
+def _written(name: str) -> str:
+    return name if is_name(name) else quote(name)

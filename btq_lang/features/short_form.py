@@ -1,0 +1,141 @@
+"""From the classic form to the short one, for a node or for a whole file: another spelling of the same tree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+from btq_lang.checks import check
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.features.block import node_at
+from btq_lang.features.meaning import entry_at
+from btq_lang.features.refactor import Refactoring
+from btq_lang.syntax import Entry, Node, Pair, Satisfices, Tree, is_name, quote
+from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.tokens import CLOSE, NODE_CLAUSES, OPEN
+from btq_lang.workspace import File, Workspace
+
+_Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
+
+
+def short_form(
+    workspace: Workspace, path: str, offset: int, found: Sequence[Diagnostic] | None = None
+) -> Iterator[Refactoring]:
+    """The node at a place, and the whole file, in the short form; nothing where they are.
+
+    Args:
+        found: the diagnostics of the file, if somebody has them already.
+    """
+    file = workspace.files[path]
+    entry = entry_at(workspace, path, offset)
+    if entry is None or file.origin is not None:
+        return
+    rewrites = _placeholders(workspace, path, found)
+    standing = node_at(file, entry, offset)
+    if standing is not None and (edits := tuple(_of_node(file, entry, standing.node, rewrites))):
+        yield Refactoring("Write the node in the short form", "refactor.rewrite", {path: edits})
+    text = _whole_file(file, rewrites)
+    if text != file.text:
+        whole = (Edit(Span(0, len(file.text)), text),)
+        yield Refactoring("Write the file in the short form", "refactor.rewrite", {path: whole})
+
+
+def _placeholders(workspace: Workspace, path: str, found: Sequence[Diagnostic] | None) -> _Rewrites:
+    """How the rule about classic placeholders rewrites them, by the places where they begin."""
+    if "ScriptAction" not in workspace.files[path].text and "ScriptCondition" not in workspace.files[path].text:
+        return {}
+    return {
+        one.span.start: tuple(Edit(change.place.span, change.text) for change in one.fixes[0].changes)
+        for one in (check(workspace, path) if found is None else found)
+        if one.rule == "classic-placeholder" and one.fixes
+    }
+
+
+def _whole_file(file: File, rewrites: _Rewrites) -> str:
+    """The text of a file in the short form."""
+    edits: list[Edit] = []
+    for entry in file.parsed.entries:
+        if isinstance(entry.item, Tree) and not entry.diagnostics:
+            edits += _of_tree(file, entry, entry.item)
+            for node in entry.item.walk():
+                edits += _of_node(file, entry, node, rewrites)
+    return apply_edits(file.text, edits)
+
+
+def _of_tree(file: File, entry: Entry, tree: Tree) -> Iterator[Edit]:
+    """`BehaviorTree ID = mainTree`"""
+    if tree.name is not None:
+        head = file.text[entry.start + tree.start : entry.start + tree.name.start]
+        if head.split() == ["BehaviorTree", "ID", "="] or head.replace(" ", "") == "BehaviorTreeID=":
+            yield Edit(Span(tree.start, tree.name.start).shifted(entry.start), "BehaviorTree ")
+
+
+def _of_node(file: File, entry: Entry, node: Node, rewrites: _Rewrites) -> Iterator[Edit]:
+    yield from rewrites.get(entry.start + node.head.start) or _head(file, entry, node)
+    for clause in node.clauses:
+        if isinstance(clause, Satisfices):
+            yield from _qualities(file, entry, clause)
+
+
+def _head(file: File, entry: Entry, node: Node) -> Iterator[Edit]:
+    """`SubTree (ID = PickPlace name = "Pick")` is `SubTree PickPlace Pick`, and `-> (name = "x")` is `-> x`."""
+    moved: list[Pair] = []
+    words: list[str] = []
+    for key, is_free in (("ID", node.kind is None and node.category is not None), ("name", node.label is None)):
+        pair = next((pair for pair in node.attributes if pair.key.text == key and pair.value is not None), None)
+        if pair is None or pair.value is None or not is_free:
+            continue
+        text = pair.value.text
+        words.append(text if is_name(text) and text not in NODE_CLAUSES else quote(text))
+        moved.append(pair)
+    if not moved or (node.kind is None and (node.attribute("ID") is None or moved[0].key.text != "ID")):
+        return
+    head = node.kind or node.category
+    assert head is not None, "a node has a kind or a category"
+    yield Edit(Span(head.end, head.end).shifted(entry.start), f" {' '.join(words)}")
+    text = file.text
+    opened = text.find("(", entry.start + head.end)
+    if len(moved) == len(node.attributes) and (closed := _closing(file, opened)) is not None:
+        inside = _without(text[opened + 1 : closed], moved, entry.start - opened - 1)
+        if not inside.strip(" ,\t\r\n"):
+            before = len(text[:opened]) - len(text[:opened].rstrip(" \t"))
+            yield Edit(Span(opened - before, closed + 1), "")
+            return
+    for pair in moved:
+        start, end = pair.span.shifted(entry.start)
+        while end < len(text) and text[end] in " \t":
+            end += 1
+        if text[end : end + 1] == ",":
+            end += 1
+            while text[end : end + 1] in (" ", "\t"):
+                end += 1
+        yield Edit(Span(start, end), "")
+
+
+def _without(text: str, pairs: list[Pair], by: int) -> str:
+    for pair in sorted(pairs, key=lambda pair: pair.key.start, reverse=True):
+        start, end = pair.span.shifted(by)
+        text = text[:start] + text[end:]
+    return text
+
+
+def _closing(file: File, opened: int) -> int | None:
+    """Where the brackets that open at an offset close."""
+    depth = 0
+    for token in file.parsed.tokens:
+        if token.start < opened or token.kind not in (OPEN, CLOSE):
+            continue
+        depth += 1 if token.kind == OPEN else -1
+        if depth == 0:
+            return token.start if token.text else None
+    return None
+
+
+def _qualities(file: File, entry: Entry, clause: Satisfices) -> Iterator[Edit]:
+    """`satisfices Quality = performance` is `satisfices performance`; one that encloses requirements stays."""
+    for quality in clause.qualities:
+        start = entry.start + quality.path.span.start
+        head = file.text[entry.start + clause.start : start]
+        at = head.rstrip().removesuffix("=").rstrip()
+        if not quality.requirements and head.rstrip().endswith("=") and at.endswith("Quality"):
+            yield Edit(Span(entry.start + clause.start + len(at) - len("Quality"), start), "")

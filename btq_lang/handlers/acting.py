@@ -1,0 +1,54 @@
+"""What can be done: code actions, renamed files, and formatting while one types."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from btq_lang.editor import Server
+from btq_lang.features.actions import code_actions
+from btq_lang.features.moves import moved_files
+from btq_lang.features.on_type import TRIGGERS, linked_ranges, on_type
+
+KINDS = [
+    types.CodeActionKind.QuickFix,
+    types.CodeActionKind.RefactorExtract,
+    types.CodeActionKind.RefactorInline,
+    types.CodeActionKind.RefactorRewrite,
+    types.CodeActionKind.SourceFixAll,
+]
+_ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="file")
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS))
+    def actions(params: types.CodeActionParams) -> list[types.CodeAction]:
+        place = server.at(params.text_document)
+        if place is None:
+            return []
+        workspace, path = place
+        only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
+        found = code_actions(workspace, path, convert.span(*place, params.range), only, session.diagnostics(path))
+        return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
+
+    @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
+    def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
+        moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
+        found = [(workspace, moved_files(workspace, moves)) for workspace in session.workspaces()]
+        edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
+        return convert.merged(edits) if edits else None
+
+    @server.feature(
+        types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions(TRIGGERS[0], [*TRIGGERS[1:]])
+    )
+    def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
+        asked = server.ask(params.text_document, params.position, lambda *at: on_type(at[0], at[1], at[2], params.ch))
+        return convert.edits(*asked) if asked else []
+
+    @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
+    def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
+        asked = server.ask(params.text_document, params.position, linked_ranges)
+        if asked is None or not asked[2]:
+            return None
+        return types.LinkedEditingRanges([convert.range(asked[0], asked[1], span) for span in asked[2]])

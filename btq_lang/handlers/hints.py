@@ -1,0 +1,92 @@
+"""Call hierarchy, inlay hints and code lenses."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from btq_lang.convert import markdown
+from btq_lang.editor import Server
+from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
+from btq_lang.features.hints import code_lenses, inlay_hints
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's: it opens its own list
+
+
+def register(server: Server) -> None:
+    session, convert = server.session, server.convert
+
+    def item(workspace: Workspace, tree: TreeItem) -> types.CallHierarchyItem:
+        return types.CallHierarchyItem(
+            tree.name,
+            types.SymbolKind.Class,
+            convert.uri(tree.path),
+            convert.range(workspace, tree.path, tree.span),
+            convert.range(workspace, tree.path, tree.name_span),
+            data={"path": tree.path, "span": [*tree.span], "name": [*tree.name_span]},
+        )
+
+    def tree_of(asked: types.CallHierarchyItem) -> tuple[Workspace, TreeItem] | None:
+        data = asked.data if isinstance(asked.data, dict) else {}
+        workspace = session.workspace_of(str(data.get("path")))
+        if workspace is None:
+            return None
+        return workspace, TreeItem(asked.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+
+    def places(workspace: Workspace, call: Call) -> list[types.Range]:
+        return [convert.range(workspace, call.path, span) for span in call.places]
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
+    def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
+        asked = server.ask(params.text_document, params.position, prepare_calls)
+        return [item(asked[0], asked[2])] if asked and asked[2] else None
+
+    @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
+    def incoming(params: types.CallHierarchyIncomingCallsParams) -> list[types.CallHierarchyIncomingCall]:
+        asked = tree_of(params.item)
+        return [
+            types.CallHierarchyIncomingCall(item(asked[0], call.tree), places(asked[0], call))
+            for call in (callers(*asked) if asked else ())
+            if asked
+        ]
+
+    @server.feature(types.CALL_HIERARCHY_OUTGOING_CALLS)
+    def outgoing(params: types.CallHierarchyOutgoingCallsParams) -> list[types.CallHierarchyOutgoingCall]:
+        asked = tree_of(params.item)
+        return [
+            types.CallHierarchyOutgoingCall(item(asked[0], call.tree), places(asked[0], call))
+            for call in (called(*asked) if asked else ())
+            if asked
+        ]
+
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    def hints(params: types.InlayHintParams) -> list[types.InlayHint]:
+        place = server.at(params.text_document)
+        if place is None or not session.setting("inlayHints", True):
+            return []
+        workspace, path = place
+        return [
+            types.InlayHint(
+                convert.range(workspace, path, Span(hint.offset, hint.offset)).start,
+                hint.label,
+                kind=types.InlayHintKind.Type,
+                tooltip=markdown(hint.tooltip),
+                padding_left=not hint.label.startswith(":"),
+            )
+            for hint in inlay_hints(workspace, path, convert.span(workspace, path, params.range))
+        ]
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
+        place = server.at(params.text_document)
+        if place is None or not session.setting("codeLens", True):
+            return []
+        workspace, path = place
+        found = []
+        for lens in code_lenses(workspace, path):
+            range_ = convert.range(workspace, path, lens.span)
+            uses = [convert.location(workspace, *use) for use in lens.places]
+            arguments = [convert.uri(path), range_.start, uses]
+            found.append(types.CodeLens(range_, types.Command(lens.title, SHOW_REFERENCES, arguments=arguments)))
+        return found

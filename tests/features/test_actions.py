@@ -1,0 +1,227 @@
+"""Code actions: fixes, silencing, fix-all, and refactorings."""
+
+from __future__ import annotations
+
+import pytest
+from feature_asserts import check_action, check_actions, check_no_action
+
+
+def test_fixes_of_diagnostics() -> None:
+    check_action(
+        "BehaviorTree Main\n    Sequ$0nce\n        Pick\n        Place\n",
+        "Replace `Sequnce` by `Sequence`",
+        "BehaviorTree Main\n    Sequence\n        Pick\n        Place\n",
+    )
+
+
+def test_silencing() -> None:
+    check_action(
+        "BehaviorTree Main\n    Sequn$0ce\n        Pick\n",
+        "Silence `unknown-node` on this line",
+        "BehaviorTree Main\n    Sequnce  # btq: ignore[unknown-node]\n        Pick\n",
+    )
+    check_no_action("BehaviorTree Main\n    Sequn$0ce  # why\n        Pick\n", "Silence")
+    check_no_action("BehaviorTree Main\n    Pick $0)\n", "Silence `syntax-error`")
+
+
+def test_all_safe_fixes_at_once() -> None:
+    check_actions("$0BehaviorTree Main\n    Pick satisfices usability\n", only=("source.fixAll",))
+    check_action(
+        "$0BehaviorTree Main\n    Pick satisfices speed, energy\n",
+        "Apply 2 safe fixes",
+        "BehaviorTree Main\n    Pick satisfices performance-efficiency.time-behaviour, "
+        "performance-efficiency.resource-utilization\n",
+    )
+
+
+def test_only_what_is_asked_for() -> None:
+    text = "BehaviorTree Main\n    ->\n        SubTree Do$0ck\nBehaviorTree Dock\n    Pick\n"
+    check_actions(text, "Inline the tree `Dock`", only=("refactor.inline",))
+    check_actions(text, only=("source",))
+    check_actions(text, only=("quickfix",))
+
+
+def test_extract() -> None:
+    check_action(
+        """
+        Action Look
+            output pose : string
+        BehaviorTree Main
+            ->
+                Retry Search$0 (num_attempts = 3)  # often
+                    # first look, then go
+                    ->
+                        Look (pose = {there})
+                        Go (to = {there} from = {home} why = "because
+        it is there")
+                Done
+        BehaviorTree Other
+            Pick
+        """,
+        "Extract into the tree `Search`",
+        """
+        Action Look
+            output pose : string
+        BehaviorTree Main
+            ->
+                SubTree Search (there = {=} home = {=})
+                Done
+
+        BehaviorTree Search
+            inout there
+            inout home
+            Retry Search (num_attempts = 3)  # often
+                # first look, then go
+                ->
+                    Look (pose = {there})
+                    Go (to = {there} from = {home} why = "because
+        it is there")
+        BehaviorTree Other
+            Pick
+        """,
+    )
+
+
+def test_extract_gives_a_free_name() -> None:
+    check_action(
+        "BehaviorTree Main\n    ->\n        Pi$0ck\nBehaviorTree Extracted\n    Place\n",
+        "Extract into the tree `Extracted2`",
+        "BehaviorTree Main\n    ->\n        SubTree Extracted2\n\nBehaviorTree Extracted2\n    Pick\n"
+        "BehaviorTree Extracted\n    Place\n",
+    )
+
+
+def test_what_cannot_be_extracted() -> None:
+    check_no_action("BehaviorTree Main\n    Pi$0ck\n", "Extract")
+    check_no_action("BehaviorTree Main\n    ->\n        SubTree Do$0ck\n", "Extract")
+    check_no_action("BehaviorTree Main\n    ->\n        Pick$0 (_autoremap = true a = {b})\n", "Extract")
+
+
+@pytest.mark.parametrize(
+    ("call", "body", "inlined"),
+    [
+        ("SubTree Do$0ck", "Pick", "Pick"),
+        ("SubTree Do$0ck (to = {goal})", "Pick (from = {to})", "Pick (from = {goal})"),
+        ("SubTree Do$0ck (to = {=})", "Pick (from = {to})", "Pick (from = {to})"),
+        ('SubTree Do$0ck (to = "a b")', "Pick (from = {to})", 'Pick (from = "a b")'),
+        ("SubTree Do$0ck (to = {goal})", "Pick (to = {=})", "Pick (to = {goal})"),
+        (
+            "SubTree Do$0ck (to = {goal})",
+            '->\n        Script (code = "to := to + 1")  # up\n        Pick (from = {mine})',
+            '->\n            Script (code = "goal := goal + 1")  # up\n            Pick (from = {mine})',
+        ),
+    ],
+)
+def test_inline(call: str, body: str, inlined: str) -> None:
+    trees = "BehaviorTree Main\n    ->\n        {}\n        Place\nBehaviorTree Dock\n    input to\n    {}\n"
+    check_action(trees.format(call, body), "Inline the tree `Dock`", trees.format(inlined, body))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "BehaviorTree Main\n    SubTree Do$0ck satisfies rq\nBehaviorTree Dock\n    Pick\n",
+        "BehaviorTree Main\n    SubTree Do$0ck (_skipIf = x)\nBehaviorTree Dock\n    Pick\n",
+        "BehaviorTree Main\n    SubTree Do$0ck\nBehaviorTree Dock\n    satisfies rq\n    Pick\n",
+        "BehaviorTree Main\n    SubTree Do$0ck (to = 3)\nBehaviorTree Dock\n    Script (code = 'a := to')\n",
+        "BehaviorTree A\n    ->\n        B (c = {d})\n        SubTree Do$0ck\nBehaviorTree Dock\n    Pick (e = {d})\n",
+        "BehaviorTree Main\n    SubTree Nowh$0ere\n",
+        "BehaviorTree Main\n    SubTree Ma$0in\n",
+    ],
+)
+def test_what_cannot_be_put_in(text: str) -> None:
+    check_no_action(text, "Inline")
+
+
+def test_wrap_and_unwrap() -> None:
+    bare = "BehaviorTree Main\n    ->\n        {}Pick (\n            a = 1\n        )\n        Place\n"
+    wrapped = (
+        "BehaviorTree Main\n    ->\n        {}Retry (num_attempts = 3)\n            Pick (\n                a = 1\n"
+        "            )\n        Place\n"
+    )
+    check_action(bare.format("$0"), "Wrap in Retry", wrapped.format(""))
+    check_action(wrapped.format("$0"), "Unwrap: take `Retry` away", bare.format(""))
+
+
+def test_what_is_not_unwrapped() -> None:
+    check_no_action("BehaviorTree Main\n    $0->\n        Pick\n        Place\n", "Unwrap")
+    check_no_action("BehaviorTree Main\n    $0Inverter satisfies rq\n        Pick\n", "Unwrap")
+    check_no_action("BehaviorTree Main\n    $0Inverter  # why\n        Pick\n", "Unwrap")
+
+
+def test_lift_a_requirement() -> None:
+    check_action(
+        """
+        BehaviorTree Main
+            Pick
+                satisfies QualityReq r$0q1 : safety "Slow"
+                    takes at most 30 s
+                    on violation fail
+        """,
+        "Lift `rq1` to the file's level",
+        """
+        QualityReq rq1 : safety "Slow"
+            takes at most 30 s
+            on violation fail
+
+        BehaviorTree Main
+            Pick
+                satisfies rq1
+        """,
+    )
+
+
+def test_lift_a_classic_requirement() -> None:
+    check_action(
+        """
+        BehaviorTree ID = Main
+            Pick (
+            satisfices Quality = performance
+            (QualityReq ID = "rq1"
+            description = "It shall take$0
+                           at most 30 sec")
+            )
+        """,
+        "Lift `rq1` to the file's level",
+        """
+        QualityReq rq1 : performance "It shall take at most 30 sec"
+
+        BehaviorTree ID = Main
+            Pick (
+            satisfices Quality = performance
+            satisfies rq1
+            )
+        """,
+    )
+
+
+def test_the_short_form_of_a_node() -> None:
+    check_action(
+        'BehaviorTree ID = Main\n    -> $0(name = "BatteryCheck")\n        SubTree (ID = Dock, to = x)\n',
+        "Write the node in the short form",
+        "BehaviorTree ID = Main\n    -> BatteryCheck\n        SubTree (ID = Dock, to = x)\n",
+    )
+
+
+def test_the_short_form_of_a_file() -> None:
+    check_action(
+        """
+        BehaviorTree ID = Main
+            -> $0(name = "BatteryCheck")
+                SubTree (ID = Dock, to = x)
+                ScriptAction (name = "MoveBase" satisfices Quality = performance)
+                Pick (name = "two words" a = 1)
+        """,
+        "Write the file in the short form",
+        """
+        BehaviorTree Main
+            -> BatteryCheck
+                SubTree Dock (to = x)
+                MoveBase (satisfices performance)
+                Pick "two words" (a = 1)
+        """,
+    )
+
+
+def test_what_is_short_already() -> None:
+    check_no_action("BehaviorTree Main\n    $0-> First\n        SubTree Dock (to = x)\n", "Write the")

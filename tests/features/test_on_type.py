@@ -1,0 +1,59 @@
+"""What happens while one types: new lines, brackets, names that are written together."""
+
+from __future__ import annotations
+
+import pytest
+from feature_asserts import check_linked, check_typed
+
+
+@pytest.mark.parametrize(
+    ("text", "after"),
+    [
+        # A block is opened by trees, requirements, models, controls and decorators, not by leaves.
+        ("BehaviorTree Main\n$0", "BehaviorTree Main\n    "),
+        ("BehaviorTree Main\n    ->\n    $0", "BehaviorTree Main\n    ->\n        "),
+        ("BehaviorTree Main\n    Retry First (n = 3)\n    $0", "BehaviorTree Main\n    Retry First (n = 3)\n        "),
+        ("BehaviorTree Main\n    Pick\n$0", "BehaviorTree Main\n    Pick\n    "),
+        ("BehaviorTree Main\n    SubTree Dock\n$0", "BehaviorTree Main\n    SubTree Dock\n    "),
+        ("Decorator Wrap\nBehaviorTree Main\n    Wrap\n$0", "Decorator Wrap\nBehaviorTree Main\n    Wrap\n        "),
+        ("Action Pick\n$0", "Action Pick\n    "),
+        ('QualityReq rq "x"\n$0', 'QualityReq rq "x"\n    '),
+        ('QualityReq rq "x"\n    takes at most 1 s\n$0', 'QualityReq rq "x"\n    takes at most 1 s\n    '),
+        (
+            'BehaviorTree Main\n    Pick\n        satisfies QualityReq rq "x"\n$0',
+            'BehaviorTree Main\n    Pick\n        satisfies QualityReq rq "x"\n            ',
+        ),
+        ("BehaviorTree Main\n    -> satisfies rq\n$0", "BehaviorTree Main\n    -> satisfies rq\n        "),
+        ("Root Main\n$0", "Root Main\n"),
+        # Between lines, too, and behind blank ones and comments.
+        ("BehaviorTree Main\n    ->\n$0\n        Pick\n", "BehaviorTree Main\n    ->\n        \n        Pick\n"),
+        ("BehaviorTree Main\n    ->  # first\n\n$0", "BehaviorTree Main\n    ->  # first\n\n        "),
+        # In brackets, and when they are closed.
+        ("BehaviorTree Main\n    Pick (\n$0", "BehaviorTree Main\n    Pick (\n        "),
+        (
+            "BehaviorTree Main\n    Pick (\n        a = 1\n        )$0",
+            "BehaviorTree Main\n    Pick (\n        a = 1\n    )",
+        ),
+        ("BehaviorTree Main\n    Pick (a = 1)$0", "BehaviorTree Main\n    Pick (a = 1)"),
+        # Not inside texts.
+        ('BehaviorTree Main\n    Pick (a = "x\n$0y")\n', 'BehaviorTree Main\n    Pick (a = "x\ny")\n'),
+    ],
+)
+def test_typed(text: str, after: str) -> None:
+    check_typed(text, after)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "QualityReq slow(<name>lim$0it</name> : m/s)\n    keeps v <= <name>limit</name>\n",
+        "Root Main\nBehaviorTree Other\n    Pick (a = {<name>k$0ey</name>} b = {<name>key</name>})\n",
+        # A name with quotes elsewhere, one that stands in another file, and one that stands alone are not linked.
+        "Root Main\nBehaviorTree Other\n    Pick (key = {=} b = {ke$0y})\n",
+        "//- main.btq\nsignal v$0 : m/s\n//- other.btq\nsignal w : m/s\n",
+        "QualityReq slow(lim$0it : m/s)\n",
+        "BehaviorTree Main\n    $0-> \n",
+    ],
+)
+def test_linked(text: str) -> None:
+    check_linked(text)
