@@ -181,7 +181,7 @@ _REPOSITORY: dict[str, Rule] = {
     # ---- requirements ----
     "requirement": _region(
         rf"(?<![\w-])(QualityReq)(?![\w-])(?!\s*=)\s*(?:(ID)\s*(=)\s*)?({_NAME})?",
-        rf"{_LINE}|(?=\))|(?=,)",
+        rf"{_LINE}|(?=\))|(?=,\s*(?!description\s*=)(?:QualityReq\b|{_NAME}\s*(?:$|[,)=(])))",
         (_ITEM, _ATTRIBUTE, _ASSIGN, _REQUIREMENT),
         *("parameters", "quality-type", "pair", *_CLAUSES),
     ),

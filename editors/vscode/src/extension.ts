@@ -1,11 +1,13 @@
 // What VS Code starts: the language client, its commands, the task, and what the status bar says.
 // One invariant: whatever goes wrong with the server is said once, with a button that helps, and the rest goes on working.
+import { execFile } from "node:child_process";
 import * as vscode from "vscode";
 import { LanguageClient, State, TransportKind } from "vscode-languageclient/node";
 
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
-import { CheckTasks, runCheck } from "./tasks";
+import { runTask, Tasks } from "./tasks";
+import { XmlView } from "./xml";
 
 let client: LanguageClient | undefined;
 let server: Server | undefined;
@@ -16,6 +18,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const status = vscode.languages.createLanguageStatusItem("btq.server", { language: "btq" });
   status.name = "btq";
   status.command = { command: "btq.showLog", title: "Show Log" };
+
+  const line = (): Promise<string[]> => commandLine(context);
+  const xml = new XmlView(context, line);
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
   const restart = (): Promise<void> => (turn = turn.then(() => start(context, log, status)));
@@ -28,10 +33,17 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
     vscode.commands.registerCommand("btq.newProject", () => newProject(context)),
     vscode.commands.registerCommand("btq.check", async () => {
-      const found = await runCheck(await commandLine(context));
+      const found = await runTask("check", await line());
       await vscode.commands.executeCommand("setContext", "btq.checkedClean", found === 0);
     }),
-    vscode.tasks.registerTaskProvider("btq", new CheckTasks(() => commandLine(context))),
+    vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
+    vscode.commands.registerCommand("btq.showXml", () => xml.show()),
+    vscode.tasks.registerTaskProvider("btq", new Tasks(line)),
+    vscode.workspace.onDidSaveTextDocument(async (document) => {
+      if (document.languageId === "btq" && vscode.workspace.getConfiguration("btq", document).get("buildOnSave")) {
+        await buildSaved(document, await line(), log);
+      }
+    }),
     vscode.workspace.onDidChangeConfiguration((change) => {
       if (["btq.interpreter", "btq.importStrategy", "btq.server"].some((name) => change.affectsConfiguration(name))) {
         void restart();
@@ -135,12 +147,7 @@ async function newProject(context: vscode.ExtensionContext): Promise<void> {
   if (folder === undefined) return;
   const [command, ...args] = await commandLine(context);
   if (command === undefined) return;
-  const { execFile } = await import("node:child_process");
-  const said = await new Promise<string>((resolve) =>
-    execFile(command, [...args, "init", folder.fsPath], (error, _, complaint) =>
-      resolve(error ? complaint.trim() || error.message : ""),
-    ),
-  );
+  const said = await complaint(command, [...args, "init", folder.fsPath]);
   if (said) {
     void vscode.window.showErrorMessage(said);
     return;
@@ -149,6 +156,25 @@ async function newProject(context: vscode.ExtensionContext): Promise<void> {
     vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });
   }
   await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, "mission.btq"));
+}
+
+/** The XML of what was saved, beside it; what is wrong with the mission is shown already. */
+async function buildSaved(
+  document: vscode.TextDocument,
+  [command, ...args]: string[],
+  log: vscode.LogOutputChannel,
+): Promise<void> {
+  if (command === undefined) return;
+  const said = await complaint(command, [...args, "build", document.uri.fsPath]);
+  if (said) log.warn(`not built: ${said}`);
+  vscode.window.setStatusBarMessage(said ? "$(warning) btq: no XML written" : "$(check) btq: XML written", 4000);
+}
+
+/** What a command says went wrong; empty: nothing. */
+function complaint(command: string, words: string[]): Promise<string> {
+  return new Promise((resolve) =>
+    execFile(command, words, (error, _, said) => resolve(error ? said.trim() || error.message : "")),
+  );
 }
 
 /** The command line of btq that belongs to the server; empty, with a message, where there is no Python. */

@@ -1,53 +1,74 @@
-// The task `btq: check`: the same command as on a build server, its findings in the Problems view.
+// The tasks `btq: check` and `btq: build`: the same commands as on a build server, what they find in the Problems view.
 import * as vscode from "vscode";
 
-interface CheckDefinition extends vscode.TaskDefinition {
+type Command = "check" | "build";
+
+interface Definition extends vscode.TaskDefinition {
+  readonly command: Command;
   readonly arguments?: string[];
 }
 
-export class CheckTasks implements vscode.TaskProvider {
+const DETAILS: Record<Command, string> = {
+  check: "finds mistakes in all missions",
+  build: "writes the XML that BehaviorTree.CPP loads",
+};
+
+export class Tasks implements vscode.TaskProvider {
   constructor(private readonly commandLine: () => Promise<string[]>) {}
 
   async provideTasks(): Promise<vscode.Task[]> {
-    const task = checkTask({ type: "btq", command: "check" }, await this.commandLine());
-    return task ? [task] : [];
+    const line = await this.commandLine();
+    const commands = Object.keys(DETAILS) as Command[];
+    return commands.flatMap((command) => taskOf({ type: "btq", command }, line) ?? []);
   }
 
   async resolveTask(task: vscode.Task): Promise<vscode.Task | undefined> {
-    return checkTask(task.definition as CheckDefinition, await this.commandLine(), task.scope);
+    return taskOf(task.definition as Definition, await this.commandLine(), task.scope);
   }
 }
 
-/** Run the check and wait for its end; its exit code, undefined where it could not run. */
-export async function runCheck(commandLine: string[]): Promise<number | undefined> {
-  const task = checkTask({ type: "btq", command: "check" }, commandLine);
+/** Run a command on the whole folder and wait for its end; its exit code, undefined where it could not run. */
+export async function runTask(command: Command, commandLine: string[]): Promise<number | undefined> {
+  const task = taskOf({ type: "btq", command }, commandLine);
   if (!task) return undefined;
-  const execution = await vscode.tasks.executeTask(task);
-  return new Promise((resolve) => {
+  let execution: vscode.TaskExecution | undefined;
+  const early = new Map<vscode.TaskExecution, number | undefined>();
+  return new Promise((resolve, reject) => {
+    // Listening begins before the start: a short command may be over before it is said to run.
     const listener = vscode.tasks.onDidEndTaskProcess((ended) => {
-      if (ended.execution === execution) {
-        listener.dispose();
-        resolve(ended.exitCode);
-      }
+      early.set(ended.execution, ended.exitCode);
+      finish();
     });
+    const finish = (): void => {
+      if (execution && early.has(execution)) {
+        listener.dispose();
+        resolve(early.get(execution));
+      }
+    };
+    vscode.tasks.executeTask(task).then((running) => {
+      execution = running;
+      finish();
+    }, reject);
   });
 }
 
-function checkTask(
-  definition: CheckDefinition,
-  [command, ...args]: string[],
+function taskOf(
+  definition: Definition,
+  [program, ...args]: string[],
   scope?: vscode.Task["scope"],
 ): vscode.Task | undefined {
-  if (command === undefined) return undefined;
-  const words = [...args, "check", "--output-format", "concise", ...(definition.arguments ?? [])];
+  if (program === undefined) return undefined;
+  const { command } = definition;
+  const words = [...args, command, ...(command === "check" ? ["--output-format", "concise"] : [])];
   const task = new vscode.Task(
     definition,
     scope ?? vscode.TaskScope.Workspace,
-    "check",
+    command,
     "btq",
-    new vscode.ProcessExecution(command, words),
+    new vscode.ProcessExecution(program, [...words, ...(definition.arguments ?? [])]),
     "$btq",
   );
+  task.detail = DETAILS[command];
   task.group = vscode.TaskGroup.Build;
   task.presentationOptions = { reveal: vscode.TaskRevealKind.Always, clear: true };
   return task;

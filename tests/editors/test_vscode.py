@@ -1,0 +1,183 @@
+"""VS Code with the package of this checkout: one window, in which a person works through these tests in turn."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, STORE, there
+from workbench import Workbench, workbench
+
+pytest.importorskip("playwright", reason="the browser's driver is not installed: tests/editors/install.sh")
+
+WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
+ENVIRONMENT = {
+    "btq.interpreter": sys.executable,
+    "files.autoSave": "off",
+    "security.workspace.trust.enabled": False,
+    "workbench.startupEditor": "none",
+    "workbench.colorTheme": "Default Dark Modern",
+    "workbench.tips.enabled": False,
+    "workbench.secondarySideBar.defaultVisibility": "hidden",
+    "chat.disableAIFeatures": True,
+    # What is proposed without being asked for comes when it comes, and would take an Enter of these tests for its own.
+    "[btq]": {"editor.formatOnSave": True, "editor.quickSuggestions": {"other": "off"}},
+}
+
+
+@pytest.fixture(scope="module")
+def window(vsix: Path, node: Path, artifacts: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Workbench]:
+    there("/usr/bin/chromium", "Chromium")
+    there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code")
+    scratch = tmp_path_factory.mktemp("vscode")
+    files = ROOT / "examples" / "hospital"
+    with workbench(store=STORE, node=node, vsix=vsix, scratch=scratch, files=files, settings=ENVIRONMENT) as window:
+        yield window
+
+
+@pytest.fixture
+def code(window: Workbench, request: pytest.FixtureRequest, artifacts: Path) -> Iterator[Workbench]:
+    """The window with no editor open; how it looks at the end of the test is kept."""
+    yield window
+    window.shot(artifacts / f"vscode-{request.node.name}.png")
+    window.close_all()
+
+
+def test_an_example_is_clean_and_a_mistake_is_underlined(code: Workbench) -> None:
+    code.open("missions/deliver.btq")
+    code.write("wrong.btq", WRONG)
+    code.open("wrong.btq")
+    code.see(".squiggly-warning, .squiggly-error")
+    assert code.problems("unknown node `Sequnce`")[0].endswith("btq unknown-node [Ln 3, Col 9]")
+
+
+def test_mending_it_empties_the_problems(code: Workbench) -> None:
+    code.write("wrong.btq", WRONG)
+    code.open("wrong.btq")
+    code.problems("unknown node `Sequnce`")
+    code.focus()
+    code.cursor(3, 9)
+    code.keys("Control+Shift+ArrowRight")
+    code.type("Sequence")
+    code.problems()
+    code.focus()
+    code.save()
+
+
+def test_saving_formats(code: Workbench) -> None:
+    code.write("untidy.btq", "BehaviorTree   Main\n  ->\n     Action   Dock( x=1 )\n")
+    code.open("untidy.btq")
+    code.focus()
+    code.keys("End")
+    code.type(" ")
+    code.save()
+    code.on_disk("untidy.btq", "BehaviorTree Main\n    ->\n        Action Dock (x = 1)\n")
+
+
+def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
+    code.write("typed.btq", "")
+    code.open("typed.btq")
+    for line, text, column in (
+        (2, "BehaviorTree Main", 5),
+        (3, "->", 9),
+        (4, "? Way", 13),
+        (5, "Dock", 13),
+        (6, "", 9),
+    ):
+        code.type(text)
+        code.keys("Enter")
+        code.at(line, column)
+    code.type("Charge")
+    code.keys("Enter")
+    code.at(7, 9)
+    code.type('Say (text = "a')  # the bracket and the quote are closed by themselves
+    code.save()
+    code.on_disk(
+        "typed.btq",
+        'BehaviorTree Main\n    ->\n        ? Way\n            Dock\n\n        Charge\n        Say (text = "a")\n',
+    )
+
+
+def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
+    code.write("snippet.btq", "")
+    code.open("snippet.btq")
+    code.type("req-time")
+    code.keys("Control+Space")
+    code.see(".suggest-widget.visible .monaco-list-row.focused:has-text('req-time')")
+    code.keys("Enter")
+    code.type("soon")
+    code.keys("Escape", "Escape")
+    code.save()
+    code.on_disk(
+        "snippet.btq",
+        'QualityReq soon : performance-efficiency.time-behaviour "Done in time"\n'
+        "    takes at most 30 s\n    on violation warn\n",
+    )
+
+
+def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench) -> None:
+    wrong = code.write("closed.btq", WRONG)
+    code.command("btq: Check All Missions")
+    code.see(".terminal-wrapper.active .xterm-accessibility-tree, .terminal-wrapper.active .xterm-screen")
+    assert "btq unknown-node" in " ".join(code.problems_of("closed.btq", 1))
+    wrong.unlink()
+
+
+def test_the_xml_beside_follows_what_is_typed(code: Workbench) -> None:
+    code.write("main.btq", "BehaviorTree Main\n    Dock\n")
+    code.open("main.btq")
+    code.command("btq: Show XML Beside")
+    code.see(".view-line:has-text('<Action ID=\"Dock\"/>'), .view-line:has-text('<Dock/>')")
+    code.cursor(2, 9)
+    code.type("Station")
+    code.see(".view-line:has-text('<DockStation/>')")
+    code.keys("Control+z")
+
+
+def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
+    code.settings(**{**ENVIRONMENT, "btq.buildOnSave": True})
+    code.write("built.btq", "BehaviorTree Main\n    Dock\n")
+    code.open("built.btq")
+    code.cursor(2, 9)
+    code.type("ToBench")
+    code.save()
+    code.until(lambda: (code.folder / "built.xml").exists(), lambda: "no built.xml")
+    assert "<DockToBench/>" in (code.folder / "built.xml").read_text()
+    code.settings(**ENVIRONMENT)
+
+
+def test_the_copy_in_the_package_serves_as_well(code: Workbench) -> None:
+    code.settings(**{**ENVIRONMENT, "btq.importStrategy": "useBundled"})
+    code.write("wrong.btq", WRONG)
+    code.open("wrong.btq")
+    code.see(".statusbar-item[id='status.languageStatus'] a").hover()
+    code.see(".hover-language-status:has-text('the copy in the extension, Python 3.')")
+    code.see(".squiggly-warning, .squiggly-error")
+    code.settings(**ENVIRONMENT)
+
+
+def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
+    code.settings(**{**ENVIRONMENT, "btq.interpreter": "/no/such/python"})
+    toast = code.see(".notification-toast:has-text('/no/such/python, which is no Python 3.10 or newer')")
+    assert toast.locator(".notification-list-item-buttons-container a").all_inner_texts() == [
+        "Choose Python…",
+        "Get Python",
+    ]
+    code.command("Notifications: Clear All Notifications")
+    code.settings(**ENVIRONMENT)
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_how_a_mission_looks(code: Workbench, theme: str) -> None:
+    code.settings(**{**ENVIRONMENT, "workbench.colorTheme": f"Default {theme.title()} Modern"})
+    code.see(".monaco-workbench.vs-dark" if theme == "dark" else ".monaco-workbench.vs:not(.vs-dark)")
+    code.write("every_form.btq", (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8"))
+    code.open("every_form.btq")
+    code.command("View: Toggle Panel Visibility")
+    # Comment, keyword, string, number, name of a node: five colours at least, or nothing is coloured.
+    colours = code.page.evaluate(
+        "new Set([...document.querySelectorAll('.view-line span span')].map(e => getComputedStyle(e).color)).size"
+    )
+    assert colours >= 6

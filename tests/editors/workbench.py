@@ -1,0 +1,253 @@
+"""VS Code's workbench in a headless Chromium, driven as a person does: keys, menus, and what stands on the screen.
+
+One invariant: nothing sleeps; every step waits for what a person would wait for.  It does not know btq.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import urllib.parse
+import urllib.request
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+# Without a network, without a graphics card, and with nothing of its own to say.
+_FLAGS = [
+    *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update"),
+]
+_WAIT = 40_000  # milliseconds; what takes longer on the busiest machine is broken
+
+
+class Workbench:
+    """One window.  Its files are in `folder`."""
+
+    def __init__(self, page: Page, origin: str, folder: Path, machine_settings: Path) -> None:
+        self.page, self.origin, self.folder = page, origin, folder
+        self._machine_settings = machine_settings
+
+    # ---- what a person does ----
+
+    def write(self, name: str, text: str) -> Path:
+        """A file on the disk, as another program would write it."""
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="")
+        return path
+
+    def open(self, name: str) -> None:
+        """Open a file by its path, in an editor alone."""
+        self.keys("Control+p")
+        box = self._quick_input()
+        box.fill(str(self.folder / name))
+        self.see(f".quick-input-list .monaco-list-row:has-text({json.dumps(Path(name).name)})")
+        self.keys("Enter")
+        self.gone(".quick-input-widget")
+        self.see(f".tab.active:has-text({json.dumps(Path(name).name)})")
+        self.focus()
+
+    def close_all(self) -> None:
+        """No editor is open, and nothing is asked about what was not saved."""
+        self.command("View: Revert and Close Editor") if self.page.locator(".tab.dirty").count() else None
+        self.command("View: Close All Editors")
+        self.gone(".tab")
+
+    def focus(self) -> None:
+        self.page.locator(".editor-instance .view-lines .view-line").first.click()
+
+    def command(self, title: str) -> None:
+        """Run a command of the palette."""
+        self.keys("F1")
+        self._quick_input().fill(f">{title}")
+        self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(title)})")
+        self.keys("Enter")
+
+    def cursor(self, line: int, column: int) -> None:
+        self.keys("Control+g")
+        self._quick_input().fill(f":{line}:{column}")
+        self.keys("Enter")
+        self.at(line, column)
+
+    def keys(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def type(self, text: str) -> None:
+        self.page.keyboard.type(text)
+
+    def save(self) -> None:
+        self.keys("Control+s")
+        self.gone(".tab.active.dirty")
+
+    def settings(self, **values: object) -> None:
+        """The machine's settings are these and no others."""
+        self._machine_settings.write_text(json.dumps(values))
+
+    # ---- what a person sees ----
+
+    def see(self, selector: str) -> Locator:
+        """Wait until it is there."""
+        found = self.page.locator(selector).first
+        found.wait_for(state="attached", timeout=_WAIT)
+        return found
+
+    def gone(self, selector: str) -> None:
+        """Wait until none is seen."""
+        self.page.wait_for_function(
+            "selector => ![...document.querySelectorAll(selector)].some(each => each.offsetParent !== null)",
+            arg=selector,
+            timeout=_WAIT,
+        )
+
+    def at(self, line: int, column: int) -> None:
+        """Wait until the status bar says that the cursor is there."""
+        self.see(f".statusbar-item:has-text('Ln {line}, Col {column}')")
+
+    def problems(self, *texts: str) -> list[str]:
+        """Wait until the Problems view has exactly these findings, each somewhere in its row; the rows."""
+        self.command("Problems: Focus on Problems View")
+        rows = self.page.locator(".markers-panel .monaco-list-row:has(.marker-icon)")
+        self.until(
+            lambda: rows.count() == len(texts) and all(map(str.__contains__, rows.all_inner_texts(), texts)),
+            lambda: f"Problems: {rows.all_inner_texts()}",
+        )
+        return [re.sub(r"\s+", " ", row) for row in rows.all_inner_texts()]
+
+    def problems_of(self, name: str, count: int) -> list[str]:
+        """Wait until the Problems view has so many findings in a file, open or not; their rows."""
+        self.command("Problems: Focus on Problems View")
+        self.see(f".markers-panel .monaco-list-row:has-text({json.dumps(name)}):has-text('{count}')")
+        rows = self.page.locator(".markers-panel .monaco-list-row:has(.marker-icon)").all_inner_texts()
+        return [re.sub(r"\s+", " ", row) for row in rows]
+
+    def on_disk(self, name: str, text: str) -> None:
+        """Wait until the file has this text."""
+        path = self.folder / name
+        self.until(
+            lambda: path.exists() and path.read_text(encoding="utf-8") == text,
+            lambda: f"{name}: {path.read_text(encoding='utf-8') if path.exists() else 'not there'}",
+        )
+
+    def suggestions(self) -> list[str]:
+        """What is proposed at the cursor, from the first row that is seen."""
+        self.keys("Control+Space")
+        self.see(".suggest-widget.visible .monaco-list-row")
+        return [row.split("\n")[0] for row in self.page.locator(".suggest-widget .monaco-list-row").all_inner_texts()]
+
+    def text(self) -> list[str]:
+        """The lines of the active editor that are on the screen."""
+        lines = self.page.locator(".editor-group-container.active .view-lines .view-line")
+        placed = [
+            (float(re.sub(r"[^\d.]", "", line.evaluate("e => e.style.top"))), line.inner_text()) for line in lines.all()
+        ]
+        return [text.replace("\xa0", " ").rstrip() for _, text in sorted(placed)]
+
+    def shot(self, path: Path) -> None:
+        self.page.screenshot(path=str(path))
+
+    def until(self, condition: Callable[[], bool], otherwise: Callable[[], str]) -> None:
+        """Wait for what only Python can see."""
+        for _ in range(_WAIT // 50):
+            if condition():
+                return
+            self.page.wait_for_timeout(50)
+        raise AssertionError(otherwise())
+
+    def _quick_input(self) -> Locator:
+        box = self.page.locator(".quick-input-widget input:visible").first
+        box.wait_for(timeout=_WAIT)
+        return box
+
+
+@contextmanager
+def workbench(
+    *, store: Path, node: Path, vsix: Path, scratch: Path, files: Path | None, settings: dict[str, Any]
+) -> Iterator[Workbench]:
+    """A server with the package installed, and one window on a folder.
+
+    Args:
+        store: where VS Code was installed.
+        scratch: an empty folder for all that it writes.
+        files: a folder whose files the window's folder begins with.
+        settings: of the machine: those of the user reach a window late now and then.
+    """
+    from playwright.sync_api import sync_playwright
+
+    folder = scratch / "missions"
+    shutil.copytree(files, folder) if files else folder.mkdir()
+    extension = scratch / "extensions" / "btq.btq-0.1.0"
+    with zipfile.ZipFile(vsix) as archive:
+        archive.extractall(scratch / "unpacked")
+    extension.parent.mkdir()
+    shutil.move(scratch / "unpacked" / "extension", extension)
+    machine = scratch / "user" / "Machine" / "settings.json"
+    machine.parent.mkdir(parents=True)
+    machine.write_text(json.dumps(settings))
+    with _server(store, node, scratch) as origin, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=_FLAGS, env=_home(scratch))
+        page = browser.new_page(viewport={"width": 1400, "height": 900})
+        page.set_default_timeout(_WAIT)
+        page.goto(f"{origin}/?folder={urllib.parse.quote(str(folder))}")
+        page.wait_for_selector(".monaco-workbench .part.editor", timeout=_WAIT)
+        page.wait_for_selector(".explorer-folders-view .monaco-list-row, .explorer-folders-view .monaco-list-rows")
+        try:
+            yield Workbench(page, origin, folder, machine)
+        finally:
+            page.goto("about:blank")  # ends the extension host and its server at once; closing waits for hours
+            browser.close()
+
+
+@contextmanager
+def _server(store: Path, node: Path, scratch: Path) -> Iterator[str]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    config = scratch / "config.yaml"
+    config.write_text(f"bind-addr: 127.0.0.1:{port}\nauth: none\ncert: false\n")
+    places = ("--config", config, "--user-data-dir", scratch / "user", "--extensions-dir", scratch / "extensions")
+    flags = (
+        *("--disable-telemetry", "--disable-update-check", "--disable-workspace-trust"),
+        *("--disable-getting-started-override", "--reconnection-grace-time", "5"),
+    )
+    entry = store / "vscode/node_modules/code-server/out/node/entry.js"
+    with (scratch / "server.log").open("wb") as log:
+        process = subprocess.Popen(
+            [str(node), str(entry), *map(str, places), *flags], stdout=log, stderr=log, env=_home(scratch), cwd=scratch
+        )
+        try:
+            origin = f"http://127.0.0.1:{port}"
+            _answers(f"{origin}/healthz", process)
+            yield origin
+        finally:
+            process.terminate()
+            process.wait(30)
+
+
+def _answers(url: str, process: subprocess.Popen[bytes]) -> None:
+    """Wait for the server: asking again at once is the waiting, for a refused connection takes its time."""
+    import time
+
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        assert process.poll() is None, "the server ended"
+        try:
+            with urllib.request.urlopen(url, timeout=5):
+                return
+        except OSError:
+            process.poll()
+    raise AssertionError("the server does not answer")
+
+
+def _home(scratch: Path) -> dict[str, str]:
+    return {**os.environ, "HOME": str(scratch), "XDG_CONFIG_HOME": str(scratch), "XDG_CACHE_HOME": str(scratch)}

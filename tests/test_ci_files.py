@@ -1,0 +1,76 @@
+"""What other people's CI runs of ours: the commands in the hooks and in the action do what they say."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[1]
+CLEAN = "BehaviorTree Main\n    Dock\n"
+WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
+
+
+def read(name: str) -> Any:
+    return yaml.safe_load((ROOT / name).read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def programs(tmp_path: Path) -> dict[str, str]:
+    """An environment in which `btq` is this checkout's."""
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    program = folder / "btq"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m btq_lang "$@"\n')
+    program.chmod(0o755)
+    return {**os.environ, "PATH": f"{folder}{os.pathsep}{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize(
+    ("hook", "text", "code"),
+    [
+        ("btq-check", CLEAN, 0),
+        ("btq-check", WRONG, 1),
+        ("btq-format", WRONG.replace("  ", " "), 0),
+        ("btq-build", CLEAN, 1),
+    ],
+)
+def test_a_hook_runs(hook: str, text: str, code: int, tmp_path: Path, programs: dict[str, str]) -> None:
+    (tmp_path / "main.btq").write_text(text)
+    (entry,) = (each["entry"] for each in read(".pre-commit-hooks.yaml") if each["id"] == hook)
+    run = subprocess.run([*entry.split(), "main.btq"], cwd=tmp_path, env=programs, capture_output=True)
+    assert run.returncode == code, run.stdout + run.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize(
+    ("step", "code", "said"),
+    [
+        ("Check", 1, "::warning file=main.btq,line=3,"),
+        ("Format", 0, ""),
+        ("Build", 1, "main.xml"),
+    ],
+)
+def test_a_step_of_the_action_runs(step: str, code: int, said: str, tmp_path: Path, programs: dict[str, str]) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    action = read("action.yml")
+    (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
+    defaults = {f"${{{{ inputs.{name} }}}}": given["default"] for name, given in action["inputs"].items()}
+    values = {name: defaults[value] for name, value in body["env"].items()}
+    run = subprocess.run(
+        ["bash", "-e", "-c", body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True
+    )
+    assert run.returncode == code, run.stdout + run.stderr
+    assert said in run.stdout + run.stderr
+
+
+def test_every_job_tests_the_versions_that_are_promised() -> None:
+    matrix = read(".github/workflows/ci.yml")["jobs"]["python"]["strategy"]["matrix"]
+    assert matrix["python"] == ["3.10", "3.11", "3.12", "3.13", "3.14"]
+    assert matrix["system"] == ["ubuntu-latest", "macos-latest", "windows-latest"]
