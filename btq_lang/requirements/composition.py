@@ -1,0 +1,543 @@
+"""How long a node takes when it is known how long its children do: a rule for each built-in.
+
+One invariant: no run of the engine takes less or more than the ranges say, if its children keep to theirs.  Two things
+are left out: the time between two ticks, and that the variable of a Switch changes while a case runs.  It knows no
+requirements: `budgets` brings them in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import inf
+
+from btq_lang.quantities import parse_quantity
+from btq_lang.record import record, replace
+from btq_lang.requirements.durations import (
+    ANY,
+    ZERO,
+    Range,
+    cut,
+    from_zero,
+    hull,
+    plus,
+    times,
+    total,
+    without_end,
+)
+from btq_lang.requirements.model import SourceNode
+from btq_lang.tokens import QUANTITY
+from btq_lang.units import to_si
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+@record
+class Gap:
+    """Why no bound can be said: the node, and the reason in words to stand behind its name."""
+
+    node: SourceNode
+    reason: str
+
+
+@record
+class Budget:
+    """How long a node takes.
+
+    Attributes:
+        success, failure: an activation that succeeds or fails; None: none does.
+        skip: until it is skipped.
+        waits: it may return RUNNING, so it can be interrupted.
+        probability: at least that likely all holds that the ranges rest on (by the union bound).
+        gaps: why there is no upper bound, where there is none.
+    """
+
+    success: Range | None
+    failure: Range | None
+    skip: Range | None = None
+    waits: bool = True
+    probability: float = 1.0
+    gaps: tuple[Gap, ...] = ()
+
+    @property
+    def completes(self) -> Range | None:
+        """An activation that succeeds or fails."""
+        return hull(self.success, self.failure)
+
+    @property
+    def anything(self) -> Range | None:
+        """However it ends."""
+        return hull(self.success, self.failure, self.skip)
+
+
+def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """How long a node takes, from its kind, its ports and its children's budgets; SubTrees and custom nodes are not
+    known here.
+
+    Args:
+        children: one for each, verbatim XML too; their terms are the children themselves.
+    """
+    if node.tag in _LEAVES:
+        return _LEAVES[node.tag]
+    if node.tag == "Sleep":
+        return _sleep(node)
+    rule = _RULES.get("Switch" if node.tag.startswith("Switch") else node.tag)
+    if rule is None or not children or (node.category == "Decorator" and len(children) != 1):
+        return unknown(node, "is a node of which nobody knows how long it takes")
+    found = rule(node, children)
+    if found is None:
+        return unknown(node, "has children that do not fit it")
+    waits = found.waits or (node.kind is not None and node.kind.execution == "asynchronous")
+    longest = found.anything
+    if longest is None or longest.high < inf:
+        return replace(found, waits=waits, gaps=())
+    inner = tuple(gap for child in children for gap in child.gaps)
+    return replace(found, waits=waits, gaps=tuple(dict.fromkeys((*found.gaps, *inner)))[:_MOST_GAPS])
+
+
+def unknown(node: SourceNode, reason: str) -> Budget:
+    """It can do anything, and take any time."""
+    return Budget(ANY, ANY, ANY, gaps=(Gap(node, reason),))
+
+
+def port_seconds(node: SourceNode, port: str) -> float | None:
+    """The milliseconds that are written as the value of a port, in seconds; None where another thing is, or nothing."""
+    word = node.node.attribute(port)
+    if word is None:
+        return None
+    quantity = parse_quantity(word.text) if word.kind == QUANTITY else None
+    if quantity is not None:
+        return max(round(to_si(quantity[0], quantity[1]) * 1000), 0) / 1000
+    return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
+
+
+def port_count(node: SourceNode, port: str, default: int | None = None) -> int | None:
+    """The whole number that is written as the value of a port; None where another thing is."""
+    word = node.node.attribute(port)
+    if word is None:
+        return default
+    text = word.text
+    return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
+
+
+# ---- control nodes ----
+
+
+def _sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
+    return _made(children, go, end, skip)
+
+
+def _fallback(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    go, end, skip = _in_order([(each.failure, each.success, each.skip) for each in children])
+    return _made(children, end, go, skip)
+
+
+def _in_order(
+    parts: Sequence[tuple[Range | None, Range | None, Range | None]],
+) -> tuple[Range | None, Range | None, Range | None]:
+    """One after the other, as long as each goes on: the outcome of going on, of ending, and of skipping all."""
+    passed: Range | None = ZERO
+    ended: Range | None = None
+    for go, end, skip in parts:
+        ended = hull(ended, plus(passed, end))
+        passed = plus(passed, hull(go, skip))
+    return passed, ended, total(skip for _, _, skip in parts)
+
+
+def _with_memory(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """As a Sequence, but after a failure or a halt it begins with the child that failed: any part of it may be done."""
+    go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in children])
+    last = hull(children[-1].success, children[-1].skip)
+    first = min((each.failure.low for each in children if each.failure is not None), default=0.0)
+    return _made(
+        children,
+        replace(go, low=last.low) if go is not None and last is not None else None,
+        replace(end, low=first) if end is not None else None,
+        from_zero(skip),
+    )
+
+
+def _reactive_sequence(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    found = _sequence(node, children)
+    return _reactive(node, children, found, "failure")
+
+
+def _reactive_fallback(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    found = _fallback(node, children)
+    return _reactive(node, children, found, "success")
+
+
+def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends: str) -> Budget:
+    """A child in front of the one that runs is asked at every tick, and may end the whole."""
+    waiting = [index for index, child in enumerate(children) if child.waits]
+    if len(waiting) > 1:
+        gap = Gap(node, "has several children that take time, and each of them may be started again and again")
+        return replace(
+            found,
+            success=ANY if found.success is not None else None,
+            failure=ANY if found.failure is not None else None,
+            skip=ANY if found.skip is not None else None,
+            probability=0.0 if found.probability < 1.0 else 1.0,
+            gaps=(gap,),
+        )
+    before = children[: waiting[0]] if waiting else ()
+    if any(getattr(child, ends) is not None for child in before):
+        running = from_zero(children[waiting[0]].anything)
+        return replace(found, **{ends: hull(getattr(found, ends), running)})
+    return found
+
+
+def _parallel(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+    """Counts how many have succeeded and how many have failed, and is done when one of both is enough."""
+    n = len(children)
+    wanted, failures = port_count(node, "success_count", -1), port_count(node, "failure_count", 1)
+    everything = [child.anything for child in children]
+    wanted = n + wanted + 1 if wanted is not None and wanted < 0 else wanted
+    failures = n + failures + 1 if failures is not None and failures < 0 else failures
+    asks_again = port_count(node, "success_count", -1) not in range(-n, 0)
+    if (with_skips := _with_skips(node, children, asks_again)) is not None:
+        return with_skips
+    if wanted is None or failures is None or None in everything:
+        longest = from_zero(_slowest(everything))
+        return _made(children, longest, longest, longest)
+    if not 0 < wanted <= n or not 0 < failures <= n:
+        return None
+    enough = min(failures, n - wanted + 1)
+    highs = sorted((each for each in everything if each is not None), key=lambda each: each.high)
+    last = highs[wanted + enough - 2]
+    succeeds = _nth(children, "success", wanted)
+    fails = _nth(children, "failure", enough)
+    return _made(
+        children,
+        replace(last, low=succeeds) if succeeds < inf else None,
+        replace(last, low=fails) if fails < inf else None,
+        None,
+    )
+
+
+def _with_skips(node: SourceNode, children: Sequence[Budget], asks_again: bool) -> Budget | None:
+    """All at once, where some may be skipped; None: none may.  Who is skipped is asked again as long as another runs,
+    so they may as well run one after the other; two that are interrupted by a skip may keep each other going.
+
+    Args:
+        asks_again: a skipped child does not count, so the others wait for it.
+    """
+    skips = [child.skip for child in children if child.skip is not None]
+    if not skips:
+        return None
+    if asks_again or sum(skip.high > 0.0 for skip in skips) > 1:
+        gap = Gap(node, "asks a child that was skipped again and again")
+        likely = _likely([child.probability for child in children], None)
+        return Budget(ANY, ANY, ANY, probability=likely, gaps=(gap,))
+    longest = from_zero(total(child.anything or ZERO for child in children))
+    return _made(children, longest, longest, longest)
+
+
+def _nth(children: Sequence[Budget], outcome: str, count: int) -> float:
+    """When that many can have ended so, at the earliest."""
+    found = [getattr(child, outcome) for child in children]
+    return sorted(each.low if each is not None else inf for each in found)[count - 1]
+
+
+def _parallel_all(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """Waits for all of them, then counts the failures."""
+    n = len(children)
+    most = port_count(node, "max_failures", 1)
+    most = n + most + 1 if most is not None and most < 0 else most
+    if (with_skips := _with_skips(node, children, False)) is not None:
+        return with_skips
+    longest = _slowest([child.anything for child in children])
+    if longest is None:
+        return _made(children, None, None, None)
+    always = sum(child.success is None for child in children)
+    maybe = sum(child.failure is not None for child in children)
+    fails = most is None or maybe >= most
+    succeeds = most is None or always < most
+    return _made(children, longest if succeeds else None, longest if fails else None, None)
+
+
+def _slowest(ranges: Sequence[Range | None]) -> Range | None:
+    """All at once: it takes as long as the longest; None: one of them never ends."""
+    found = [each for each in ranges if each is not None]
+    if len(found) < len(ranges):
+        return None
+    return replace(max(found, key=lambda each: each.high), low=max(each.low for each in found))
+
+
+def _if_then_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+    if len(children) not in (2, 3):
+        return None
+    condition, then = children[0], children[1]
+    otherwise = children[2] if len(children) == 3 else Budget(None, ZERO, None, False)
+    return replace(
+        _made(
+            children,
+            hull(plus(condition.success, then.success), plus(condition.failure, otherwise.success)),
+            hull(plus(condition.success, then.failure), plus(condition.failure, otherwise.failure)),
+            hull(plus(condition.success, then.skip), plus(condition.failure, otherwise.skip)),
+        ),
+        probability=_likely([condition.probability, min(then.probability, otherwise.probability)]),
+    )
+
+
+def _while_do_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+    """Like IfThenElse, but the condition is asked at every tick and may change its mind."""
+    found = _if_then_else(node, children)
+    if found is None:
+        return None
+    condition, *branches = children
+    if condition.waits or (len(branches) == 2 and all(branch.waits for branch in branches)):
+        changes = condition.success is not None and condition.failure is not None
+        if condition.waits or changes:
+            gap = Gap(node, "asks its condition at every tick, so its branches may be started again and again")
+            return Budget(ANY, ANY, ANY, gaps=(gap,), probability=0.0 if found.probability < 1.0 else 1.0)
+        return found
+    running = from_zero(total(branch.anything or ZERO for branch in branches))
+    if condition.failure is None or condition.success is None:
+        return found
+    return replace(
+        found,
+        success=hull(found.success, running) if len(branches) == 2 else found.success,
+        failure=hull(found.failure, running),
+        skip=hull(found.skip, running) if found.skip is not None else None,
+        probability=_likely([child.probability for child in children]),
+    )
+
+
+def _switch(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    cases = children if node.node.attribute("variable") is not None else children[-1:]
+    found = _made(
+        children,
+        hull(*(child.success for child in cases)),
+        hull(*(child.failure for child in cases)),
+        hull(*(child.skip for child in cases)),
+    )
+    return replace(found, probability=min(child.probability for child in cases))
+
+
+def _try_catch(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
+    """The last child cleans up after a failure; whatever it says, it was one."""
+    if len(children) < 2:
+        return None
+    *tried, catch = children
+    go, end, skip = _in_order([(each.success, each.failure, each.skip) for each in tried])
+    return _made(children, go, plus(end, catch.anything), skip)
+
+
+# ---- decorators ----
+
+
+def _inverter(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    return replace(child, success=child.failure, failure=child.success)
+
+
+def _force_success(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    return replace(child, success=child.completes, failure=None)
+
+
+def _force_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    return replace(child, success=None, failure=child.completes)
+
+
+def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    count = port_count(node, "num_attempts")
+    go, end, skip, gaps = _again(node, child.failure, child.success, child.skip, count)
+    return Budget(end, go, skip, True, _likely([child.probability], count), gaps)
+
+
+def _repeat(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    count = port_count(node, "num_cycles")
+    go, end, skip, gaps = _again(node, child.success, child.failure, child.skip, count)
+    return Budget(go, end, skip, True, _likely([child.probability], count), gaps)
+
+
+def _again(
+    node: SourceNode, go: Range | None, end: Range | None, skip: Range | None, count: int | None
+) -> tuple[Range | None, Range | None, Range | None, tuple[Gap, ...]]:
+    """Again and again while it goes on, `count` times at most: the outcome of having gone on so often, of ending
+    before, and of being skipped; a skip keeps the count, so that the next activation has fewer to go."""
+    if count == 0 or (count is not None and count < -1):
+        return ZERO, None, ZERO, ()
+    if count is None or count == -1:
+        reason = "has no end" if count == -1 else "is told by the blackboard how often it runs its child"
+        gaps = (Gap(node, reason),)
+        if count == -1:
+            return None, _before(go, end, inf), _before(go, skip, inf), gaps
+        return without_end(hull(go, ZERO)), _before(go, end, inf), hull(_before(go, skip, inf), ZERO), gaps
+    all_of_it = times(count, go)
+    if skip is not None and all_of_it is not None and go is not None:
+        all_of_it = replace(all_of_it, low=go.low)
+    return all_of_it, _before(go, end, count - 1), _before(go, skip, count - 1), ()
+
+
+def _before(go: Range | None, end: Range | None, count: float) -> Range | None:
+    """`end` after at most `count` times `go`."""
+    if go is None or end is None or count == 0:
+        return end
+    if count == inf:
+        return without_end(end) if go.high > 0.0 else end
+    return hull(end, plus(times(int(count), go), end))
+
+
+def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """It can interrupt only what returns RUNNING."""
+    (child,) = children
+    limit = port_seconds(node, "msec")
+    longest = child.anything
+    if limit == 0 or not child.waits or longest is None:
+        return child
+    if limit is None:
+        return replace(child, failure=hull(child.failure, from_zero(longest)))
+    runs_out = Range(limit, limit, tuple(replace(term, seconds=limit) for term in longest.terms[:1]))
+    return replace(
+        child,
+        success=cut(child.success, limit),
+        failure=hull(cut(child.failure, limit), runs_out if longest.high > limit else None),
+        skip=cut(child.skip, limit),
+    )
+
+
+def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    seconds = port_seconds(node, "delay_msec")
+    wait = ANY if seconds is None else Range(seconds, seconds)
+    gaps = () if seconds is not None else (Gap(node, "is told by the blackboard how long it waits"),)
+    return replace(
+        child,
+        success=plus(wait, child.success),
+        failure=plus(wait, child.failure),
+        skip=plus(wait, child.skip),
+        waits=True,
+        gaps=gaps,
+    )
+
+
+def _keep_running(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    again = child.success is not None or child.skip is not None
+    failure = without_end(child.failure) if again else child.failure
+    likely = child.probability if child.probability == 1.0 or not again else 0.0
+    gaps = (Gap(node, "repeats its child until it fails"),) if again else ()
+    return Budget(None, failure, None, True, likely, gaps)
+
+
+def _run_once(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """Later it is skipped, or says at once what it said before."""
+    (child,) = children
+    return replace(
+        child,
+        success=hull(child.success, ZERO) if child.success is not None else None,
+        failure=hull(child.failure, ZERO) if child.failure is not None else None,
+        skip=hull(child.skip, ZERO),
+    )
+
+
+def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    """4.6 asks at every tick, later ones when the child starts."""
+    (child,) = children
+    word = node.node.attribute("else")
+    status = word.text if word is not None else "FAILURE"
+    running = hull(from_zero(child.anything), ZERO)
+    if status not in ("SUCCESS", "FAILURE", "SKIPPED"):
+        return Budget(running, running, running, True, child.probability)
+    key = {"SUCCESS": "success", "FAILURE": "failure", "SKIPPED": "skip"}[status]
+    return replace(child, **{key: hull(getattr(child, key), running)})
+
+
+def _loop(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    longest = child.anything
+    if longest is not None and longest.high == 0.0:
+        return Budget(ZERO, ZERO, ZERO, True, child.probability)
+    gap = Gap(node, "runs its child for each item of a queue, and nobody knows how many there are")
+    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, (gap,))
+
+
+def _skip_unless_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    return replace(child, skip=hull(child.skip, ZERO))
+
+
+def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
+    (child,) = children
+    return replace(
+        child,
+        success=without_end(child.success),
+        failure=without_end(child.failure),
+        skip=without_end(child.skip),
+        waits=True,
+        gaps=(Gap(node, "waits for somebody to write an entry"),),
+    )
+
+
+def _sleep(node: SourceNode) -> Budget:
+    seconds = port_seconds(node, "msec")
+    if seconds is None:
+        return Budget(ANY, None, gaps=(Gap(node, "is told by the blackboard how long it waits"),))
+    return Budget(Range(seconds, seconds), None)
+
+
+def _made(children: Sequence[Budget], success: Range | None, failure: Range | None, skip: Range | None) -> Budget:
+    waits = any(child.waits for child in children)
+    return Budget(success, failure, skip, waits, _likely([child.probability for child in children]))
+
+
+def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
+    """The union bound: all of them hold, each `count` times; without a count nobody can say, unless all are sure."""
+    if all(probability == 1.0 for probability in probabilities):
+        return 1.0
+    if count is None or count < 0:
+        return 0.0
+    return max(0.0, 1.0 - count * sum(1.0 - probability for probability in probabilities))
+
+
+_MOST_GAPS: Final = 5
+_ANSWERS: Final = Budget(ZERO, ZERO, None, False)
+_SUCCEEDS: Final = Budget(ZERO, None, None, False)
+_LEAVES: Final = {
+    "AlwaysSuccess": _SUCCEEDS,
+    "AlwaysFailure": Budget(None, ZERO, None, False),
+    "Script": _SUCCEEDS,
+    "SetBlackboard": _SUCCEEDS,
+    "UnsetBlackboard": _SUCCEEDS,
+    "ScriptCondition": _ANSWERS,
+    "WasEntryUpdated": _ANSWERS,
+}
+_RULES: Final[dict[str, Callable[[SourceNode, Sequence[Budget]], Budget | None]]] = {
+    "Sequence": _sequence,
+    "AsyncSequence": _sequence,
+    "SequenceWithMemory": _with_memory,
+    "Fallback": _fallback,
+    "AsyncFallback": _fallback,
+    "ReactiveSequence": _reactive_sequence,
+    "ReactiveFallback": _reactive_fallback,
+    "Parallel": _parallel,
+    "ParallelAll": _parallel_all,
+    "IfThenElse": _if_then_else,
+    "WhileDoElse": _while_do_else,
+    "Switch": _switch,
+    "TryCatch": _try_catch,
+    "Inverter": _inverter,
+    "ForceSuccess": _force_success,
+    "ForceFailure": _force_failure,
+    "RetryUntilSuccessful": _retry,
+    "Repeat": _repeat,
+    "Timeout": _timeout,
+    "Delay": _delay,
+    "KeepRunningUntilFailure": _keep_running,
+    "RunOnce": _run_once,
+    "Precondition": _precondition,
+    "LoopInt": _loop,
+    "LoopBool": _loop,
+    "LoopDouble": _loop,
+    "LoopString": _loop,
+    "SkipUnlessUpdated": _skip_unless_updated,
+    "WaitValueUpdate": _wait_value_update,
+}

@@ -1,0 +1,96 @@
+"""Durations: ranges of seconds, how they add up, and what the longest one is made of.
+
+One invariant: an operation never leaves out a duration that its operands allow.  `None` is the range of what cannot
+happen; infinity stands where no bound can be said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+from btq_lang.record import record, replace
+from btq_lang.requirements.model import SourceNode
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+@record
+class Term:
+    """A node's share of a duration: `times` runs of at most `seconds` each."""
+
+    node: SourceNode
+    times: int
+    seconds: float
+
+
+@record
+class Range:
+    """From `low` to `high` seconds.
+
+    Attributes:
+        terms: what `high` is the sum of.
+    """
+
+    low: float
+    high: float
+    terms: tuple[Term, ...] = ()
+
+
+ZERO: Final = Range(0.0, 0.0)
+ANY: Final = Range(0.0, inf)
+
+
+def plus(first: Range | None, second: Range | None) -> Range | None:
+    """One after the other."""
+    if first is None or second is None:
+        return None
+    return Range(first.low + second.low, first.high + second.high, first.terms + second.terms)
+
+
+def hull(*ranges: Range | None) -> Range | None:
+    """The one or the other."""
+    found = [each for each in ranges if each is not None]
+    if not found:
+        return None
+    longest = max(found, key=lambda each: each.high)
+    return Range(min(each.low for each in found), longest.high, longest.terms)
+
+
+def times(count: int, each: Range | None) -> Range | None:
+    """So many, one after the other."""
+    if count == 0:
+        return ZERO
+    if each is None:
+        return None
+    terms = tuple(replace(term, times=term.times * count) for term in each.terms)
+    return Range(each.low * count, each.high * count, terms)
+
+
+def cut(each: Range | None, at: float) -> Range | None:
+    """What of it takes no longer than that."""
+    if each is None or each.low > at:
+        return None
+    if each.high <= at:
+        return each
+    return Range(each.low, at, tuple(replace(term, seconds=at) for term in each.terms[:1]))
+
+
+def from_zero(each: Range | None) -> Range | None:
+    """It, and anything shorter: it can be interrupted."""
+    return replace(each, low=0.0) if each is not None else None
+
+
+def without_end(each: Range | None) -> Range | None:
+    """It, and anything longer."""
+    return Range(each.low, inf) if each is not None else None
+
+
+def total(ranges: Iterable[Range | None]) -> Range | None:
+    """All of them, one after the other."""
+    result: Range | None = ZERO
+    for each in ranges:
+        result = plus(result, each)
+    return result

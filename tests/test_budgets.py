@@ -1,0 +1,330 @@
+"""Budgets: the rule of each node, what they are made of, and that no run of any tree lies outside of them."""
+
+from __future__ import annotations
+
+from math import inf
+
+import pytest
+from engine_simulator import Endless, Run
+from hypothesis import given
+from hypothesis import strategies as st
+
+from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.budgets import Budgets, Range
+from btq_lang.requirements.model import SourceNode
+from btq_lang.workspace import Workspace
+
+# ---- no run lies outside --------------------------------------------------------------------------------------------
+
+IN_ORDER = ["->", "?", "M->", "A->", "A?"]
+
+
+def leaf(draw: st.DrawFn) -> str:
+    kind = draw(st.sampled_from(["action", "action", "action", "condition", "sleep", "AlwaysSuccess", "AlwaysFailure"]))
+    if kind == "action":
+        low = draw(st.integers(0, 8))
+        high = low + draw(st.integers(0, 8))
+        return f"Action L satisfies QualityReq @ takes between {low / 4} s and {high / 4} s"
+    if kind == "condition":
+        return "Condition C"
+    return f"Sleep (msec = {draw(st.integers(0, 8)) * 250})" if kind == "sleep" else kind
+
+
+@st.composite
+def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True) -> list[str]:
+    """The lines of a node with all below it."""
+
+    def below(count: int = 1, skipping: bool = True) -> list[list[str]]:
+        return [draw(tree(depth - 1, sub, skipping)) for _ in range(count)]
+
+    group = (
+        "leaf"
+        if depth == 0
+        else draw(st.sampled_from(["leaf", "order", "order", "reactive", "parallel", "one", "other"]))
+    )
+    children: list[list[str]] = []
+    if group == "leaf":
+        head = "SubTree Sub" if sub and draw(st.integers(0, 4)) == 0 and may_skip else leaf(draw)
+    elif group == "order":
+        head, children = draw(st.sampled_from(IN_ORDER)), below(draw(st.integers(1, 3)))
+    elif group == "reactive":
+        head = draw(st.sampled_from(["R->", "R?"]))
+        children = [["Condition C"] for _ in range(draw(st.integers(0, 2)))] + below(draw(st.integers(1, 2)))
+    elif group == "parallel":
+        count = draw(st.integers(1, 3))
+        children = below(count)
+        head = f"|| (success_count = {draw(st.sampled_from([-1, *range(1, count + 1)]))} failure_count = "
+        head += f"{draw(st.sampled_from([-1, *range(1, count + 1)]))})"
+        if draw(st.booleans()):
+            head = f"All|| (max_failures = {draw(st.integers(-1, count))})"
+    elif group == "one":
+        milliseconds = draw(st.integers(0, 12)) * 250
+        count = draw(st.sampled_from([-1, 0, 1, 2, 3]))
+        choices = [f"Timeout (msec = {milliseconds})", f"Delay (delay_msec = {milliseconds})"] * 2
+        choices += [f"Retry (num_attempts = {count})", f"Repeat (num_cycles = {count})"] * 2
+        choices += ["Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure", "RunOnce"]
+        choices += [
+            "RunOnce (then_skip = false)",
+            'Precondition (if = "@x" else = SKIPPED)',
+            'Precondition (if = "@x")',
+        ]
+        head = draw(st.sampled_from(choices))
+        children = below(skipping=may_skip)
+        may_skip = may_skip and "SKIPPED" not in head
+        if not may_skip and ("SKIPPED" in head or head == "RunOnce" or "= 0)" in head):
+            head = "Inverter"
+    else:
+        head = draw(st.sampled_from(["IfThenElse", "WhileDoElse", "TryCatch", "Switch"]))
+        children = below(1, head == "TryCatch") + below(draw(st.integers(1, 2)))
+        if head == "WhileDoElse":  # it asks a condition that takes time in every tick, and starves the branch meanwhile
+            children[0] = ["Condition C"]
+        if head == "Switch":
+            head, children = "Switch2 (variable = {v} case_1 = a case_2 = b)", below(3)
+    if group not in ("leaf", "one") and not may_skip:
+        return ["Condition C"]
+    if may_skip and not head.startswith("SubTree") and draw(st.integers(0, 5)) == 0:
+        attribute = draw(st.sampled_from(["_skipIf", "_while", "_failureIf", "_successIf"]))
+        head = f'{head[:-1]} {attribute} = "@x")' if head.endswith(")") else head
+        if head == "Condition C":
+            head = f'Condition C ({attribute} = "@x")'
+    return [head, *(f"    {line}" for child in children for line in child)]
+
+
+@st.composite
+def missions(draw: st.DrawFn) -> str:
+    lines = ["BehaviorTree Main", *(f"    {line}" for line in draw(tree(3, True)))]
+    lines += ["BehaviorTree Sub", *(f"    {line}" for line in draw(tree(1, False)))]
+    numbered = (line.replace("@ takes", f"q{number} takes") for number, line in enumerate(lines))
+    return "\n".join(numbered) + "\n"
+
+
+def resolved(text: str) -> Requirements:
+    workspace = Workspace.of({"main.btq": text})
+    assert workspace.files["main.btq"].parsed.diagnostics == ()
+    found = requirements(workspace, "main.btq")
+    assert found.problems == ()
+    return found
+
+
+@given(missions(), st.integers(0, 1000))
+def test_no_run_lies_outside_its_budget(text: str, seed: int) -> None:
+    found = resolved(text)
+    budgets = Budgets(found)
+
+    def report(node: SourceNode, status: str, seconds: float) -> None:
+        budget = budgets.of(node)
+        allowed = getattr(budget, status)
+        assert allowed is not None, f"{node} {status} after {seconds}: {budget}"
+        assert allowed.low <= seconds <= allowed.high, f"{node} {status} after {seconds}: {budget}"
+
+    root = found.nodes.root("Main")
+    assert root is not None
+    run = Run(found, root, seed, report)
+    try:
+        for _ in range(6):
+            run.mission()
+    except Endless:
+        longest = budgets.of(root).anything
+        assert longest is None or longest.high > 100.0 or not_bounded(budgets, found)
+
+
+def not_bounded(budgets: Budgets, found: Requirements) -> bool:
+    """Some node that costs no time may be tried without end."""
+    return any(budgets.composed(node).gaps or "-1" in str(node.node.attributes) for node in found.nodes.all)
+
+
+# ---- the rules, one by one -------------------------------------------------------------------------------------------
+
+LEAVES = """
+QualityReq a "t"
+    every A takes between 1 s and 2 s
+QualityReq b "t"
+    every B takes between 3 s and 5 s
+"""
+
+
+def budget(tree: str, requirements: str = LEAVES) -> tuple[Budgets, SourceNode]:
+    """The budgets of a tree, and its root."""
+    lines = "".join(f"    {line}\n" for line in tree.strip("\n").split("\n"))
+    everyone = "BehaviorTree Unused\n    ->\n        A\n        B\n        X\n"  # so that each name is one of a node
+    found = resolved(f"{requirements}BehaviorTree Main\n{lines}{everyone}")
+    root = found.nodes.root("Main")
+    assert root is not None
+    return Budgets(found), root
+
+
+def said(tree: str, requirements: str = LEAVES) -> tuple[object, object, object]:
+    """Success, failure and skip of a tree's root, each as (low, high)."""
+    budgets, root = budget(tree, requirements)
+    found = budgets.of(root)
+    return pair(found.success), pair(found.failure), pair(found.skip)
+
+
+def pair(each: Range | None) -> tuple[float, float] | None:
+    return (each.low, each.high) if each is not None else None
+
+
+@pytest.mark.parametrize(
+    ("tree", "success", "failure"),
+    [
+        ("A", (1, 2), (1, 2)),
+        ("-> \n    A\n    B", (4, 7), (1, 7)),
+        ("A->\n    A\n    B", (4, 7), (1, 7)),
+        ("M->\n    A\n    B", (3, 7), (1, 7)),  # after a failure it begins where it failed
+        ("?\n    A\n    B", (1, 7), (4, 7)),
+        ("R->\n    Condition C\n    B", (3, 5), (0, 5)),
+        ("R?\n    Condition C\n    B", (0, 5), (3, 5)),
+        ("R->\n    Script (code = x)\n    B", (3, 5), (3, 5)),
+        ("R->\n    A\n    B", (0, inf), (0, inf)),
+        ("||\n    A\n    B", (3, 5), (1, 5)),
+        ("|| (success_count = 1 failure_count = 2)\n    A\n    B", (1, 5), (3, 5)),
+        ("|| (success_count = 2 failure_count = 2)\n    A\n    B", (3, 5), (1, 5)),
+        ("All||\n    A\n    B", (3, 5), (3, 5)),
+        ("All|| (max_failures = 0)\n    A\n    B", None, (3, 5)),
+        ("IfThenElse\n    A\n    B", (4, 7), (1, 7)),
+        ("IfThenElse\n    A\n    B\n    A", (2, 7), (2, 7)),
+        ("WhileDoElse\n    Condition C\n    B", (3, 5), (0, 5)),
+        ("WhileDoElse\n    Condition C\n    B\n    AlwaysSuccess", (0, 5), (0, 5)),
+        ("WhileDoElse\n    Condition C\n    A\n    B", (0, inf), (0, inf)),
+        ("Switch (variable = {v} case_1 = x)\n    A\n    B", (1, 5), (1, 5)),
+        ("Switch (case_1 = x)\n    A\n    B", (3, 5), (3, 5)),
+        ("TryCatch\n    A\n    B", (1, 2), (4, 7)),
+        ("Inverter\n    ForceSuccess\n        A", None, (1, 2)),
+        ("ForceFailure\n    A", None, (1, 2)),
+        ("Retry (num_attempts = 3)\n    A", (1, 6), (3, 6)),
+        ("Retry (num_attempts = -1)\n    A", (1, inf), None),
+        ("Retry (num_attempts = -1)\n    ForceSuccess\n        A", (1, 2), None),
+        ("Retry (num_attempts = {n})\n    A", (1, inf), (0, inf)),
+        ("Repeat (num_cycles = 3)\n    A", (3, 6), (1, 6)),
+        ("Repeat (num_cycles = -1)\n    A", None, (1, inf)),
+        ("Repeat (num_cycles = 0)\n    A", (0, 0), None),
+        ("Timeout (msec = 1500)\n    A", (1, 1.5), (1, 1.5)),
+        ("Timeout (msec = 1.5 s)\n    A", (1, 1.5), (1, 1.5)),
+        ("Timeout (msec = 500)\n    A", None, (0.5, 0.5)),
+        ("Timeout (msec = 2000)\n    A", (1, 2), (1, 2)),
+        ("Timeout (msec = 0)\n    A", (1, 2), (1, 2)),
+        ("Timeout (msec = {t})\n    A", (1, 2), (0, 2)),
+        ("Timeout (msec = 5 s)\n    X", (0, 5), (0, 5)),
+        ("Timeout (msec = 5)\n    AlwaysSuccess", (0, 0), None),
+        ("Delay (delay_msec = 500)\n    A", (1.5, 2.5), (1.5, 2.5)),
+        ("Delay (delay_msec = {t})\n    A", (1, inf), (1, inf)),
+        ("KeepRunningUntilFailure\n    A", None, (1, inf)),
+        ("Sleep (msec = 250)", (0.25, 0.25), None),
+        ("Sleep (msec = {t})", (0, inf), None),
+        ("LoopDouble (queue = {q})\n    A", (0, inf), (0, inf)),
+        ("WaitValueUpdate (entry = {q})\n    A", (1, inf), (1, inf)),
+        ("Decorator Mine\n    A", (0, inf), (0, inf)),
+        ("X", (0, inf), (0, inf)),
+        ("A (_failureIf = x _successIf = x)", (0, 2), (0, 2)),
+        ("SubTree Elsewhere", (0, inf), (0, inf)),
+        ("->\n    A\n    SubTree Main", (1, inf), (1, inf)),
+        ("->\n    A\n    xml '<B/>'", (1, inf), (1, inf)),
+    ],
+)
+def test_what_a_node_makes_of_its_children(
+    tree: str, success: tuple[float, float] | None, failure: tuple[float, float] | None
+) -> None:
+    assert said(tree)[:2] == (success, failure)
+
+
+@pytest.mark.parametrize(
+    ("tree", "success", "failure", "skip"),
+    [
+        ("A (_skipIf = x)", (1, 2), (1, 2), (0, 0)),
+        ("A (_while = x)", (1, 2), (1, 2), (0, 2)),
+        ("->\n    A (_skipIf = x)\n    B", (3, 7), (1, 7), None),
+        ("->\n    A (_skipIf = x)", (0, 2), (1, 2), (0, 0)),
+        ("Retry (num_attempts = 3)\n    A (_skipIf = x)", (1, 6), (1, 6), (0, 4)),
+        ("RunOnce\n    A", (0, 2), (0, 2), (0, 0)),
+        ("SkipUnlessUpdated (entry = {q})\n    A", (1, 2), (1, 2), (0, 0)),
+        ("Precondition (if = x else = SKIPPED)\n    A", (1, 2), (1, 2), (0, 2)),
+        ("||\n    A (_skipIf = x)\n    B", (0, 7), (0, 7), (0, 7)),
+        ("|| (success_count = 2)\n    A (_skipIf = x)\n    B", (0, inf), (0, inf), (0, inf)),
+    ],
+)
+def test_skips(tree: str, success: object, failure: object, skip: object) -> None:
+    assert said(tree) == (success, failure, skip)
+
+
+def test_what_the_longest_is_made_of() -> None:
+    budgets, root = budget("->\n    A\n    Repeat (num_cycles = 3)\n        B\n    Condition C")
+    longest = budgets.of(root).anything
+    assert longest is not None
+    assert [(term.node.shown, term.times, term.seconds) for term in longest.terms] == [
+        ("`A`", 1, 2),
+        ("`Repeat`", 1, 15),
+    ]
+    (repeat,) = (term.node for term in longest.terms if term.times == 1 and term.seconds == 15)
+    inner = budgets.of(repeat).anything
+    assert inner is not None
+    assert [(term.node.shown, term.times, term.seconds) for term in inner.terms] == [("`B`", 3, 5)]
+
+
+def test_why_there_is_no_bound() -> None:
+    budgets, root = budget("->\n    A\n    X\n    Retry (num_attempts = -1)\n        B")
+    assert [(gap.node.shown, gap.reason) for gap in budgets.of(root).gaps] == [
+        ("`X`", "has no `takes` clause"),
+        ("`Retry`", "has no end"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("clauses", "success", "failure", "probability"),
+    [
+        ("takes at most 2 s", (0, 2), (0, 2), 1.0),
+        ("takes less than 2 s\n    takes at least 1 s", (1, 2), (1, 2), 1.0),
+        ("takes at most 2 s if now else 4 s", (0, 4), (0, 4), 1.0),
+        ("takes at most 2 s\n    while now", (0, inf), (0, inf), 1.0),
+        ("takes at most 2 s\n    in at least 90 % of activations", (0, 2), (0, 2), 0.9),
+        ("succeeds within 2 s", (0, 2), (0, inf), 1.0),
+        ("takes at most 2 s\n    takes at least 3 s", (3, inf), (3, inf), 1.0),
+    ],
+)
+def test_what_a_node_is_held_to(clauses: str, success: object, failure: object, probability: float) -> None:
+    named = clauses.replace("takes", "every A takes").replace("succeeds", "every A succeeds")
+    budgets, root = budget("A", f'signal now : bool\nQualityReq a "t"\n    {named}\n')
+    found = budgets.of(root)
+    assert (pair(found.success), pair(found.failure), found.probability) == (success, failure, probability)
+
+
+def test_a_bound_of_its_own_stands_for_what_is_below() -> None:
+    rules = LEAVES + 'QualityReq c "t"\n    Steps takes at most 6 s\n'
+    budgets, root = budget("->\n    -> Steps\n        A\n        B\n    A", rules)
+    assert pair(budgets.of(root).success) == (5, 8)
+    (steps, _) = root.children
+    assert pair(budgets.composed(steps).success) == (4, 7)
+
+
+def test_the_union_bound() -> None:
+    rules = LEAVES.replace("2 s\n", "2 s\n    in at least 98 % of activations\n")
+    budgets, root = budget("->\n    A\n    Repeat (num_cycles = 3)\n        A\n    B", rules)
+    assert budgets.of(root).probability == pytest.approx(0.92)
+    assert budgets.of(root).anything == budgets.composed(root).anything
+    budgets, root = budget("Retry (num_attempts = -1)\n    A", rules)
+    assert budgets.composed(root).probability == 0.0
+    assert (budgets.of(root).probability, pair(budgets.of(root).success)) == (1.0, (0, inf))
+
+
+def test_success() -> None:
+    rules = """
+QualityReq a "t"
+    every A succeeds within 2 s
+    in at least 98 % of activations
+QualityReq b "t"
+    every B succeeds
+"""
+    budgets, root = budget("->\n    A\n    Repeat (num_cycles = 3)\n        A\n    Script (code = x)", rules)
+    found = budgets.success(root)
+    assert found is not None
+    assert (found.seconds, found.probability) == (8, pytest.approx(0.92))
+    assert [(node.shown, share) for node, share in found.parts] == [
+        ("`A`", pytest.approx(0.02)),
+        ("`Repeat`", pytest.approx(0.06)),
+        ("`Script`", 0.0),
+    ]
+    budgets, root = budget("->\n    A\n    B", rules)
+    assert (found := budgets.success(root)) is not None
+    assert (found.seconds, found.probability) == (inf, 0.98)
+    for tree in ("->\n    A\n    X", "?\n    A\n    B", "->\n    A (_skipIf = x)"):
+        budgets, root = budget(tree, rules)
+        assert budgets.success(root) is None
