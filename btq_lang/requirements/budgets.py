@@ -13,7 +13,7 @@ from math import inf
 from btq_lang.record import record, replace
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.composition import Budget, Gap, compose, port_count, port_seconds, unknown
-from btq_lang.requirements.durations import ANY, ZERO, Range, Term, from_zero, hull
+from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.model import (
     Applied,
     Bounded,
@@ -214,8 +214,7 @@ def _with_attributes(node: SourceNode, budget: Budget) -> Budget:
     if "_skipIf" in keys:
         budget = replace(budget, skip=hull(budget.skip, ZERO))
     if "_while" in keys:
-        running = from_zero(budget.anything) if budget.waits else None
-        budget = replace(budget, skip=hull(budget.skip, running, ZERO))
+        budget = replace(budget, skip=hull(budget.skip, budget.running if budget.waits else ZERO))
     return budget
 
 
@@ -224,12 +223,11 @@ def _opened(budget: Budget) -> Budget:
     success, failure, skip = (
         ANY if each is not None else None for each in (budget.success, budget.failure, budget.skip)
     )
-    return Budget(success, failure, skip, budget.waits, 1.0, budget.gaps)
+    return Budget(success, failure, skip, budget.waits, 1.0, budget.gaps, budget.endless)
 
 
 def _is_bounded(budget: Budget) -> bool:
-    longest = budget.anything
-    return longest is None or longest.high < inf
+    return budget.running.high < inf
 
 
 def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:

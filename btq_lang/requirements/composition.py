@@ -51,6 +51,7 @@ class Budget:
         waits: it may return RUNNING, so it can be interrupted.
         probability: at least that likely all holds that the ranges rest on (by the union bound).
         gaps: why there is no upper bound, where there is none.
+        endless: it may run for ever, and then has no outcome at all.
     """
 
     success: Range | None
@@ -59,6 +60,7 @@ class Budget:
     waits: bool = True
     probability: float = 1.0
     gaps: tuple[Gap, ...] = ()
+    endless: bool = False
 
     @property
     def completes(self) -> Range | None:
@@ -69,6 +71,12 @@ class Budget:
     def anything(self) -> Range | None:
         """However it ends."""
         return hull(self.success, self.failure, self.skip)
+
+    @property
+    def running(self) -> Range:
+        """For how long it may run when it is interrupted, or asked whether it still does."""
+        longest = hull(self.success, self.failure, self.skip)
+        return ANY if self.endless or longest is None else replace(longest, low=0.0)
 
 
 def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -89,8 +97,7 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
     if found is None:
         return unknown(node, "has children that do not fit it")
     waits = found.waits or (node.kind is not None and node.kind.execution == "asynchronous")
-    longest = found.anything
-    if longest is None or longest.high < inf:
+    if found.running.high < inf:
         return replace(found, waits=waits, gaps=())
     inner = tuple(gap for child in children for gap in child.gaps)
     return replace(found, waits=waits, gaps=tuple(dict.fromkeys((*found.gaps, *inner)))[:_MOST_GAPS])
@@ -98,7 +105,7 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
 
 def unknown(node: SourceNode, reason: str) -> Budget:
     """It can do anything, and take any time."""
-    return Budget(ANY, ANY, ANY, gaps=(Gap(node, reason),))
+    return Budget(ANY, ANY, ANY, gaps=(Gap(node, reason),), endless=True)
 
 
 def port_seconds(node: SourceNode, port: str) -> float | None:
@@ -181,10 +188,11 @@ def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends:
             skip=ANY if found.skip is not None else None,
             probability=0.0 if found.probability < 1.0 else 1.0,
             gaps=(gap,),
+            endless=True,
         )
     before = children[: waiting[0]] if waiting else ()
     if any(getattr(child, ends) is not None for child in before):
-        running = from_zero(children[waiting[0]].anything)
+        running = children[waiting[0]].running
         return replace(found, **{ends: hull(getattr(found, ends), running)})
     return found
 
@@ -193,19 +201,19 @@ def _parallel(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
     """Counts how many have succeeded and how many have failed, and is done when one of both is enough."""
     n = len(children)
     wanted, failures = port_count(node, "success_count", -1), port_count(node, "failure_count", 1)
-    everything = [child.anything for child in children]
+    everything = [child.running for child in children]
     wanted = n + wanted + 1 if wanted is not None and wanted < 0 else wanted
     failures = n + failures + 1 if failures is not None and failures < 0 else failures
     asks_again = port_count(node, "success_count", -1) not in range(-n, 0)
     if (with_skips := _with_skips(node, children, asks_again)) is not None:
         return with_skips
-    if wanted is None or failures is None or None in everything:
-        longest = from_zero(_slowest(everything))
+    if wanted is None or failures is None:
+        longest = _slowest(everything)
         return _made(children, longest, longest, longest)
     if not 0 < wanted <= n or not 0 < failures <= n:
         return None
     enough = min(failures, n - wanted + 1)
-    highs = sorted((each for each in everything if each is not None), key=lambda each: each.high)
+    highs = sorted(everything, key=lambda each: each.high)
     last = highs[wanted + enough - 2]
     succeeds = _nth(children, "success", wanted)
     fails = _nth(children, "failure", enough)
@@ -227,11 +235,11 @@ def _with_skips(node: SourceNode, children: Sequence[Budget], asks_again: bool) 
     skips = [child.skip for child in children if child.skip is not None]
     if not skips:
         return None
-    if asks_again or sum(skip.high > 0.0 for skip in skips) > 1:
+    if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
         gap = Gap(node, "asks a child that was skipped again and again")
         likely = _likely([child.probability for child in children], None)
-        return Budget(ANY, ANY, ANY, probability=likely, gaps=(gap,))
-    longest = from_zero(total(child.anything or ZERO for child in children))
+        return Budget(ANY, ANY, ANY, probability=likely, gaps=(gap,), endless=True)
+    longest = total(child.running for child in children)
     return _made(children, longest, longest, longest)
 
 
@@ -248,9 +256,9 @@ def _parallel_all(node: SourceNode, children: Sequence[Budget]) -> Budget:
     most = n + most + 1 if most is not None and most < 0 else most
     if (with_skips := _with_skips(node, children, False)) is not None:
         return with_skips
-    longest = _slowest([child.anything for child in children])
-    if longest is None:
+    if any(child.completes is None for child in children):
         return _made(children, None, None, None)
+    longest = _slowest([child.completes or ZERO for child in children])
     always = sum(child.success is None for child in children)
     maybe = sum(child.failure is not None for child in children)
     fails = most is None or maybe >= most
@@ -258,12 +266,9 @@ def _parallel_all(node: SourceNode, children: Sequence[Budget]) -> Budget:
     return _made(children, longest if succeeds else None, longest if fails else None, None)
 
 
-def _slowest(ranges: Sequence[Range | None]) -> Range | None:
-    """All at once: it takes as long as the longest; None: one of them never ends."""
-    found = [each for each in ranges if each is not None]
-    if len(found) < len(ranges):
-        return None
-    return replace(max(found, key=lambda each: each.high), low=max(each.low for each in found))
+def _slowest(ranges: Sequence[Range]) -> Range:
+    """All at once: it takes as long as the longest."""
+    return replace(max(ranges, key=lambda each: each.high), low=max(each.low for each in ranges))
 
 
 def _if_then_else(node: SourceNode, children: Sequence[Budget]) -> Budget | None:
@@ -292,9 +297,9 @@ def _while_do_else(node: SourceNode, children: Sequence[Budget]) -> Budget | Non
         changes = condition.success is not None and condition.failure is not None
         if condition.waits or changes:
             gap = Gap(node, "asks its condition at every tick, so its branches may be started again and again")
-            return Budget(ANY, ANY, ANY, gaps=(gap,), probability=0.0 if found.probability < 1.0 else 1.0)
+            return Budget(ANY, ANY, ANY, gaps=(gap,), probability=0.0 if found.probability < 1.0 else 1.0, endless=True)
         return found
-    running = from_zero(total(branch.anything or ZERO for branch in branches))
+    running = total(branch.running if branch.waits else ZERO for branch in branches)
     if condition.failure is None or condition.success is None:
         return found
     return replace(
@@ -348,14 +353,22 @@ def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "num_attempts")
     go, end, skip, gaps = _again(node, child.failure, child.success, child.skip, count)
-    return Budget(end, go, skip, True, _likely([child.probability], count), gaps)
+    return Budget(
+        end, go, skip, True, _likely([child.probability], count), gaps, _has_no_end(child, child.failure, count)
+    )
 
 
 def _repeat(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "num_cycles")
     go, end, skip, gaps = _again(node, child.success, child.failure, child.skip, count)
-    return Budget(go, end, skip, True, _likely([child.probability], count), gaps)
+    return Budget(
+        go, end, skip, True, _likely([child.probability], count), gaps, _has_no_end(child, child.success, count)
+    )
+
+
+def _has_no_end(child: Budget, go: Range | None, count: int | None) -> bool:
+    return child.endless or (go is not None and count in (-1, None))
 
 
 def _again(
@@ -390,17 +403,18 @@ def _timeout(node: SourceNode, children: Sequence[Budget]) -> Budget:
     """It can interrupt only what returns RUNNING."""
     (child,) = children
     limit = port_seconds(node, "msec")
-    longest = child.anything
-    if limit == 0 or not child.waits or longest is None:
+    longest = child.running
+    if limit == 0 or not child.waits:
         return child
     if limit is None:
-        return replace(child, failure=hull(child.failure, from_zero(longest)))
+        return replace(child, failure=hull(child.failure, longest))
     runs_out = Range(limit, limit, tuple(replace(term, seconds=limit) for term in longest.terms[:1]))
     return replace(
         child,
         success=cut(child.success, limit),
         failure=hull(cut(child.failure, limit), runs_out if longest.high > limit else None),
         skip=cut(child.skip, limit),
+        endless=False,
     )
 
 
@@ -425,7 +439,7 @@ def _keep_running(node: SourceNode, children: Sequence[Budget]) -> Budget:
     failure = without_end(child.failure) if again else child.failure
     likely = child.probability if child.probability == 1.0 or not again else 0.0
     gaps = (Gap(node, "repeats its child until it fails"),) if again else ()
-    return Budget(None, failure, None, True, likely, gaps)
+    return Budget(None, failure, None, True, likely, gaps, child.endless or again)
 
 
 def _run_once(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -444,20 +458,19 @@ def _precondition(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     word = node.node.attribute("else")
     status = word.text if word is not None else "FAILURE"
-    running = hull(from_zero(child.anything), ZERO)
+    running = child.running
     if status not in ("SUCCESS", "FAILURE", "SKIPPED"):
-        return Budget(running, running, running, True, child.probability)
+        return Budget(running, running, running, True, child.probability, endless=child.endless)
     key = {"SUCCESS": "success", "FAILURE": "failure", "SKIPPED": "skip"}[status]
     return replace(child, **{key: hull(getattr(child, key), running)})
 
 
 def _loop(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
-    longest = child.anything
-    if longest is not None and longest.high == 0.0:
+    if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
     gap = Gap(node, "runs its child for each item of a queue, and nobody knows how many there are")
-    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, (gap,))
+    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, (gap,), True)
 
 
 def _skip_unless_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -474,6 +487,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
         skip=without_end(child.skip),
         waits=True,
         gaps=(Gap(node, "waits for somebody to write an entry"),),
+        endless=True,
     )
 
 
@@ -486,7 +500,8 @@ def _sleep(node: SourceNode) -> Budget:
 
 def _made(children: Sequence[Budget], success: Range | None, failure: Range | None, skip: Range | None) -> Budget:
     waits = any(child.waits for child in children)
-    return Budget(success, failure, skip, waits, _likely([child.probability for child in children]))
+    likely = _likely([child.probability for child in children])
+    return Budget(success, failure, skip, waits, likely, endless=any(child.endless for child in children))
 
 
 def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
