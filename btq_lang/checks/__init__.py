@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from btq_lang.checks import (
     children,
     conditions,
+    demands,
     includes,
     kinds,
     literals,
@@ -109,6 +110,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         preconditions.while_skip_is_success,
         unreachable.unreachable_child,
         measures.unresolved,
+        demands.demands,
     ),
     Model: (
         kinds.duplicate_definition,
@@ -124,7 +126,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.quantity_on_unitless_port,
         names.forbidden_name,
     ),
-    Signal: (kinds.duplicate_definition, measures.unresolved),
+    Signal: (kinds.duplicate_definition, measures.unresolved, demands.demands),
     Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks, measures.unresolved),
     Requirement: (
         requirements.conflicting_requirement,
@@ -137,8 +139,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         prose.prose_constraint,
         measures.unresolved,
         measures.requirement_without_subject,
+        demands.demands,
     ),
-    Apply: (requirements.unknown_requirement, measures.unresolved),
+    Apply: (requirements.unknown_requirement, measures.unresolved, demands.demands),
     Qualities: (qualities.unknown_quality,),
     QualityDecl: (
         kinds.duplicate_definition,

@@ -37,7 +37,9 @@ from btq_lang.workspace import Definition, File, Scope, Workspace
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.checks.results import TreeResults
+    from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Requirements
+    from btq_lang.requirements.budgets import Budgets
 
 
 @record
@@ -242,6 +244,22 @@ class View:
         from btq_lang.requirements import requirements  # most files have no use for it, and it is large
 
         return requirements(self.workspace, self.path)
+
+    @cached_property
+    def budgets(self) -> Budgets | None:
+        """How long the nodes take if what is demanded of those below them holds; None where nothing is demanded."""
+        if self.requirements is None:
+            return None
+        from btq_lang.requirements.budgets import Budgets  # as above
+
+        return Budgets(self.requirements)
+
+    @cached_property
+    def demands(self) -> dict[int, list[Diagnostic]]:
+        """What is wrong with what is demanded, by the item it stands in."""
+        from btq_lang.checks.demands import all_demands  # it asks views, too
+
+        return all_demands(self)
 
     @cached_property
     def _has_clauses(self) -> bool:

@@ -1,0 +1,94 @@
+"""What the rules about demands share: which claims hold for which nodes, where to tell of them, and in which words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.requirements import Requirements
+from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.durations import Term
+from btq_lang.requirements.model import Applied, Bounded, Claim, SourceNode, Table, Value
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+Found: TypeAlias = tuple[Place, Diagnostic]
+
+
+def resolved(view: View) -> tuple[Requirements, Budgets]:
+    """The requirements of a file that has some, and the budgets of its nodes."""
+    assert view.requirements is not None, "the rules are asked only where there are requirements"
+    assert view.budgets is not None, "there are budgets where there are requirements"
+    return view.requirements, view.budgets
+
+
+def claims(view: View) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
+    """Each claim with the node that it holds for, and where in this file to tell of it."""
+    found, _ = resolved(view)
+    for applied in found.applied:
+        if applied.node is None:
+            continue
+        for claim in applied.requirement.claims:
+            place = told_at(view, applied, claim)
+            if place is not None:
+                yield applied, claim, applied.node, place
+
+
+def told_at(view: View, applied: Applied, claim: Claim) -> Place | None:
+    """The claim, or the reference that gave it its values or brought it into this file."""
+    if claim.place.path == view.path and not (applied.arguments and applied.how != "subject"):
+        return claim.place
+    return next((place for place in (applied.place, claim.place) if place.path == view.path), None)
+
+
+def is_enforced(applied: Applied) -> bool:
+    """Whether the robot is to do something about it, and not only to say so."""
+    return applied.requirement.action in ("fail", "halt") and applied.requirement.odds is None
+
+
+def highest(claim: Claim) -> tuple[float, str] | None:
+    """The longest that a claim allows in any situation, in SI and as typed; None: it sets no upper limit."""
+    limit = claim.limit
+    if limit is None or limit.relation in (">=", ">"):
+        return None
+    bounded = limit.value if limit.upper is None else limit.upper
+    return max(values(bounded), key=lambda each: each[0], default=None)
+
+
+def lowest(claim: Claim) -> tuple[float, str] | None:
+    """The least that a claim asks for in any situation, in SI and as typed; None: it sets no lower limit."""
+    limit = claim.limit
+    if limit is None or limit.relation in ("<=", "<"):
+        return None
+    return min(values(limit.value), key=lambda each: each[0], default=None)
+
+
+def values(bounded: Bounded) -> list[tuple[float, str]]:
+    """The values of a bound, in SI and as typed; none where one of them is a signal's."""
+    simple = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
+    found = [(value.si, value.text) for value in simple if isinstance(value, Value)]
+    return found if len(found) == len(simple) else []
+
+
+def seconds(value: float) -> str:
+    """A duration as people say it: `250 ms`, `45 s`, `2.5 min`."""
+    if value == inf:
+        return "for ever"
+    if 0.0 < value < 1.0:
+        return f"{value * 1000:.4g} ms"
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if value >= 2 * size:
+            return f"{value / size:.4g} {unit}"
+    return f"{value:.4g} s"
+
+
+def summed(terms: tuple[Term, ...]) -> str:
+    """What a duration is the sum of: `A` 20 s + 3 × `B` 5 s."""
+    parts = (
+        f"{f'{term.times} × ' if term.times > 1 else ''}{term.node.shown} {seconds(term.seconds)}" for term in terms
+    )
+    return " + ".join(parts)

@@ -1,0 +1,178 @@
+"""Bounds that nothing can break, that nothing can keep, or that the engine cannot watch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+
+from btq_lang.checks.demanded import Found, claims, highest, is_enforced, lowest, resolved, seconds
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.requirements.composition import port_count, port_seconds
+from btq_lang.requirements.model import Claim, Compare, Read, SourceNode, Target, Value
+from btq_lang.rules import Severity
+
+_OF_TIME = frozenset(("takes", "succeeds"))
+
+
+def limit_too_small(view: View) -> Iterator[Found]:
+    """A limit that the engine takes for none: it counts whole milliseconds, and 0 is no limit to it."""
+    for applied, claim, _, place in claims(view):
+        most = highest(claim) if claim.verb in _OF_TIME and is_enforced(applied) else None
+        if most is None or most[0] >= 0.001:
+            continue
+        yield (
+            place,
+            Diagnostic(
+                "limit-too-small",
+                place.span,
+                f"the engine cannot hold anything to `{most[1]}`: it counts whole milliseconds, and 0 is no limit",
+            ),
+        )
+
+
+def limit_on_synchronous_node(view: View) -> Iterator[Found]:
+    """A limit on a node that completes within one tick: nobody looks at the clock while it runs."""
+    _, budgets = resolved(view)
+    for applied, claim, node, place in claims(view):
+        if claim.verb not in _OF_TIME or not is_enforced(applied) or highest(claim) is None:
+            continue
+        if budgets.composed(node).waits:
+            continue
+        yield (
+            place,
+            Diagnostic(
+                "limit-on-synchronous-node",
+                place.span,
+                f"{node.shown} completes within one tick, so nothing can stop it after {_typed(claim)}",
+                related=(Related(node.place, "never RUNNING"),),
+                notes=("the requirement is monitored all the same; leave `on violation` out, or limit an action",),
+            ),
+        )
+
+
+def dead_bound(view: View) -> Iterator[Found]:
+    """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is told
+    for that."""
+    _, budgets = resolved(view)
+    for _, claim, node, place in claims(view):
+        most = highest(claim) if claim.verb in _OF_TIME else None
+        timeout = next(_timeouts(node), None) if most is not None else None
+        if most is None or timeout is None or most[0] <= timeout[1]:
+            continue
+        above, limit = timeout
+        success = budgets.of(above.children[0]).success if above.children else None
+        if success is not None and success.low > limit:
+            continue
+        message = f"`{most[1]}` is never reached: a Timeout halts {node.shown} after {seconds(limit)}"
+        related = (Related(above.place, "the Timeout"),)
+        yield place, Diagnostic("dead-bound", place.span, message, related=related)
+
+
+def attempts_mismatch(view: View) -> Iterator[Found]:
+    """`tries at most` against the number of attempts that Retry and Repeat make."""
+    for _, claim, node, place in claims(view):
+        most = highest(claim) if claim.verb == "tries" else None
+        if most is None or not isinstance(claim.per, Target):
+            continue
+        loops = _loops(node, claim.per.node)
+        if not loops:
+            continue
+        count = 1
+        for _, times in loops:
+            count *= times
+        related = tuple(Related(loop.place, f"{times} times") for loop, times in loops)
+        allowed = int(most[0])
+        if count > allowed:
+            message = f"{node.shown} may be tried {count} times, {allowed} are allowed"
+            yield place, Diagnostic("attempts-mismatch", place.span, message, related=related)
+        elif count < allowed:
+            message = f"{node.shown} is tried {count} times at most, so the {allowed} allowed are never reached"
+            yield place, Diagnostic("attempts-mismatch", place.span, message, related=related, severity=Severity.HINT)
+
+
+def contradicting_bounds(view: View) -> Iterator[Found]:
+    """Two bounds on one node that cannot both hold; or one that cannot hold by itself."""
+    least: dict[tuple[object, ...], tuple[float, str, Place]] = {}
+    most: dict[tuple[object, ...], tuple[float, str, Place]] = {}
+    for applied, claim, node, place in claims(view):
+        if applied.requirement.odds is not None:
+            continue
+        scopes = tuple(scope.text for scope in applied.requirement.scopes)
+        for what, low, high in _limits(claim):
+            key = id(node), what, scopes
+            before_most, before_least = most.get(key), least.get(key)
+            if low is not None and (key not in least or low[0] > least[key][0]):
+                least[key] = (*low, place)
+            if high is not None and (key not in most or high[0] < most[key][0]):
+                most[key] = (*high, place)
+            if key not in least or key not in most or least[key][0] <= most[key][0]:
+                continue
+            if before_least is not None and before_most is not None and before_least[0] > before_most[0]:
+                continue  # told
+            other = least[key] if high is not None and most[key][2] is place else most[key]
+            related = () if other[2] is place else (Related(other[2], "the other bound"),)
+            message = f"{node.shown} cannot keep both: at least `{least[key][1]}`, at most `{most[key][1]}`"
+            yield place, Diagnostic("contradicting-bounds", place.span, message, related=related)
+
+
+_Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] | None]
+
+
+def _limits(claim: Claim) -> Iterator[_Limit]:
+    """What a claim bounds, with its lower and its upper limit."""
+    if claim.verb in _OF_TIME:
+        # Of a table every value would have to contradict: the most lenient one is held against the other bound.
+        yield ("takes",), lowest(claim), highest(claim)
+    elif claim.verb == "uses" and claim.signal is not None:
+        yield ("uses", claim.signal.name), lowest(claim), highest(claim)
+    elif claim.verb in ("keeps", "needs", "leaves") and isinstance(claim.condition, Compare):
+        yield from _compared(claim.verb, claim.condition)
+
+
+def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
+    pairs = zip(condition.operators, condition.operands, condition.operands[1:], strict=False)
+    for operator, left, right in pairs:
+        if isinstance(left, Value) and isinstance(right, Read):
+            left, right = right, left
+            operator = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(operator, operator)
+        if not isinstance(left, Read) or not isinstance(right, Value):
+            continue
+        value = right.si, right.text
+        if operator in ("<", "<="):
+            yield (verb, left.signal.name), None, value
+        elif operator in (">", ">="):
+            yield (verb, left.signal.name), value, None
+
+
+def _timeouts(node: SourceNode) -> Iterator[tuple[SourceNode, float]]:
+    """The Timeouts around a node in its tree, the tightest first."""
+    found = []
+    above = node.parent
+    while above is not None:
+        if above.tag == "Timeout" and (limit := port_seconds(above, "msec")):
+            found.append((above, limit))
+        above = above.parent
+    yield from sorted(found, key=lambda each: each[1])
+
+
+def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
+    """The loops between a node and one above it in the same tree, with their counts; none where one is not known."""
+    found: list[tuple[SourceNode, int]] = []
+    at: SourceNode | None = node.parent if node is not top else None
+    while at is not None:
+        port = {"RetryUntilSuccessful": "num_attempts", "Repeat": "num_cycles"}.get(at.tag)
+        if port is not None:
+            count = port_count(at, port)
+            if count is None or count < 1:
+                return []
+            found.append((at, count))
+        if at is top:
+            return found
+        at = at.parent
+    return []
+
+
+def _typed(claim: Claim) -> str:
+    most = highest(claim)
+    return f"`{most[1]}`" if most is not None and most[0] < inf else "its limit"

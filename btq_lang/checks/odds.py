@@ -1,0 +1,84 @@
+"""Odds that nothing below a node ensures, and odds that no window is long enough to show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, inf, log
+
+from btq_lang.checks.demanded import Found, claims, highest, resolved
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.model import Claim, SourceNode
+
+
+def odds_beyond_children(view: View) -> Iterator[Found]:
+    """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures."""
+    _, budgets = resolved(view)
+    for applied, claim, node, place in claims(view):
+        odds = applied.requirement.odds
+        if (odds is not None and odds.experiments == "runs") or not (node.children or node.category == "SubTree"):
+            continue
+        wanted = odds.probability if odds is not None else 1.0
+        ensured = _ensured(budgets, claim, node)
+        if ensured is None or ensured[0] >= wanted - 1e-9:
+            continue
+        likely, parts = ensured
+        message = (
+            f"{node.shown} is to do so in {_percent(wanted)}; what is demanded below it ensures {_percent(likely)}"
+        )
+        related = tuple(Related(part.place, f"misses in up to {_percent(share)}") for part, share in parts if share)
+        notes = ("what each of several steps may miss adds up (the union bound)",) if len(related) > 1 else ()
+        yield place, Diagnostic("odds-beyond-children", place.span, message, related=related, notes=notes)
+
+
+def window_too_small(view: View) -> Iterator[Found]:
+    """A window in which even a run without any failure shows too little.
+
+    Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
+    "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
+    """
+    found, _ = resolved(view)
+    for requirement in found.all.values():
+        odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
+        if requirement.path != view.path or odds is None or window is None or window.count is None:
+            continue
+        if confidence is None or not 0.0 < confidence < 1.0:
+            continue
+        needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
+        if needed <= window.count:
+            continue
+        reason = f"that takes {needed} without any failure" if needed < inf else "no number of them can"
+        yield (
+            window.place,
+            Diagnostic(
+                "window-too-small",
+                window.place.span,
+                f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
+                f"{_percent(confidence)}: {reason}",
+                related=(Related(odds.place, "what is to be shown"),),
+            ),
+        )
+
+
+def _ensured(budgets: Budgets, claim: Claim, node: SourceNode) -> tuple[float, list[tuple[SourceNode, float]]] | None:
+    """How likely what is demanded below a node makes a claim true, and what each child may miss; None: nobody says,
+    or it takes too long anyway."""
+    most = highest(claim)
+    limit = most[0] if most is not None else inf
+    if claim.verb == "succeeds":
+        success = budgets.success(node)
+        if success is None or success.seconds > limit:
+            return None
+        return success.probability, list(success.parts)
+    if claim.verb == "takes" and most is not None:
+        budget = budgets.composed(node)
+        if budget.running.high > limit or budget.running.high == inf:
+            return None
+        shares = [(child, 1.0 - budgets.of(child).probability) for child in node.children]
+        return budget.probability, shares
+    return None
+
+
+def _percent(share: float) -> str:
+    return f"{share * 100:.4g} %"

@@ -1,0 +1,144 @@
+"""Signals that nothing writes, and guards that read one before its first sample."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.demanded import Found, claims, is_enforced, resolved
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.near import near
+from btq_lang.requirements.model import Applied, Claim, Signal, SourceNode
+from btq_lang.rules import Severity
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Model, Pair, Port, Tree
+
+_GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
+
+
+def signal_never_written(view: View) -> Iterator[Found]:
+    """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
+    same name, or where a guard reads it; the robot's program may write it, so then it is a hint."""
+    found, _ = resolved(view)
+    here = [signal for signal in found.signals.values() if signal.place.path == view.path and signal.key is not None]
+    if not here or not found.nodes.all or not view.scope.complete or not view.is_read:
+        return
+    if view.path in view.workspace.included_files:
+        return  # who writes it may be in the files that include this one
+    written = _written(view, found.nodes.all)
+    guarding = {signal.name for applied, claim, _, _ in claims(view) for signal in _read_by_guard(applied, claim)}
+    for signal in here:
+        key = (signal.key or "").removeprefix("@")
+        likely = near(key, written) if key not in written else ()
+        if key in written or not (likely or signal.name in guarding):
+            continue
+        yield (
+            signal.place,
+            Diagnostic(
+                "signal-never-written",
+                signal.place.span,
+                f"no port and no script writes `{key}`, from which `{signal.name}` is read",
+                notes=(f"is it `{likely[0]}`?",) if likely else ("right where the robot's program writes it",),
+                severity=None if likely else Severity.HINT,
+            ),
+        )
+
+
+def signal_may_be_unset(view: View) -> Iterator[Found]:
+    """A guard on a signal without a first value: until somebody writes it, the engine ends the mission."""
+    told: dict[str, list[Related]] = {}
+    signals: dict[str, Signal] = {}
+    for applied, claim, _, place in claims(view):
+        for signal in _read_by_guard(applied, claim):
+            if signal.key is None or signal.initially is not None:
+                continue
+            signals[signal.name] = signal
+            told.setdefault(signal.name, []).append(Related(place, "this is checked by the engine"))
+    for name, related in told.items():
+        signal = signals[name]
+        place = signal.place if signal.place.path == view.path else related[0].place
+        yield (
+            place,
+            Diagnostic(
+                "signal-may-be-unset",
+                place.span,
+                f"`{name}` has no value before its first sample, and a guard that reads it then ends the mission",
+                related=tuple(related[:3]),
+                notes=("give it one: `initially …`",),
+            ),
+        )
+
+
+def _read_by_guard(applied: Applied, claim: Claim) -> list[Signal]:
+    """The signals that the engine reads to enforce a claim, each once."""
+    if claim.verb not in _GUARDS or not is_enforced(applied):
+        return []
+    scopes = tuple(scope.condition for scope in applied.requirement.scopes)
+    return list({each.name: each for each in _signals((claim.condition, claim.signal, scopes))}.values())
+
+
+def _signals(part: object) -> Iterator[Signal]:
+    """The signals in a condition; a context is looked into once."""
+    waiting = [part]
+    contexts: set[int] = set()
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Signal):
+            yield part
+        elif isinstance(part, tuple):
+            waiting += reversed(part)
+        elif part is not None and type(part).__module__ == Signal.__module__ and not isinstance(part, SourceNode):
+            if id(part) in contexts:
+                continue
+            contexts.add(id(part))
+            fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every record has them
+            waiting += [getattr(part, field) for field in reversed(fields)]
+
+
+def _written(view: View, nodes: tuple[SourceNode, ...]) -> frozenset[str]:
+    """The entries that something may write."""
+    found: set[str] = set()
+    for node in nodes:
+        for pair in node.node.attributes:
+            if pair.value is None:
+                continue
+            text = pair.value.text
+            if _is_script(node, pair):
+                found.update(_assigned(text))
+            elif node.tag == "SetBlackboard" and pair.key.text == "output_key":
+                found.add(text.strip("{}").removeprefix("@"))
+            elif is_pointer(text) and _may_write(view, node, pair.key.text):
+                key = text[1:-1].strip().removeprefix("@")
+                found.add(pair.key.text if key == "=" else key)
+    return frozenset(found)
+
+
+def _is_script(node: SourceNode, pair: Pair) -> bool:
+    attribute = RESERVED_ATTRIBUTES.get(pair.key.text)
+    port = node.kind.port(pair.key.text) if node.kind is not None else None
+    return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
+
+
+def _assigned(script: str) -> Iterator[str]:
+    from btq_lang.script import parse_script, variables
+
+    for variable in variables(parse_script(script)):
+        if variable.writes:
+            yield variable.name.removeprefix("@")
+
+
+def _may_write(view: View, node: SourceNode, port: str) -> bool:
+    """Whether a port may be written: all but those that are said to be inputs."""
+    if node.kind is not None:
+        builtin = node.kind.port(port)
+        return builtin is not None and builtin.direction != "input"
+    name = node.node.id
+    ports: tuple[Port, ...] = ()
+    for kind in (Kind.TREE, Kind.MODEL):
+        definition = view.scope.find(kind, name.text) if name is not None else None
+        if definition is not None and isinstance(target := definition.symbol.target, Tree | Model):
+            ports = ports or target.ports
+    declared = next((each for each in ports if each.name is not None and each.name.text == port), None)
+    return declared is None or declared.direction.raw != "input"

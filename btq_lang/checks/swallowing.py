@@ -1,0 +1,102 @@
+"""`on violation fail` under a node that goes on when something in it fails."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.demanded import Found, claims, is_enforced, resolved
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.requirements import Requirements
+from btq_lang.requirements.composition import port_count
+from btq_lang.requirements.model import SourceNode
+
+_NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
+
+
+def swallowed_failure(view: View) -> Iterator[Found]:
+    """A failure that never reaches the root, whichever way the node is run."""
+    found, _ = resolved(view)
+    for applied, claim, node, place in claims(view):
+        if applied.requirement.action != "fail" or not is_enforced(applied) or claim.verb in _NEVER_ENFORCED:
+            continue
+        swallower = _swallower(found, node)
+        if swallower is None:
+            continue
+        above, reason = swallower
+        yield (
+            place,
+            Diagnostic(
+                "swallowed-failure",
+                place.span,
+                f"when {node.shown} fails because of this, {above.shown} {reason}",
+                related=(Related(above.place, "the failure ends here"), Related(node.place, "the node that fails")),
+                notes=("that may be meant; to stop the mission, write `on violation halt`",),
+            ),
+        )
+
+
+def _swallower(found: Requirements, node: SourceNode) -> tuple[SourceNode, str] | None:
+    """Where the failure of a node ends, if it ends on every way up."""
+    first: tuple[SourceNode, str] | None = None
+    seen: set[int] = set()
+    waiting = [node]
+    while waiting:
+        at = waiting.pop()
+        if id(at) in seen:
+            continue
+        seen.add(id(at))
+        end = _in_tree(at)
+        if end is not None:
+            first = first or end
+            continue
+        callers = found.nodes.callers(at.tree)
+        if not callers or at.tree == _name_of_mission(found):
+            return None
+        waiting += callers
+    return first
+
+
+def _name_of_mission(found: Requirements) -> str | None:
+    return found.mission.tree if found.mission is not None else None
+
+
+def _in_tree(node: SourceNode) -> tuple[SourceNode, str] | None:
+    below, at = node, node.parent
+    while at is not None:
+        reason = _swallows(at, below)
+        if reason is not None:
+            return at, reason
+        below, at = at, at.parent
+    return None
+
+
+def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
+    """What a node does when this child of it fails, if it does not fail, too."""
+    tag = parent.tag
+    last = child.index == len(parent.node.children) - 1
+    if tag in ("Fallback", "AsyncFallback", "ReactiveFallback"):
+        return None if last else "goes on with its next child"
+    if tag == "RetryUntilSuccessful":
+        return None if port_count(parent, "num_attempts") == 1 else "tries again"
+    if tag in ("ForceSuccess", "Inverter"):
+        return "succeeds"
+    if tag in ("IfThenElse", "WhileDoElse") and child.index == 0:
+        return "runs its third child" if len(parent.node.children) == 3 else None
+    if tag in ("Parallel", "ParallelAll") and _failures_needed(parent) > 1:
+        return "goes on: it takes more than one failure"
+    return None
+
+
+def _failures_needed(parallel: SourceNode) -> int:
+    """How many children must fail for it to fail; 1 where nobody knows."""
+    n = len(parallel.node.children)
+    if parallel.tag == "ParallelAll":
+        most = port_count(parallel, "max_failures", 1)
+        return 1 if most is None else most if most >= 0 else n + most + 1
+    wanted, failures = port_count(parallel, "success_count", -1), port_count(parallel, "failure_count", 1)
+    if wanted is None or failures is None:
+        return 1
+    wanted = wanted if wanted >= 0 else n + wanted + 1
+    failures = failures if failures >= 0 else n + failures + 1
+    return min(failures, n - wanted + 1)

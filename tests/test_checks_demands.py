@@ -1,0 +1,309 @@
+"""What the rules about demands say beyond their pages: messages, places, what they leave alone."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_problems
+from findings import diagnostics, findings
+
+
+def mission(tree: str, *requirements: str) -> str:
+    """A file with these requirements, each `id clauses`, and a tree `Main`."""
+    rules = ""
+    for each in requirements:
+        name, _, clauses = each.partition(" ")
+        rules += f'QualityReq {name} "t"\n' + "".join(f"    {clause.strip()}\n" for clause in clauses.split("|"))
+    lines = "".join(f"    {line}\n" for line in tree.split("\n"))
+    return f"{rules}BehaviorTree Main\n{lines}"
+
+
+# ---- budgets --------------------------------------------------------------------------------------------------------
+
+TREE = "-> Work\n    Action A\n    Retry (num_attempts = 3)\n        Action B\n    SubTree Sub"
+
+
+def budget(limit: str, *others: str) -> list[str]:
+    text = mission(TREE, f"main Work {limit}", "a A takes at most 5 s", "b B takes at most 4 s", *others)
+    return findings(text + "BehaviorTree Sub\n    Action C\n", "budget-exceeded")
+
+
+def test_the_sum_is_shown_with_each_share() -> None:
+    assert budget("takes at most 20 s", "c C takes at most 3500 ms") == [
+        "2 warning «Work takes at most 20 s» `-> Work` may take 20.5 s, more than `20 s`: "
+        "`A` 5 s + `Retry` 12 s + `Sub` 3.5 s"
+    ]
+    assert budget("takes at most 20.5 s", "c C takes at most 3500 ms") == []
+    text = mission("Retry (num_attempts = 3)\n    Action B", "main Main takes at most 10 s", "b B takes at most 4 s")
+    (found,) = diagnostics(text, "budget-exceeded")
+    assert found.message == "`Retry` may take 12 s, more than `10 s`: 3 × `B` 4 s"
+    assert [related.message for related in found.related] == ["up to 4 s, 3 times"]
+
+
+def test_a_step_without_a_bound_hides_the_rest() -> None:
+    assert budget("takes at most 1 s") == []
+
+
+def test_what_can_never_hold_is_told_with_odds_too() -> None:
+    """A failure may come at once, so only a success is sure to take that long."""
+    odds = "|in at least 90 % of activations"
+    assert budget(f"takes at most 20 s{odds}", "c C takes at least 30 s") == []
+    assert budget(f"succeeds within 20 s{odds}", "c C takes at least 30 s") == [
+        "2 warning «Work succeeds within 20 s» `-> Work` takes at least 30 s, so it can never keep to `20 s`"
+    ]
+
+
+@pytest.mark.parametrize(
+    "limit",
+    [
+        "takes at most 20 s|in at least 90 % of activations",  # the worst case is not what it is about
+        "takes at least 1 s",
+        "takes at most limit",
+    ],
+)
+def test_what_no_budget_is_held_against(limit: str) -> None:
+    assert budget(limit, "c C takes at most 3500 ms") == []
+
+
+def test_success_alone_counts_for_succeeds() -> None:
+    tree = "?\n    Action A\n    Action B"
+    bounds = ("a A takes at most 5 s", "b B takes at most 9 s")
+    assert findings(mission(tree, "main Main succeeds within 12 s", *bounds), "budget-exceeded") == [
+        "2 warning «Main succeeds within 12 s» `?` may take 14 s, more than `12 s`: `A` 5 s + `B` 9 s"
+    ]
+
+
+def test_timeouts() -> None:
+    text = mission("Timeout (msec = 4 s)\n    ->\n        Action A", "a A takes at least 5 s")
+    assert findings(text, "timeout-never-succeeds", "dead-bound") == [
+        "4 warning «Timeout» `Timeout` can never succeed: `->` takes at least 5 s"
+    ]
+    text = mission("Timeout (msec = {limit})\n    Action A", "a A takes at most 5 s")
+    assert findings(text, "timeout-never-succeeds", "dead-bound") == []
+    text = mission("Timeout (msec = 4000)\n    Timeout (msec = 3 s)\n        Action A", "a A takes at most 5 s")
+    assert findings(text, "dead-bound") == [
+        "2 warning «A takes at most 5 s» `5 s` is never reached: a Timeout halts `A` after 3 s"
+    ]
+
+
+# ---- limits ---------------------------------------------------------------------------------------------------------
+
+
+def test_synchronous_nodes() -> None:
+    rules = ("limit-on-synchronous-node",)
+    tree = "->\n    -> Checks\n        Condition C\n        Script (code = x)\n    Action A"
+    told = "completes within one tick, so nothing can stop it after `5 s`"
+    for subject, found in (
+        ("C", f"«C takes at most 5 s» `C` {told}"),
+        ("Checks", f"«Checks takes at most 5 s» `-> Checks` {told}"),
+    ):
+        text = mission(tree, f"q {subject} takes at most 5 s|on violation halt")
+        assert findings(text, *rules) == [f"2 warning {found}"]
+    for clauses in (
+        "A takes at most 5 s|on violation halt",
+        "C takes at most 5 s",
+        "C takes at least 5 s|on violation fail",
+    ):
+        assert findings(mission(tree, f"q {clauses}"), *rules) == []
+
+
+def test_small_limits() -> None:
+    for limit, found in (("0.9 ms", 1), ("1 ms", 0), ("1 s if x else 2 s", 0)):
+        text = "signal x : bool initially true\n" + mission(
+            "Action A", f"q A succeeds within {limit}|on violation fail"
+        )
+        assert len(findings(text, "limit-too-small")) == found
+    assert findings(mission("Action A", "q A takes at most 0 s"), "limit-too-small") == []
+
+
+def test_attempts() -> None:
+    tree = "-> Work\n    Repeat (num_cycles = 2)\n        Retry (num_attempts = 3)\n            Action A"
+    assert findings(mission(tree, "q A tries at most 3 per Work"), "attempts-mismatch") == [
+        "2 warning «A tries at most 3 per Work» `A` may be tried 6 times, 3 are allowed"
+    ]
+    assert findings(mission(tree, "q A tries at most 6 per Work"), "attempts-mismatch") == []
+    assert findings(mission(tree.replace("3)", "{n})"), "q A tries at most 1 per Work"), "attempts-mismatch") == []
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "message"),
+    [
+        ("A takes at least 5 s", "A takes at most 4 s", "`A` cannot keep both: at least `5 s`, at most `4 s`"),
+        ("A takes between 5 s and 3 s", "A succeeds", "`A` cannot keep both: at least `5 s`, at most `3 s`"),
+        ("A keeps n <= 3", "A keeps 5 < n", "`A` cannot keep both: at least `5`, at most `3`"),
+        ("A uses at least 2 of n", "A uses at most 1 of n", "`A` cannot keep both: at least `2`, at most `1`"),
+    ],
+)
+def test_contradictions(first: str, second: str, message: str) -> None:
+    text = "signal n : 1 from {n} initially 0\n" + mission("Action A", f"q {first}", f"r {second}")
+    assert [found.message for found in diagnostics(text, "contradicting-bounds")] == [message]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("A takes at least 5 s", "A takes at most 5 s"),
+        ("A takes at least 5 s", "B takes at most 4 s"),
+        ("A takes at least 5 s|while fast", "A takes at most 4 s"),
+        ("A takes at least 5 s", "A takes at most 4 s|in at least 10 % of activations"),
+        ("A takes at least 5 s", "A takes at most 4 s if fast else 6 s"),
+        ("A keeps n <= 3", "A leaves 5 < n"),
+    ],
+)
+def test_what_can_both_hold(first: str, second: str) -> None:
+    text = "signal n : 1 from {n} initially 0\ncontext fast : n > 3\n"
+    text += mission("->\n    Action A\n    Action B", f"q {first}", f"r {second}")
+    assert findings(text, "contradicting-bounds") == []
+
+
+# ---- odds -----------------------------------------------------------------------------------------------------------
+
+
+def test_odds() -> None:
+    tree = "-> Work\n    Action A\n    Repeat (num_cycles = 2)\n        Action B"
+    steps = (
+        "a A takes at most 2 s|in at least 99 % of activations",
+        "b B takes at most 3 s|in at least 98 % of activations",
+    )
+    text = mission(tree, "q Work takes at most 9 s|in at least 96 % of activations", *steps)
+    (found,) = diagnostics(text, "odds-beyond-children")
+    assert found.message == "`-> Work` is to do so in 96 %; what is demanded below it ensures 95 %"
+    assert [related.message for related in found.related] == ["misses in up to 1 %", "misses in up to 4 %"]
+    for clauses in (
+        "takes at most 9 s|in at least 95 % of activations",
+        "takes at most 9 s|in at least 99 % of runs",
+        "takes at most 7 s|in at least 99 % of activations",
+    ):
+        assert findings(mission(tree, f"q Work {clauses}", *steps), "odds-beyond-children") == []
+
+
+def test_windows() -> None:
+    def found(odds: str, window: str) -> list[str]:
+        text = mission("Action A", f"q A succeeds|in at least {odds} of activations|confidence 95 %|over last {window}")
+        return [each.message for each in diagnostics(text, "window-too-small")]
+
+    assert found("99 %", "298 activations") == [
+        "298 activations cannot show 99 % with a confidence of 95 %: that takes 299 without any failure"
+    ]
+    assert found("99 %", "299 activations") == []
+    assert found("99 %", "7 d") == []
+    assert found("100 %", "9000 activations") == [
+        "9000 activations cannot show 100 % with a confidence of 95 %: no number of them can"
+    ]
+
+
+# ---- swallowed ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("tree", "reason"),
+    [
+        ("?\n    {}\n    Action B", "`?` goes on with its next child"),
+        ("R?\n    -> Inner\n        {}\n    Action B", "`R?` goes on with its next child"),
+        ("Retry (num_attempts = 2)\n    {}", "`Retry` tries again"),
+        ("Inverter\n    {}", "`Inverter` succeeds"),
+        ("ForceSuccess\n    {}", "`ForceSuccess` succeeds"),
+        ("IfThenElse\n    {}\n    Action B\n    Action C", "`IfThenElse` runs its third child"),
+        (
+            "|| (failure_count = 2 success_count = 1)\n    {}\n    Action B",
+            "`||` goes on: it takes more than one failure",
+        ),
+        ("All|| (max_failures = -1)\n    {}\n    Action B", "`All||` goes on: it takes more than one failure"),
+        ("ForceSuccess\n    SubTree Sub\nBehaviorTree Sub\n    {}", "`ForceSuccess` succeeds"),
+    ],
+)
+def test_where_a_failure_ends(tree: str, reason: str) -> None:
+    text = mission("@", "q A takes at most 5 s|on violation fail").replace("    @\n", "")
+    lines = tree.replace("{}", "Action A").split("\n")
+    at_file = False
+    for line in lines:
+        at_file = at_file or line.startswith("BehaviorTree")
+        text += f"{line}\n" if at_file else f"    {line}\n"
+    found = diagnostics(text, "swallowed-failure")
+    assert [each.message for each in found] == [f"when `A` fails because of this, {reason}"]
+    assert diagnostics(text.replace("fail\n", "halt\n"), "swallowed-failure") == []
+
+
+@pytest.mark.parametrize(
+    "tree",
+    [
+        "?\n    Action B\n    {}",
+        "Retry (num_attempts = 1)\n    {}",
+        "IfThenElse\n    {}\n    Action B",
+        "IfThenElse\n    Action B\n    {}\n    Action C",
+        "||\n    {}\n    Action B",
+        "|| (failure_count = 2)\n    {}\n    Action B",  # all must succeed, so one failure is enough
+        "Decorator Mine\n    {}",  # nobody knows
+        "TryCatch\n    {}\n    Action B",
+    ],
+)
+def test_failures_that_reach_the_root(tree: str) -> None:
+    text = mission(tree.replace("{}", "Action A"), "q A takes at most 5 s|on violation fail")
+    assert findings(text, "swallowed-failure") == []
+
+
+def test_one_way_up_is_enough() -> None:
+    text = mission(
+        "->\n    SubTree Sub\n    ForceSuccess\n        SubTree Sub", "q A takes at most 5 s|on violation fail"
+    )
+    assert findings(text + "BehaviorTree Sub\n    Action A\n", "swallowed-failure") == []
+
+
+# ---- signals --------------------------------------------------------------------------------------------------------
+
+GUARD = 'signal n : 1 from {level}{initially}\nQualityReq q "t"\n    A keeps n <= 3\n    on violation halt\n'
+
+
+@pytest.mark.parametrize(
+    "writer",
+    [
+        "Condition S (out = {level})",
+        "Condition S (out = {@level})",
+        "Condition S (level = {=})",
+        'Script (code = "@level := 1.0")',
+        'Condition S (_onSuccess = "level := 1.0")',
+        "SetBlackboard (value = 3 output_key = level)",
+        "SubTree Sub (x = {level})",
+    ],
+)
+def test_what_writes_a_signal(writer: str) -> None:
+    text = GUARD.replace("{initially}", " initially 0") + "BehaviorTree Main\n    ->\n        {}\n        Action A\n"
+    text += "BehaviorTree Sub\n    Action B\n"
+    assert findings(text.replace("{}", writer), "signal-never-written") == []
+    assert findings(text.replace("{}", "Condition C"), "signal-never-written") == [
+        "1 hint «n» no port and no script writes `level`, from which `n` is read"
+    ]
+
+
+def test_an_input_writes_nothing() -> None:
+    text = GUARD.replace("{initially}", " initially 0") + "Condition S\n    input x : double\n"
+    text += "BehaviorTree Main\n    ->\n        S (x = {level})\n        Action A\n"
+    assert len(findings(text, "signal-never-written")) == 1
+
+
+def test_a_first_value() -> None:
+    tree = "BehaviorTree Main\n    ->\n        Condition S (out = {level})\n        Action A\n"
+    message = "`n` has no value before its first sample, and a guard that reads it then ends the mission"
+    assert findings(GUARD.replace("{initially}", "") + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
+    assert findings(GUARD.replace("{initially}", "").replace("halt", "warn") + tree, "signal-may-be-unset") == []
+    through = GUARD.replace("{initially}", "").replace("A keeps n <= 3", "A takes at most 3 s\n    A needs high")
+    assert findings(through + "context high : n > 3\n" + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
+
+
+# ---- places ---------------------------------------------------------------------------------------------------------
+
+
+def test_what_a_file_attaches_is_told_where_it_attaches_it() -> None:
+    assert_problems(
+        """
+        //- main.btq
+        include "rules.btq"
+        apply quick(limit = 60 s) to A
+        BehaviorTree Main
+            Timeout (msec = 30 s)
+                Action A
+        //- rules.btq
+        QualityReq quick(limit : s = 5 s) "t"
+            takes at most limit
+        """,
+        "main.btq:2:7 warning dead-bound «quick» `60 s` is never reached: a Timeout halts `A` after 30 s",
+    )
