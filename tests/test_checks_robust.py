@@ -82,6 +82,27 @@ BehaviorTree Loop
 BehaviorTree Loop
 BehaviorTree Retry
     Inverter
+signal speed : m/s from {speed} counter fresh within 3 initially 5 %
+signal heat : degC initially -1e999 degC
+context hot : heat > 3 and near
+context near : hot or "MoveBase"
+QualityReq slow(limit : m/s, top : % = 3 m) : safety
+    keeps speed + 3 <= limit * heat
+    MoveBase takes at most 1e999 s if hot, 0 s if near else limit
+    in at least 1e999 % of runs
+    confidence 100 %
+    over last 1e999 activations
+    every Retry tries at most 1e999 per Loop
+    from mission starts to Loop fails takes between 5 s and -3 s
+    sum of One, MoveBase/MoveBase uses at most 3 degC of heat
+    goal 3
+apply slow(limit = 3, limit = 5 m/s, x = 2) to every MoveBase under Loop, every node tagged x except Nowhere
+QualityReq late
+    every Timeout takes at most 1 ms
+    every MoveBase takes at least 5 s
+    every Loop succeeds
+    mission needs -speed > max(heat)
+    on violation fail
 """,
     "parts.btq": 'include "main.btq"\nsignal battery : K\nBehaviorTree Loop\n    X\nQualityReq rq1 "slow"\n',
 }

@@ -73,7 +73,7 @@ def attempts_mismatch(view: View) -> Iterator[Found]:
     """`tries at most` against the number of attempts that Retry and Repeat make."""
     for _, claim, node, place in claims(view):
         most = highest(claim) if claim.verb == "tries" else None
-        if most is None or not isinstance(claim.per, Target):
+        if most is None or most[0] == inf or not isinstance(claim.per, Target):
             continue
         loops = _loops(node, claim.per.node)
         if not loops:

@@ -7,6 +7,8 @@ for all of its claims, wherever they stand between them.
 
 from __future__ import annotations
 
+from math import inf
+
 from btq_lang.record import replace
 from btq_lang.requirements.model import (
     NO_DIMENSION,
@@ -254,7 +256,7 @@ def _window(reader: Reader, written: WrittenWindow) -> Window | None:
     place = reader.place(TextSpan(written.start, written.end))
     if written.experiments is not None:
         count = float(written.size.raw)
-        if count < 1 or count != int(count):
+        if not 1 <= count < inf or count != int(count):
             reader.complain("impossible-odds", written.size.span, f"`{written.size.raw}` is no number of experiments")
             return None
         of_runs = written.experiments.raw == "runs"

@@ -115,7 +115,8 @@ def port_seconds(node: SourceNode, port: str) -> float | None:
         return None
     quantity = parse_quantity(word.text) if word.kind == QUANTITY else None
     if quantity is not None:
-        return max(round(to_si(quantity[0], quantity[1]) * 1000), 0) / 1000
+        found = to_si(quantity[0], quantity[1])
+        return max(round(found * 1000), 0) / 1000 if found < inf else None
     return int(word.text) / 1000 if word.text.isdecimal() and len(word.text) < 12 else None
 
 
