@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_problems
-from findings import diagnostics, findings
+from check_asserts import assert_problems, findings, problems
 
 
 def mission(tree: str, *requirements: str) -> str:
@@ -34,7 +33,7 @@ def test_the_sum_is_shown_with_each_share() -> None:
     ]
     assert budget("takes at most 20.5 s", "c C takes at most 3500 ms") == []
     text = mission("Retry (num_attempts = 3)\n    Action B", "main Main takes at most 10 s", "b B takes at most 4 s")
-    (found,) = diagnostics(text, "budget-exceeded")
+    (found,) = problems(text, "budget-exceeded")
     assert found.message == "`Retry` may take 12 s, more than `10 s`: 3 × `B` 4 s"
     assert [related.message for related in found.related] == ["up to 4 s, 3 times"]
 
@@ -135,7 +134,7 @@ def test_attempts() -> None:
 )
 def test_contradictions(first: str, second: str, message: str) -> None:
     text = "signal n : 1 from {n} initially 0\n" + mission("Action A", f"q {first}", f"r {second}")
-    assert [found.message for found in diagnostics(text, "contradicting-bounds")] == [message]
+    assert [found.message for found in problems(text, "contradicting-bounds")] == [message]
 
 
 @pytest.mark.parametrize(
@@ -165,7 +164,7 @@ def test_odds() -> None:
         "b B takes at most 3 s|in at least 98 % of activations",
     )
     text = mission(tree, "q Work takes at most 9 s|in at least 96 % of activations", *steps)
-    (found,) = diagnostics(text, "odds-beyond-children")
+    (found,) = problems(text, "odds-beyond-children")
     assert found.message == "`-> Work` is to do so in 96 %; what is demanded below it ensures 95 %"
     assert [related.message for related in found.related] == ["misses in up to 1 %", "misses in up to 4 %"]
     for clauses in (
@@ -179,7 +178,7 @@ def test_odds() -> None:
 def test_windows() -> None:
     def found(odds: str, window: str) -> list[str]:
         text = mission("Action A", f"q A succeeds|in at least {odds} of activations|confidence 95 %|over last {window}")
-        return [each.message for each in diagnostics(text, "window-too-small")]
+        return [each.message for each in problems(text, "window-too-small")]
 
     assert found("99 %", "298 activations") == [
         "298 activations cannot show 99 % with a confidence of 95 %: that takes 299 without any failure"
@@ -218,9 +217,9 @@ def test_where_a_failure_ends(tree: str, reason: str) -> None:
     for line in lines:
         at_file = at_file or line.startswith("BehaviorTree")
         text += f"{line}\n" if at_file else f"    {line}\n"
-    found = diagnostics(text, "swallowed-failure")
+    found = problems(text, "swallowed-failure")
     assert [each.message for each in found] == [f"when `A` fails because of this, {reason}"]
-    assert diagnostics(text.replace("fail\n", "halt\n"), "swallowed-failure") == []
+    assert problems(text.replace("fail\n", "halt\n"), "swallowed-failure") == []
 
 
 @pytest.mark.parametrize(
