@@ -6,20 +6,44 @@ One invariant: pieces are in order and do not overlap in the text that was made.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from functools import cached_property
 
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Final
+    from collections.abc import Callable, Sequence
+    from typing import Any, TypeAlias
+
+    # Start and end in the text that was made, start and end in the one it was made of.
+    Piece: TypeAlias = tuple[int, int, int, int]
 
 
 class Places:
-    """Pieces, each with its start and end in the text that was made and in the one it was made of."""
+    """Pieces of a text that was made, each with what it was made of; found when they are first asked for, for most
+    files have nothing wrong with them.
 
-    def __init__(self, pieces: Sequence[tuple[int, int, int, int]]) -> None:
-        self.pieces: Final = pieces
+    Args:
+        marks, lines: whatever `located` makes the pieces of.
+    """
+
+    def __init__(
+        self,
+        marks: Sequence[Any] = (),
+        lines: Sequence[str] = (),
+        located: Callable[[Sequence[Any], Sequence[str]], Sequence[Piece]] | None = None,
+    ) -> None:
+        self._marks = marks
+        self._lines = lines
+        self._located = located
+
+    @cached_property
+    def pieces(self) -> Sequence[Piece]:
+        """In the order of the text that was made; they do not overlap in it."""
+        return self._located(self._marks, self._lines) if self._located else ()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Places, (self.pieces, (), _as_they_are)
 
     def origin(self, span: Span) -> Span:
         """The span of the original that a span stands for: from the first piece in it to the last.
@@ -42,7 +66,11 @@ class Places:
         return Span(start, end)
 
 
-def _within(piece: tuple[int, int, int, int], at: int, at_end: bool = False) -> int:
+def _as_they_are(pieces: Sequence[Piece], _: Sequence[str]) -> Sequence[Piece]:
+    return pieces
+
+
+def _within(piece: Piece, at: int, at_end: bool = False) -> int:
     """Where an offset in a piece is in the original."""
     start, end, original_start, original_end = piece
     if end - start == original_end - original_start:
@@ -50,9 +78,9 @@ def _within(piece: tuple[int, int, int, int], at: int, at_end: bool = False) -> 
     return original_end if at_end else original_start
 
 
-def _begin(piece: tuple[int, int, int, int]) -> int:
+def _begin(piece: Piece) -> int:
     return piece[0]
 
 
-def _end(piece: tuple[int, int, int, int]) -> int:
+def _end(piece: Piece) -> int:
     return piece[1]

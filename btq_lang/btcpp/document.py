@@ -20,17 +20,30 @@ class Attribute:
 
     Attributes:
         raw: what stands between the quotes, references as they are.
-        start: where the name begins in the file it was read from; -1 where it was made.
-        value_start: where `raw` begins, likewise.
+        origin: where name and value begin in the file it was read from, or the element that knows it.
     """
 
-    __slots__ = ("name", "raw", "start", "value_start")
+    __slots__ = ("name", "origin", "raw")
 
-    def __init__(self, name: str, raw: str, start: int = -1, value_start: int = -1) -> None:
+    def __init__(self, name: str, raw: str, origin: Element | tuple[int, int] = (-1, -1)) -> None:
         self.name: Final = name
         self.raw: Final = raw
-        self.start: Final = start
-        self.value_start: Final = value_start
+        self.origin: Final = origin
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Where name and value begin in the file it was read from; -1 where it was made."""
+        return self.origin if isinstance(self.origin, tuple) else self.origin.places[self.name]
+
+    @property
+    def start(self) -> int:
+        """Where the name begins."""
+        return self.place[0]
+
+    @property
+    def value_start(self) -> int:
+        """Where `raw` begins."""
+        return self.place[1]
 
     @property
     def value(self) -> str:
@@ -48,9 +61,10 @@ class Element:
         children: what stands in it, in order.
         start, end: its start tag in the file it was read from; -1 where it was made.
         close: where its end tag ends, likewise.
+        source: the text of that file.
     """
 
-    __slots__ = ("attributes", "children", "close", "end", "start", "tag")
+    __slots__ = ("_places", "attributes", "children", "close", "end", "source", "start", "tag")
 
     def __init__(
         self,
@@ -59,6 +73,7 @@ class Element:
         children: Iterable[Content] = (),
         start: int = -1,
         end: int = -1,
+        source: str = "",
     ) -> None:
         self.tag = tag
         self.attributes: Final = list(attributes)
@@ -66,6 +81,16 @@ class Element:
         self.start: Final = start
         self.end: Final = end
         self.close = end  # set once more, by the reader, when the end tag comes
+        self.source: Final = source
+        self._places: dict[str, tuple[int, int]] | None = None
+
+    @property
+    def places(self) -> dict[str, tuple[int, int]]:
+        """Where names and values of the attributes begin that were read; looked for when somebody asks."""
+        if self._places is None:
+            found = attribute_matches(self.source, self.start, self.end)
+            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
+        return self._places
 
     @property
     def elements(self) -> Iterator[Element]:
@@ -141,6 +166,12 @@ class Document:
     def root(self) -> Element:
         """The document element."""
         return next(content for content in self.contents if isinstance(content, Element))
+
+
+def attribute_matches(text: str, start: int, end: int) -> Iterator[re.Match[str]]:
+    """The attributes of the start tag there, whose shape is right: name, quote and value."""
+    name = _TAG_NAME(text, start)
+    return ATTRIBUTE.finditer(text, name.end() if name else start, end)
 
 
 def write(document: Document) -> str:
@@ -226,6 +257,11 @@ def _referred(match: re.Match[str]) -> str:
 
 
 _STEP: Final = "  "
+# As the engine reads it: a name, a value in quotes, blanks around the sign.
+WORD: Final = r"[A-Za-z_:\x80-\U0010ffff][A-Za-z0-9_:.\-\x80-\U0010ffff]*"
+SPACE: Final = r"[ \t\n\v\f\r]*"
+_TAG_NAME: Final = re.compile(rf"<{SPACE}{WORD}").match
+ATTRIBUTE: Final = re.compile(rf"({WORD}){SPACE}={SPACE}([\"'])(.*?)\2", re.DOTALL)
 _NAMED: Final = {"lt": "<", "gt": ">", "amp": "&", "quot": '"', "apos": "'"}
 _REFERENCE: Final = re.compile(r"&(lt|gt|amp|quot|apos|#[0-9]{1,7}|#x[0-9A-Fa-f]{1,6});")
 _IN_TEXT: Final = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})

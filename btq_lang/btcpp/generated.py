@@ -11,6 +11,11 @@ from btq_lang.btcpp.version3 import Change
 from btq_lang.text import Span
 
 
+def may_be_generated(text: str) -> bool:
+    """Whether XML can hold a mark at all: most does not, and need not be looked through."""
+    return DESCRIPTION_MARK in text or "by btq" in text
+
+
 def without_generated(document: Document, changes: list[Change]) -> None:
     """Take the marks out, in place."""
     for content in list(document.contents):
@@ -39,4 +44,4 @@ def _cut(element: Element, index: int, changes: list[Change]) -> None:
     if own is None:
         del element.attributes[index]
     else:
-        element.attributes[index] = Attribute(attribute.name, own, attribute.start, attribute.value_start)
+        element.attributes[index] = Attribute(attribute.name, own, attribute.place)

@@ -9,9 +9,11 @@ at, save for what version 3 said in other words (`version3`).
 from __future__ import annotations
 
 import gc
+import re
+from itertools import accumulate
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
-from btq_lang.btcpp.generated import without_generated
+from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, string, string_of, type_, value
@@ -28,8 +30,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Final, TypeAlias
 
-    # A word of a line, and what it was made of: start and end in the XML.
-    Piece: TypeAlias = tuple[str, int, int]
+    # A word of a line, and what it was made of: an attribute's value, or what stands between two places.
+    Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
+    # A line: which one it is and where on it the words begin, the words, the pairs in brackets with what they were made
+    # of, and what is between them.
+    Mark: TypeAlias = tuple[int, int, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
 
 
 @record
@@ -67,20 +72,23 @@ def import_xml(text: str, keep_v3: bool = False, symbols: bool = True) -> Import
     try:
         done = read(text)
         if done.document is None:
-            return Imported("", (), done.problems, Places(()))
+            return Imported("", (), done.problems, Places())
         root = done.document.root
         if root.tag != "root":
             note = 'put the tree into <root BTCPP_format="4"><BehaviorTree ID="…"> … </BehaviorTree></root>'
             span = Span(root.start + 1, root.start + 1 + len(root.tag))
             problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
-            return Imported("", (), (*done.problems, problem), Places(()))
+            return Imported("", (), (*done.problems, problem), Places())
         writer = _Writer(text, symbols)
-        without_generated(done.document, writer.changes)
+        if may_be_generated(text):
+            without_generated(done.document, writer.changes)
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=_start))
-        return Imported("".join(writer.out), changes, (*done.problems, *writer.ignored), Places(writer.places))
+        return Imported(
+            "".join(writer.out), changes, (*done.problems, *writer.ignored), Places(writer.marks, writer.out, located)
+        )
     finally:
         if collecting:
             gc.enable()
@@ -97,8 +105,8 @@ class _Writer:
         self.source: Final = source
         self.symbols: Final = symbols
         self.out: Final[list[str]] = []
-        self.size = 0  # of all that is in `out`
-        self.places: Final[list[tuple[int, int, int, int]]] = []
+        self.marks: Final[list[Mark]] = []
+        self.has_returns: Final = _RETURN.search(source) is not None
         self.changes: Final[list[Change]] = []
         self.ignored: Final[list[Diagnostic]] = []
 
@@ -109,7 +117,7 @@ class _Writer:
         for content in contents[:at]:
             self.comment_line(content, 0)
         if at:
-            self.put("\n")
+            self.blank_line()
         behind = contents[at + 1 :]
         level = 1 if behind else 0
         self.root(document.root, level)
@@ -119,12 +127,12 @@ class _Writer:
     def root(self, root: Element, level: int) -> None:
         """ "Root" [ Name ] [ Attributes ], and its items below it: in a block, only if something stands behind it"""
         attributes = root.attributes
-        head: list[Piece] = [("Root", root.start + 1, root.start + 5)]
+        head: list[Piece] = [_tag(root, "Root")]
         if len(attributes) == 2 and _is(attributes[0], "BTCPP_format", "4") and _is_main_tree(attributes[1]):
-            head.append(_word(name(attributes[1].raw), attributes[1]))
+            head.append((name(attributes[1].raw), attributes[1]))
             self.line(0, head)
         elif attributes and _is_main_tree(attributes[0]):
-            head.append(_word(name(attributes[0].raw), attributes[0]))
+            head.append((name(attributes[0].raw), attributes[0]))
             self.line(0, head, attributes[1:])
         else:
             self.line(0, head, attributes)
@@ -134,13 +142,13 @@ class _Writer:
                 self.lost_text(child)
             elif isinstance(child, Comment):
                 if above != "comment" and (above != "" or level == 0):
-                    self.put("\n")
+                    self.blank_line()
                 self.comment_line(child, level)
                 above = "comment"
             elif isinstance(child, Element):
                 one_line = child.tag == "include" and not child.children
                 if above != "comment" and (above != "" or level == 0) and not (one_line and above == "line"):
-                    self.put("\n")
+                    self.blank_line()
                 self.item(child, level)
                 above = "line" if one_line else "block"
 
@@ -148,18 +156,18 @@ class _Writer:
         """BehaviorTree, include, TreeNodesModel; anything else as it is."""
         attributes = element.attributes
         first = attributes[0] if attributes else None
-        tag = (element.tag, element.start + 1, element.start + 1 + len(element.tag))
+        tag = _tag(element, element.tag)
         if element.tag == "BehaviorTree":
             identity = self.first(element, "ID")
             if identity is None:
                 self.line(level, [tag], attributes)
             else:
                 others = [each for each in attributes if each is not identity]
-                self.line(level, [tag, _word(name(identity.raw), identity)], others)
+                self.line(level, [tag, (name(identity.raw), identity)], others)
             self.nodes(element, level + 1)
         elif element.tag == "include" and (path := self.first(element, "path")) and not element.children:
             others = [each for each in attributes if each is not path]
-            self.line(level, [tag, _word(string(path.raw), path)], others)
+            self.line(level, [tag, (string(path.raw), path)], others)
         elif element.tag == "TreeNodesModel" and first is None:
             self.line(level, [tag])
             self.models(element, level + 1)
@@ -181,52 +189,48 @@ class _Writer:
     def nodes(self, parent: Element, level: int) -> None:
         """All nodes below an element, with the comments between them; not by recursion, for trees are deep."""
         stack = [iter(parent.children)]
-        has_nodes = _has_elements(parent)  # the innermost open element: a comment behind its line is the first in it
-        empty = True  # nothing of it is written yet
+        above: Element | None = parent  # what the line above says
         while stack:
-            child = next(stack[-1], None)
-            if child is None:
+            for child in stack[-1]:
+                if isinstance(child, Element):
+                    self.node(child, level)
+                    above = child
+                    if child.children:
+                        stack.append(iter(child.children))
+                        level += 1
+                        break
+                elif isinstance(child, Comment):
+                    if child.beside and above is not None and "\n" not in child.text and _may_stand_behind(above):
+                        self.comment_behind(child)
+                    else:
+                        self.comment_line(child, level)
+                    above = None
+                elif isinstance(child, Text):
+                    self.lost_text(child)
+            else:
                 stack.pop()
                 level -= 1
-                empty = has_nodes = False
-            elif isinstance(child, Element):
-                self.node(child, level, first=empty and len(stack) == 1)
-                empty = has_nodes = False
-                if child.children:
-                    stack.append(iter(child.children))
-                    level += 1
-                    has_nodes = _has_elements(child)
-                    empty = True
-                else:
-                    has_nodes = True
-                    continue
-            elif isinstance(child, Comment):
-                if child.beside and has_nodes and "\n" not in child.text:
-                    self.comment_behind(child)
-                else:
-                    self.comment_line(child, level)
-                has_nodes = False
-            elif isinstance(child, Text):
-                self.lost_text(child)
+                above = None
 
-    def node(self, element: Element, level: int, first: bool) -> None:
+    def node(self, element: Element, level: int) -> None:
         """Kind [ Label ] [ Attributes ]"""
         attributes = element.attributes
-        tag, start = element.tag, element.start + 1
+        tag = element.tag
         index = 0
         if tag not in CATEGORIES:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
             word = kind(tag, False, has_code, self.symbols)
-            head: list[Piece] = [(word, start, start + len(tag))]
+            head = [_tag(element, word)]
         else:
-            head = [(tag, start, start + len(tag))]
+            head = [_tag(element, tag)]
             if attributes and attributes[0].name == "ID":
                 index = 1
                 raw = attributes[0].raw
-                word = name(raw) if tag == "SubTree" else kind(raw, True, element.get("code") is not None)
-                head.append(_word(word, attributes[0]))
+                has_code = raw not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
+                word = name(raw) if tag == "SubTree" else kind(raw, True, has_code)
+                head.append((word, attributes[0]))
         if index < len(attributes) and attributes[index].name == "name" and (index or tag not in CATEGORIES):
-            head.append(_word(name(attributes[index].raw), attributes[index]))
+            head.append((name(attributes[index].raw), attributes[index]))
             index += 1
         self.line(level, head, attributes[index:] if index else attributes)
 
@@ -248,8 +252,7 @@ class _Writer:
 
     def model(self, element: Element, identity: Attribute, level: int) -> None:
         """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ], and its ports below"""
-        start = element.start + 1
-        head = [(element.tag, start, start + len(element.tag)), _word(name(identity.raw), identity)]
+        head = [_tag(element, element.tag), (name(identity.raw), identity)]
         children = element.children
         others = [each for each in element.attributes if each is not identity]
         text = _text_of(children[0]) if children and _is_description(children[0]) else None
@@ -266,8 +269,7 @@ class _Writer:
                 self.port(child, level + 1)
             elif child.tag == "MetadataFields" and not was_metadata and _is_metadata(child):
                 for part in child.elements:
-                    word = ("metadata", part.start + 1, part.start + 1 + len(part.tag))
-                    self.line(level + 1, [word], part.attributes)
+                    self.line(level + 1, [_tag(part, "metadata")], part.attributes)
             else:
                 self.verbatim(child, level + 1)
             was_metadata = child.tag == "MetadataFields"
@@ -275,20 +277,19 @@ class _Writer:
     def port(self, element: Element, level: int) -> None:
         """( "input" | "output" | "inout" ) [ NAME ] [ ":" … ] [ "=" Value ] [ Attributes ] [ STRING ]"""
         attributes = element.attributes
-        start = element.start + 1
-        head: list[Piece] = [(_DIRECTIONS[element.tag], start, start + len(element.tag))]
+        head = [_tag(element, _DIRECTIONS[element.tag])]
         count = len(attributes)
         index = 0
         if index < count and attributes[index].name == "name" and is_name(attributes[index].raw):
-            head.append(_word(attributes[index].raw, attributes[index]))
+            head.append((attributes[index].raw, attributes[index]))
             index += 1
         if index < count and attributes[index].name == "type":
-            head.append((":", 0, 0))
-            head.append(_word(type_(attributes[index].raw), attributes[index]))
+            head.append((":", None))
+            head.append((type_(attributes[index].raw), attributes[index]))
             index += 1
         if index < count and attributes[index].name == "default":
-            head.append(("=", 0, 0))
-            head.append(_word(value(attributes[index].raw), attributes[index]))
+            head.append(("=", None))
+            head.append((value(attributes[index].raw), attributes[index]))
             index += 1
         text = "".join(part.text for part in element.children if isinstance(part, Text)) or None
         self.line(level, head, attributes[index:], text)
@@ -303,85 +304,57 @@ class _Writer:
         Args:
             attributes: None: there are no brackets; empty ones are for `Root ()` alone.
         """
-        places = self.places
         indent = _INDENT * level
-        out = indent
-        at = self.size + len(indent)
-        for word, start, end in head:
-            if word == ":" or word == "=":
-                out += f" {word}"
-                at += 2
-                continue
-            if out is not indent:
-                out += " "
-                at += 1
-            out += word
-            if start >= 0:
-                places.append((at, at + len(word), start, end))
-            at += len(word)
+        out = indent + " ".join([word for word, _ in head])
         behind = "" if text is None else f" {string_of(text)}"
-        if attributes or (attributes is not None and head[0][0] in _KEEPS_BRACKETS and len(head) + len(attributes) < 9):
-            pairs = [(name(each.name), value(each.raw), each) for each in attributes or ()]
-            group = " ".join([f"{key} = {said}" for key, said, _ in pairs])
+        pairs: list[str] = []
+        between = " "
+        if attributes:
+            pairs = [f"{name(each.name)} = {value(each.raw)}" for each in attributes]
+            group = " ".join(pairs)
             column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
             if _fits(f"({group}){behind}", column) or (
-                _fits(f"({group})", column) and (not behind or not _fits(f"){behind}", len(indent)))
+                behind and _fits(f"({group})", column) and not _fits(f"){behind}", len(indent))
             ):
-                opening, between, closing = " (", " ", ")"
+                line = f"{out} ({group}){behind}\n"
             else:
-                opening, between, closing = f" (\n{indent}{_INDENT}", f"\n{indent}{_INDENT}", f"\n{indent})"
-            if not pairs:
-                opening, closing = " (", ")"
-            at += len(opening)
-            for key, said, each in pairs:
-                start = each.start
-                if start >= 0:
-                    places.append((at, at + len(key), start, start + len(each.name)))
-                    behind_key = at + len(key) + 3
-                    start = each.value_start
-                    raw = each.raw
-                    if said[0] == '"' and raw and len(said) == len(raw) + 2:
-                        places.append((behind_key + 1, behind_key + 1 + len(raw), start, start + len(raw)))
-                    else:
-                        places.append((behind_key, behind_key + len(said), start, start + len(raw)))
-                at += len(key) + len(said) + 3 + len(between)
-            out += opening + between.join([f"{key} = {said}" for key, said, _ in pairs]) + closing
-            if "&#" in group or any("&#" in each.raw for _, _, each in pairs):
-                self.lost_returns(attributes or ())
-        out += f"{behind}\n"
-        self.put(out)
+                between = f"\n{indent}{_INDENT}"
+                line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
+            if self.has_returns:
+                self.lost_returns(attributes)
+        elif attributes is not None and head[0][0] == "Root":
+            line = f"{out} ()\n"
+        else:
+            line = f"{out}{behind}\n"
+        self.marks.append((len(self.out), len(indent), head, pairs, attributes, between))
+        self.out.append(line)
 
     def verbatim(self, element: Element, level: int) -> None:
         """xml STRING: the element as it stands in the XML."""
         said = self.source[element.start : element.close]
-        self.line(level, [("xml", element.start, element.end), (string_of(said), element.start, element.close)])
+        self.line(level, [("xml", (element.start, element.end)), (string_of(said), (element.end, element.close))])
 
     def comment_line(self, content: Content, level: int) -> None:
         """A comment on a line of its own."""
-        if not isinstance(content, Comment):
-            return
-        indent = _INDENT * level
-        self.place_comment(content, self.size + len(indent))
-        self.put(f"{indent}{comment(content.text)}\n")
+        if isinstance(content, Comment):
+            said = comment(content.text)
+            self.place_comment(content, said, len(self.out), len(_INDENT) * level)
+            self.out.append(f"{_INDENT * level}{said}\n")
 
     def comment_behind(self, content: Comment) -> None:
         """A comment behind the line above."""
-        self.out[-1] = self.out[-1][:-1] + "  "
-        self.size += 1
-        self.place_comment(content, self.size)
-        self.put(f"{comment(content.text)}\n")
+        above, said = self.out[-1][:-1], comment(content.text)
+        self.place_comment(content, said, len(self.out) - 1, len(above) + 2)
+        self.out[-1] = f"{above}  {said}\n"
 
-    def place_comment(self, content: Comment, at: int) -> None:
-        end = content.start + len(content.text) + len("<!---->")
-        self.places.append((at, at + len(comment(content.text)), content.start, end))
-        if not is_kept(content.text):
-            self.changes.append(
-                Change(Span(content.start, end), "`*/` in a comment is written `* /`, or its last blank goes")
-            )
+    def place_comment(self, content: Comment, said: str, line: int, column: int) -> None:
+        span = Span(content.start, content.start + len(content.text) + len("<!---->"))
+        self.marks.append((line, column, [(said, span)], (), None, ""))
+        if "*/" in content.text and not is_kept(content.text):
+            self.changes.append(Change(span, "`*/` in a comment is written `* /`, or its last blank goes"))
 
-    def put(self, text: str) -> None:
-        self.out.append(text)
-        self.size += len(text)
+    def blank_line(self) -> None:
+        self.out.append("\n")
 
     # ---- what cannot be kept ----
 
@@ -402,9 +375,37 @@ class _Writer:
                 self.changes.append(Change(span, f"a carriage return in `{each.name}` is written as a line end"))
 
 
-def _word(word: str, attribute: Attribute) -> Piece:
-    """A word made of an attribute's value."""
-    return word, attribute.value_start, attribute.value_start + len(attribute.raw)
+def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int, int, int]]:
+    """What in the lines was made of what in the XML: pieces for `Places`."""
+    places: list[tuple[int, int, int, int]] = []
+    starts = [0, *accumulate(map(len, lines))]
+    for line, column, head, pairs, attributes, between in marks:
+        at = starts[line] + column
+        for word, origin in head:
+            if isinstance(origin, tuple):
+                places.append((at, at + len(word), *origin))
+            elif origin is not None and (start := origin.value_start) >= 0:
+                places.append((at, at + len(word), start, start + len(origin.raw)))
+            at += len(word) + 1
+        at += len("(") + (len(between) if between != " " else 0)
+        for pair, attribute in zip(pairs, attributes or (), strict=True):
+            key, start = len(name(attribute.name)), attribute.start
+            if start >= 0:
+                places.append((at, at + key, start, start + len(attribute.name)))
+                end, start, size = at + len(pair), attribute.value_start, len(attribute.raw)
+                value_at = at + key + len(" = ")
+                if pair[-1] == '"' and 0 < size == end - value_at - 2:
+                    places.append((value_at + 1, end - 1, start, start + size))
+                else:
+                    places.append((value_at, end, start, start + size))
+            at += len(pair) + len(between)
+    return places
+
+
+def _tag(element: Element, word: str) -> Piece:
+    """A word made of an element's tag."""
+    start = element.start + 1
+    return word, (start, start + len(element.tag))
 
 
 def _fits(text: str, column: int) -> bool:
@@ -423,8 +424,10 @@ def _is_main_tree(attribute: Attribute) -> bool:
     return attribute.name == "main_tree_to_execute"
 
 
-def _has_elements(element: Element) -> bool:
-    return any(isinstance(child, Element) for child in element.children)
+def _may_stand_behind(element: Element) -> bool:
+    """Whether a comment behind an element's line belongs where it stands in the XML: behind the whole element, or
+    first in a block that is a block without it."""
+    return not element.children or any(isinstance(child, Element) for child in element.children)
 
 
 def _is_description(content: Content) -> bool:
@@ -457,4 +460,4 @@ _INDENT: Final = "    "
 _COLUMNS: Final = 100
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
 _MAY_BE_PLACEHOLDERS: Final = frozenset(("Script", "ScriptCondition", "ScriptAction"))
-_KEEPS_BRACKETS: Final = frozenset(("Root",))
+_RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

@@ -14,7 +14,19 @@ from __future__ import annotations
 import gc
 import re
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text, unescape
+from btq_lang.btcpp.document import (
+    ATTRIBUTE,
+    SPACE,
+    WORD,
+    Attribute,
+    Comment,
+    Content,
+    Document,
+    Element,
+    Text,
+    attribute_matches,
+    unescape,
+)
 from btq_lang.btcpp.strict import not_well_formed
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.record import record
@@ -86,62 +98,66 @@ class _Reader:
         top: list[Content] = []
         contents = top  # of the innermost open element
         opened = self.open
-        tag_at, find = _TAG, text.find
+        scan = _TAG
         declared = True  # nothing but declarations so far
         at = 1 if text.startswith("\ufeff") else 0
+        behind = 0  # where the last thing ended
         while True:
-            start = find("<", at)
-            if start != at:
-                between = text[at:start] if start >= 0 else text[at:]
-                if between.strip(_BLANKS):
-                    declared = False
-                    self.characters(between, at, start, contents)
-            if start < 0:
-                break
-            tag = tag_at(text, start)
+            tag = scan(text, at)
             if tag is None:
-                mark = text[start : start + 2]
-                if mark == "</":
-                    if opened and text.startswith(f"{opened[-1].tag}>", start + 2):
-                        at = start + len(opened[-1].tag) + 3
-                    else:
-                        at = self.end_tag(start)
-                    if not opened:  # the engine reads no further
-                        break
-                    opened.pop().close = at
-                    contents = opened[-1].children if opened else top
-                elif mark == "<!":
-                    at = self.marked(start, contents)
+                start = self.behind_text(at, contents)
+                if start != at:
+                    declared = declared and not text[at:start].strip(_BLANKS)
+                    at = start
+                elif at == len(text):
+                    break
+                elif text.startswith("<!", at):
+                    at = behind = self.marked(at, behind, contents)
                     declared = False
-                elif mark == "<?":
-                    at = self.declaration(start, declared)
+                elif text.startswith("<?", at):
+                    at = behind = self.declaration(at, declared)
                 else:
-                    self.broken_tag(start)
+                    self.broken_tag(at)
                 continue
-            at = tag.end()
-            name, pairs, slash = tag.groups()
-            element = Element(name, self.attributes(name, tag.start(2), tag.end(2)) if pairs else (), (), start, at)
+            name, pairs, slash, closing = tag.groups()
+            at = behind = tag.end()
+            if name is None:
+                if not opened:  # the engine reads no further
+                    break
+                if closing != opened[-1].tag:
+                    self.mismatched(tag, closing)
+                opened.pop().close = at
+                contents = opened[-1].children if opened else top
+                continue
+            element = Element(name, (), (), text.rfind("<", 0, tag.start(1)), at, text)
+            if pairs:
+                self.attributes(element, pairs)
             contents.append(element)
             declared = False
-            if slash:
-                element.close = at
-            else:
+            if not slash:
                 opened.append(element)
                 contents = element.children
                 if len(opened) > MAX_DEPTH:
-                    raise _Broken(Diagnostic("nested-too-deep", Span(start, at), _TOO_DEEP))
+                    raise _Broken(Diagnostic("nested-too-deep", Span(element.start, at), _TOO_DEEP))
         if opened:
             self.unclosed(opened[-1])
         return top
 
-    def attributes(self, tag: str, start: int, end: int) -> list[Attribute]:
+    def attributes(self, element: Element, pairs: str) -> None:
         """{ Name "=" Value } of a start tag whose shape is known to be right."""
-        found = [
-            Attribute(match[1], match[3], match.start(), match.start(3)) for match in _ATTRIBUTE(self.text, start, end)
-        ]
+        found = [Attribute(name, raw, element) for name, _, raw in _ATTRIBUTES(pairs)]
         if len(found) > 1 and len({attribute.name for attribute in found}) < len(found):
-            self.twice(tag, found)
-        return found
+            self.twice(element)
+        element.attributes.extend(found)
+
+    def behind_text(self, at: int, contents: list[Content]) -> int:
+        """Where the next `<` stands, or the end."""
+        text = self.text
+        start = text.find("<", at)
+        between = text[at:start] if start >= 0 else text[at:]
+        if between.strip(_BLANKS):
+            self.characters(between, at, start, contents)
+        return start if start >= 0 else len(text)
 
     def characters(self, between: str, at: int, end: int, contents: list[Content]) -> None:
         """Text between tags; behind the last one the engine cannot end it."""
@@ -153,32 +169,24 @@ class _Reader:
         if end >= 0:
             contents.append(Text(unescape(_line_ends(between)), at))
 
-    def end_tag(self, start: int) -> int:
-        """ "</" Name { Attribute } ">"; behind the document element it ends the file for the engine."""
-        text = self.text
-        match = _END_TAG(text, start)
-        if match is None:
-            self.broken_tag(start)
-        if self.open and match[1] != self.open[-1].tag:
-            element = self.open[-1]
-            likely = next((at for at, other in enumerate(reversed(self.open)) if other.tag == match[1]), None)
-            notes = (
-                (f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children",)
-                if likely is not None
-                else (f"write </{element.tag}>",)
-            )
-            related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> is open since here"),)
-            message = f"</{match[1]}> stands where </{element.tag}> is expected"
-            raise _Broken(Diagnostic(RULE, Span(start, match.end()), message, related, notes))
-        return match.end()
+    def mismatched(self, tag: re.Match[str], closing: str) -> NoReturn:
+        """`</b>` where another element is open."""
+        element = self.open[-1]
+        note = f"write </{element.tag}>"
+        if any(other.tag == closing for other in self.open):
+            note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
+        related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> is open since here"),)
+        message = f"</{closing}> stands where </{element.tag}> is expected"
+        start = self.text.rfind("<", 0, tag.start(4))
+        raise _Broken(Diagnostic(RULE, Span(start, tag.end()), message, related, (note,)))
 
-    def marked(self, start: int, contents: list[Content]) -> int:
+    def marked(self, start: int, behind: int, contents: list[Content]) -> int:
         """ "<!--" … "-->", "<![CDATA[" … "]]>", "<!" … ">"; the last is passed over, as the engine does"""
         text = self.text
         if text.startswith("<!--", start):
             end = self.closing("-->", start + 4, start, "this comment has no -->")
-            line = text[max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1 : start]
-            contents.append(Comment(_line_ends(text[start + 4 : end]), line.strip(_BLANKS) != "", start))
+            beside = behind > 0 and LINE_END.search(text, behind, start) is None
+            contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
             return end + 3
         if text.startswith("<![CDATA[", start):
             end = self.closing("]]>", start + 9, start, "this CDATA section has no ]]>")
@@ -209,18 +217,17 @@ class _Reader:
     def broken(self, span: Span, message: str, note: str) -> NoReturn:
         raise _Broken(Diagnostic(RULE, span, message, notes=(note,)))
 
-    def twice(self, tag: str, found: list[Attribute]) -> NoReturn:
-        first: dict[str, Attribute] = {}
-        for attribute in found:
-            if attribute.name in first:
+    def twice(self, element: Element) -> NoReturn:
+        """Two values for one attribute."""
+        first: dict[str, Span] = {}
+        for match in attribute_matches(self.text, element.start, element.end):
+            name = match[1]
+            if name in first:
                 break
-            first[attribute.name] = attribute
-        name = attribute.name
-        place = Place(Span(first[name].start, first[name].start + len(name)))
-        related = (Related(place, "it has a value already"),)
-        message = f"the attribute `{name}` stands twice in <{tag}>"
-        span = Span(attribute.start, attribute.start + len(name))
-        raise _Broken(Diagnostic(RULE, span, message, related, ("keep one of them",)))
+            first[name] = Span(*match.span(1))
+        related = (Related(Place(first[name]), "it has a value already"),)
+        message = f"the attribute `{name}` stands twice in <{element.tag}>"
+        raise _Broken(Diagnostic(RULE, Span(*match.span(1)), message, related, ("keep one of them",)))
 
     def unclosed(self, element: Element) -> NoReturn:
         message = f"<{element.tag}> is never closed"
@@ -261,13 +268,13 @@ def _line_ends(text: str) -> str:
 
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} elements inside each other: the engine reads no more"
 _BLANKS: Final = " \t\n\v\f\r"
-_WORD: Final = r"[A-Za-z_:\x80-\U0010ffff][A-Za-z0-9_:.\-\x80-\U0010ffff]*"
-_S: Final = r"[ \t\n\v\f\r]*"
-_PAIRS: Final = rf"((?:{_S}{_WORD}{_S}={_S}(?:\"[^\"]*\"|'[^']*'))*)"
-# No two parts of these can match the same characters, so there is one way to match, or none: the time is linear.
-_TAG: Final = re.compile(rf"<{_S}({_WORD}){_PAIRS}{_S}(/?)>").match
-_END_TAG: Final = re.compile(rf"</({_WORD}){_PAIRS}{_S}>").match
-_ATTRIBUTE: Final = re.compile(rf"({_WORD}){_S}={_S}([\"'])(.*?)\2", re.DOTALL).finditer
-_NAME: Final = re.compile(_WORD).match
-_SPACE: Final = re.compile(_S).match
-_EQUALS: Final = re.compile(rf"{_S}={_S}([\"'])").match
+_IN_NAME: Final = WORD[WORD.rindex("[") : -1]  # what may stand behind the first character of a name
+_PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
+# No two parts of it can match the same characters, so there is one way to match, or none: the time is linear.
+_TAG: Final = re.compile(
+    rf"{SPACE}<(?:{SPACE}({WORD})(?!{_IN_NAME}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{_IN_NAME})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
+).match
+_ATTRIBUTES: Final = ATTRIBUTE.findall
+_NAME: Final = re.compile(WORD).match
+_SPACE: Final = re.compile(SPACE).match
+_EQUALS: Final = re.compile(rf"{SPACE}={SPACE}([\"'])").match

@@ -14,6 +14,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.record import record
 from btq_lang.text import Span
+from btq_lang.tokens import CATEGORIES
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -51,7 +52,8 @@ def translated(root: Element, changes: list[Change]) -> None:
         changes.append(Change(span, 'BTCPP_format="4" is added'))
     root.attributes[:] = [Attribute("BTCPP_format", "4"), *kept]
     for element in _walk(root):
-        _Translator(element, changes).translate()
+        if element.tag in _MAY_BE_OLD:
+            _Translator(element, changes).translate()
 
 
 class _Translator:
@@ -145,15 +147,16 @@ def _is_new(element: Element) -> bool:
     """Whether only version 4 understands an element: its node, or one of its attributes."""
     if element.tag in _NEW_NODES:
         return True
-    return any(each.name in _NEW_ATTRIBUTES for each in element.attributes)
+    return any(attribute.name in _NEW_ATTRIBUTES for attribute in element.attributes)
 
 
 def _walk(root: Element) -> Iterator[Element]:
+    """Every element, in no particular order."""
     stack = [root]
     while stack:
         element = stack.pop()
         yield element
-        stack += reversed(list(element.elements))
+        stack += [child for child in element.children if isinstance(child, Element)]
 
 
 def _is_true(said: str) -> bool:
@@ -161,11 +164,11 @@ def _is_true(said: str) -> bool:
 
 
 def _renamed(attribute: Attribute, name: str) -> Attribute:
-    return Attribute(name, attribute.raw, attribute.start, attribute.value_start)
+    return Attribute(name, attribute.raw, attribute.place)
 
 
 def _valued(attribute: Attribute, raw: str) -> Attribute:
-    return Attribute(attribute.name, raw, attribute.start, attribute.value_start)
+    return Attribute(attribute.name, raw, attribute.place)
 
 
 # Nodes of version 3 that version 4 has no word for.
@@ -180,6 +183,8 @@ _OLD_NODES: Final = frozenset(
         *("AlwaysFailure", "SetBlackboard", "SubTree"),
     )
 )
+# The tags of what may have to be said otherwise, itself or by its ID.
+_MAY_BE_OLD: Final = frozenset((*KNOWN_WORDS, *(tag for tag, _ in OLD_PORTS), *CATEGORIES))
 _NEW_NODES: Final = frozenset(BUILTINS) - _OLD_NODES
 _NEW_ATTRIBUTES: Final = frozenset(
     kind.name for kind in RESERVED_ATTRIBUTES.values() if kind.is_script or kind.name == "_autoremap"

@@ -29,10 +29,9 @@ def value(raw: str) -> str:
     Args:
         raw: as it stands between the quotes of the XML.
     """
-    if _PLAIN(raw):
-        return f'"{raw}"'
-    if _BARE(raw):
-        return raw
+    match = _SIMPLE(raw)
+    if match is not None:
+        return raw if match.lastindex else f'"{raw}"'
     if "&" in raw:
         text = unescape(raw)
         if _BARE(text):
@@ -130,6 +129,7 @@ _ESCAPED: Final = {"\n": "\\n", "\r": "\\n", "\t": "\\t", "\\": "\\\\"}
 _NUMBER: Final = r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?"
 _BARE: Final = re.compile(rf"\{{[^{{}}\"'\r\n&]*\}}|{_NUMBER}").fullmatch
 _PLAIN: Final = re.compile(r"[^0-9\-{&\"\\\r\n][^&\"\\\r\n]*|").fullmatch
+_SIMPLE: Final = re.compile(rf"(\{{[^{{}}\"'\r\n&]*\}}|{_NUMBER})|[^0-9\-{{&\"\\\r\n][^&\"\\\r\n]*|").fullmatch
 _PARTS: Final = re.compile(r"\r\n|\n\r|[\r\n]|&#?\w+;|[&\\]|[^\r\n&\\]+").finditer
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
 _TYPE: Final = re.compile(r"\w+(?:::\w+)*").fullmatch
