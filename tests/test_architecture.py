@@ -22,7 +22,9 @@ ROWS: tuple[frozenset[str], ...] = (
         | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),
-    frozenset({"toml_places", "project", "symbols", "mentions", "workspace", "placeholders", "requirements"}),
+    frozenset(
+        {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
+    ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "features"}),
     frozenset(
         {

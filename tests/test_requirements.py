@@ -14,10 +14,12 @@ from btq_lang.requirements.model import (
     Compare,
     Flag,
     InContext,
+    Limit,
     Mission,
     Not,
     Read,
     Running,
+    Script,
     Span,
     Table,
     Target,
@@ -506,3 +508,74 @@ def test_contexts_in_contexts() -> None:
     assert found.contexts["c0"] is None
     found = resolved("context a : b or true\ncontext b : a\ncontext c : b or true\n")
     assert [problem.diagnostic.message for problem in found.problems] == ["the context `b` speaks of itself"]
+
+
+def test_more_than_any_number() -> None:
+    found = resolved(
+        'QualityReq rq1 "t"\n    takes at most 1e999 s\n    tries at most 1e999\n    runs at least 1 per 1e308 h\n'
+    )
+    assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in found.problems] == [
+        ("invalid-literal", "`1e999 s` is more than any number"),
+        ("invalid-literal", "`1e999` is more than any number"),
+        ("invalid-literal", "`1e308 h` is more than any number"),
+    ]
+
+
+# ---- classic descriptions --------------------------------------------------------------------------------------------
+
+
+def classic(text: str) -> list[tuple[str, str, object]]:
+    """What a description demands: verbs, texts, and what is behind them."""
+    description = text.replace('"', "'")
+    found = resolved(
+        "signal speed : m/s from {speed}\nBehaviorTree Main\n    ->\n        B\n"
+        f'        A (satisfies QualityReq ID = "rq1" description = "{description}")\n'
+    )
+    assert found.problems == ()
+    requirement = found.all["rq1"]
+    assert requirement.action == ("fail" if requirement.claims else None)
+    assert requirement.classic is bool(requirement.claims)
+    assert where(found, "rq1") == ["A - in Main"]
+    return [(claim.verb, claim.text, claim.limit or claim.condition) for claim in requirement.claims]
+
+
+def test_descriptions_that_are_clauses() -> None:
+    ((verb, text, limit),) = classic("Quickly. SuccessIf takes at most 30 s.")
+    assert (verb, text) == ("takes", "takes at most 30 s")
+    assert isinstance(limit, Limit)
+    assert (limit.relation, limit.value.text) == ("<=", "30 s")
+    ((verb, text, limit),) = classic("FailureIf takes more than 30 s")
+    assert isinstance(limit, Limit)
+    assert (verb, text, limit.relation) == ("takes", "takes more than 30 s", "<=")
+    assert [verb for verb, _, _ in classic("SuccessIf: keeps speed < 1 m/s FailureIf keeps speed > 3 m/s")] == [
+        "keeps",
+        "never",
+    ]
+
+
+def test_descriptions_that_are_scripts() -> None:
+    assert classic("SuccessIf battery > 20 FailureIf stuck") == [
+        ("keeps", "SuccessIf battery > 20", Script("battery > 20")),
+        ("never", "FailureIf stuck", Script("stuck")),
+    ]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "The robot is quick",
+        "SuccessIf the moving shall take at most 30 sec.",
+        "SuccessIf keeps sped < 1 m/s",  # nobody measures that
+        "SuccessIf keeps speed < 1 s",
+        "SuccessIf never happens",
+        "FailureIf takes between 1 s and 2 s",
+        "FailureIf takes at least 3 s in at least 3 % of runs",
+    ],
+)
+def test_descriptions_that_stay_prose(text: str) -> None:
+    assert classic(text) == []
+
+
+def test_clauses_beside_a_description_count_alone() -> None:
+    found = resolved('QualityReq rq1 "SuccessIf takes at most 3 s" takes at most 5 s\n')
+    assert [claim.text for claim in found.all["rq1"].claims] == ["takes at most 5 s"]

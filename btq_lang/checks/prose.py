@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from functools import cache
 
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
-from btq_lang.clauses import VERBS
-from btq_lang.conditions import HEADS
+from btq_lang.constraints import Constraint, clauses_of
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
-from btq_lang.parser import parse
-from btq_lang.record import record
-from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Claim, Entry, Path, Requirement, Signal, Word
+from btq_lang.syntax import Entry, Requirement, Signal, Word
 from btq_lang.text import Span
 from btq_lang.units import Dimension, parse_unit
-
-# How the keywords are spelt, FailuerIf by the original tool; folded.
-_KEYWORDS = ("successif", "failureif", "failuerif")
-
-
-@record
-class _Constraint:
-    """A keyword in a text, and what stands behind it.
-
-    Attributes:
-        keyword: where the keyword stands, counted from the start of the text.
-        violates: it says when the requirement is violated.
-    """
-
-    keyword: Span
-    violates: bool
-    text: str
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -43,7 +20,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
             continue
-        found = [each for each in _constraints(requirement.text) if not _can_be_checked(view, each.text)]
+        found = _not_checked(view, requirement, symbol.name)
         first = view.scope.find(Kind.REQUIREMENT, symbol.name)
         if not found or (first is not None and first.symbol is not symbol):
             continue
@@ -60,59 +37,25 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _constraints(word: Word) -> list[_Constraint]:
-    """What stands behind each keyword, up to the next one."""
-    text = word.text
-    if "if" not in text.lower():
-        return []
-    found = list(_keyword_pattern().finditer(text))
-    ends = [*(match.start() for match in found), len(text)][1:]
-    return [
-        _Constraint(
-            Span(*match.span()), not match[0].lower().startswith("s"), text[match.end() : end].lstrip(":").strip()
-        )
-        for match, end in zip(found, ends, strict=True)
-    ]
+def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
+    """What stands behind keywords and is neither a script nor clauses that mean something."""
+    found = view.constraints(requirement)
+    if any(checkable for _, checkable in found) and view.requirements is not None:
+        resolved = view.requirements.all.get(name)
+        if resolved is not None and not resolved.claims:
+            return [each for each, _ in found]
+    return [each for each, checkable in found if not checkable]
 
 
-def _can_be_checked(view: View, text: str) -> bool:
-    """Whether it is a script that the engine takes for a condition, or clauses of a requirement; `it takes at most 5 s`
-    is none, unless there is a node `it`."""
-    from btq_lang.script import check_script, parse_script  # few files have a keyword
-
-    problems = check_script(parse_script(text), expects_value=True)
-    if not any(problem.effective_severity is Severity.ERROR for problem in problems):
-        return True
-    words = text.replace(".", " ").split()
-    if not words or (words[0] not in HEADS and VERBS.isdisjoint(words)):
-        return False
-    requirement = _requirement(text)
-    return requirement is not None and all(
-        view.node_names.issuperset(name.text for name in clause.subject.names)
-        for clause in requirement.clauses
-        if isinstance(clause, Claim) and isinstance(clause.subject, Path)
-    )
-
-
-def _as_clause(constraint: _Constraint, signals: dict[str, Dimension]) -> str | None:
+def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
     """The clause that stands for prose; a condition of a requirement needs but its verb."""
     from btq_lang.checks.wording import as_clause  # as above
 
     text = " ".join(constraint.text.split()).rstrip(".")
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"
-    if any(sign in text for sign in "<>=") and _requirement(condition) is not None:
+    if any(sign in text for sign in "<>=") and clauses_of(condition) is not None:
         return condition
     return as_clause(text, violates=constraint.violates, signals=signals)
-
-
-def _requirement(text: str) -> Requirement | None:
-    """A requirement with these clauses; None where the text is anything else."""
-    parsed = parse(f"QualityReq r {' '.join(text.split()).rstrip('.')}\n")
-    item = parsed.entries[0].item
-    if parsed.diagnostics or len(parsed.entries) > 1 or not isinstance(item, Requirement):
-        return None
-    says_more = item.parameters or item.quality is not None or item.text is not None
-    return item if item.clauses and not says_more else None
 
 
 def _signals(view: View) -> dict[str, Dimension]:
@@ -144,8 +87,3 @@ def _fixes(view: View, entry: Entry, text: Word, name: str, clauses: tuple[str, 
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)
-
-
-@cache
-def _keyword_pattern() -> re.Pattern[str]:
-    return re.compile(rf"\b(?:{'|'.join(_KEYWORDS)})\b", re.IGNORECASE)

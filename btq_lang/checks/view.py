@@ -12,6 +12,7 @@ from functools import cache, cached_property
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks.calls import Calls
+from btq_lang.constraints import Constraint, can_be_checked, constraints
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
 from btq_lang.nodes import meant_clause
@@ -95,6 +96,7 @@ class View:
         self._nodes: dict[int, tuple[SeenNode, ...]] = {}
         self._near: dict[tuple[Kind | None, str], tuple[str, ...]] = {}
         self._compared = 0
+        self._constraints: dict[int, tuple[tuple[Constraint, bool], ...]] = {}
         self._qualities: dict[str, QualityMatch | None] = {}
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
@@ -265,12 +267,27 @@ class View:
     def _has_clauses(self) -> bool:
         if self.scope.names(Kind.SIGNAL) or self.scope.names(Kind.CONTEXT):
             return True
-        found = (self.scope.find(Kind.REQUIREMENT, name) for name in self.scope.names(Kind.REQUIREMENT))
-        if any(
-            isinstance(each.symbol.target, Requirement) and _is_measurable(each.symbol.target) for each in found if each
-        ):
-            return True
+        for name in self.scope.names(Kind.REQUIREMENT):
+            definition = self.scope.find(Kind.REQUIREMENT, name)
+            requirement = definition.symbol.target if definition is not None else None
+            if isinstance(requirement, Requirement) and (
+                requirement.clauses
+                or requirement.parameters
+                or any(checkable for _, checkable in self.constraints(requirement))
+            ):
+                return True
         return any(isinstance(entry.item, Apply) for entry in self.file.parsed.entries)
+
+    def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
+        """What stands behind SuccessIf and FailureIf in a description, and whether it is more than prose."""
+        if requirement.text is None or requirement.clauses:
+            return ()
+        key = id(requirement)
+        if key not in self._constraints:
+            found = constraints(requirement.text)
+            names = self.node_names if found else frozenset()
+            self._constraints[key] = tuple((each, can_be_checked(each.text, names)) for each in found)
+        return self._constraints[key]
 
     @cached_property
     def placeholders(self) -> dict[str, tuple[str, Entry, Word]]:
@@ -377,10 +394,6 @@ def called(node: Node) -> str:
     """A node as a message names it among others: its kind and its instance name."""
     name = node.name
     return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
-
-
-def _is_measurable(requirement: Requirement) -> bool:
-    return bool(requirement.clauses or requirement.parameters)
 
 
 def _is_of_node(item: object) -> bool:

@@ -8,6 +8,7 @@ the engine can enforce, nor what a run of the robot was like.
     nodes.py     which written nodes a path, a kind or a tag means
     reader.py    values and conditions: names, units, what compares with what
     clauses.py   what each verb asks for
+    classic.py   SuccessIf and FailureIf in classic descriptions
     attach.py    which requirement holds for which node
     budgets.py   how long nodes take when all that is demanded of their children holds
 """
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 from btq_lang.record import record
 from btq_lang.requirements.attach import attach
+from btq_lang.requirements.classic import with_constraints
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, SourceNode, Trace
 from btq_lang.requirements.nodes import Nodes
@@ -83,7 +85,8 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
     for definition in _definitions(scope, Kind.REQUIREMENT):
         if isinstance(written := definition.symbol.target, WrittenRequirement):
             quality = qualities.get(id(written))
-            found[definition.symbol.name] = resolve(reader, definition, written, quality)
+            resolved = resolve(reader, definition, written, quality)
+            found[definition.symbol.name] = with_constraints(reader, resolved, written)
     applied, traces, attached = attach(reader, found)
     problems = tuple(reader.problems.values())
     return Requirements(

@@ -6,6 +6,8 @@ in two units.  It does not know verbs: `clauses` says what each of them asks for
 
 from __future__ import annotations
 
+from math import isfinite
+
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.quantities import parse_quantity
@@ -148,10 +150,23 @@ class Reader:
             and not any(file.parsed.diagnostics for file in map(workspace.files.__getitem__, scope.paths))
         )
 
-    def begin(self, path: str, entry: Entry, parameters: dict[str, Parameter] | None = None) -> None:
+    def begin(
+        self,
+        path: str,
+        entry: Entry,
+        parameters: dict[str, Parameter] | None = None,
+        source: tuple[str, Span] | None = None,
+    ) -> None:
+        """What follows stands there.
+
+        Args:
+            source: the text that it was parsed from, where that is no text of the file, and the place that stands for
+                all of it.
+        """
         self.path = path
         self.entry = entry
         self.parameters = parameters or {}
+        self._source = source
 
     def complain(
         self,
@@ -167,10 +182,12 @@ class Reader:
         self.problems.setdefault((id(self.entry), diagnostic), Problem(self.path, self.entry, diagnostic))
 
     def place(self, span: Span) -> Place:
-        return Place(span, self.path, self.entry.item)
+        return Place(span if self._source is None else self._source[1], self.path, self.entry.item)
 
     def text(self, start: int, end: int) -> str:
         """What is written there, blanks folded."""
+        if self._source is not None:
+            return " ".join(self._source[0][start:end].split())
         base = self.entry.start
         return " ".join(self.workspace.files[self.path].text[base + start : base + end].split())
 
@@ -300,14 +317,22 @@ class Reader:
     def _number(self, word: Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
         if word.kind == NUMBER:
-            value = Value(raw, float(raw), _ONE)
-            return Term(value, "number", NO_DIMENSION, None, word.span, word=word)
+            term = Term(Value(raw, float(raw), _ONE), "number", NO_DIMENSION, None, word.span, word=word)
+            return term if self._is_finite(float(raw), word) else None
         found = parse_quantity(raw)
         if found is None:
             return None  # an unknown unit, which is told
         number, unit, unit_text = found
+        value = to_si(number, unit)
+        if not self._is_finite(value, word):
+            return None
         level: Level = "level" if unit.offset else "either"
-        return Term(Value(raw, to_si(number, unit), unit), "number", unit.dimension, unit_text, word.span, level, word)
+        return Term(Value(raw, value, unit), "number", unit.dimension, unit_text, word.span, level, word)
+
+    def _is_finite(self, value: float, word: Word) -> bool:
+        if not isfinite(value):
+            self.complain("invalid-literal", word.span, f"`{word.raw}` is more than any number")
+        return isfinite(value)
 
     def _named(self, word: Word) -> Term | None:
         """A parameter, a signal, or a literal that looks like a name."""

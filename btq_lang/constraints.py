@@ -1,0 +1,91 @@
+"""SuccessIf and FailureIf in the description of a classic requirement: what stands behind them, and whether it is more
+than prose.
+
+One invariant: the answer depends on the text and on the names of the nodes.  What it means `requirements` says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Set
+from functools import cache
+
+from btq_lang.clauses import VERBS
+from btq_lang.conditions import HEADS
+from btq_lang.parser import parse
+from btq_lang.record import record
+from btq_lang.rules import Severity
+from btq_lang.syntax import Claim, Path, Requirement, Word
+from btq_lang.text import Span
+
+# How the keywords are spelt, FailuerIf by the original tool; folded.
+_KEYWORDS = ("successif", "failureif", "failuerif")
+
+
+@record
+class Constraint:
+    """A keyword in a text, and what stands behind it.
+
+    Attributes:
+        keyword: where the keyword stands, counted from the start of the text.
+        violates: it says when the requirement is violated.
+    """
+
+    keyword: Span
+    violates: bool
+    text: str
+
+
+def constraints(word: Word) -> list[Constraint]:
+    """What stands behind each keyword, up to the next one."""
+    text = word.text
+    if "if" not in text.lower():
+        return []
+    found = list(_keyword_pattern().finditer(text))
+    ends = [*(match.start() for match in found), len(text)][1:]
+    return [
+        Constraint(
+            Span(*match.span()), not match[0].lower().startswith("s"), text[match.end() : end].lstrip(":").strip()
+        )
+        for match, end in zip(found, ends, strict=True)
+    ]
+
+
+def can_be_checked(text: str, node_names: Set[str]) -> bool:
+    """Whether it is a script that the engine takes for a condition, or clauses of a requirement; `it takes at most 5 s`
+    is none, unless there is a node `it`."""
+    if is_script(text):
+        return True
+    words = text.replace(".", " ").split()
+    if not words or (words[0] not in HEADS and VERBS.isdisjoint(words)):
+        return False
+    found = clauses_of(text)
+    return found is not None and all(
+        node_names >= {name.text for name in clause.subject.names}
+        for clause in found[0].clauses
+        if isinstance(clause, Claim) and isinstance(clause.subject, Path)
+    )
+
+
+def is_script(text: str) -> bool:
+    """Whether the engine takes it for a condition."""
+    from btq_lang.script import check_script, parse_script  # few files have a keyword
+
+    problems = check_script(parse_script(text), expects_value=True)
+    return all(problem.effective_severity is not Severity.ERROR for problem in problems)
+
+
+def clauses_of(text: str) -> tuple[Requirement, str] | None:
+    """A requirement with these clauses, and the text that its offsets count in; None where it is anything else."""
+    whole = f"QualityReq r {' '.join(text.split()).rstrip('.')}\n"
+    parsed = parse(whole)
+    item = parsed.entries[0].item
+    if parsed.diagnostics or len(parsed.entries) > 1 or not isinstance(item, Requirement):
+        return None
+    says_more = item.parameters or item.quality is not None or item.text is not None
+    return (item, whole) if item.clauses and not says_more else None
+
+
+@cache
+def _keyword_pattern() -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{'|'.join(_KEYWORDS)})\b", re.IGNORECASE)

@@ -1,0 +1,75 @@
+"""SuccessIf and FailureIf in classic descriptions, as claims: they mark a hard constraint (language.md §4).
+
+One invariant: what does not mean something as a whole stays documentation, without a word: `checks` says so.  A claim
+made of a description stands where the description does.
+"""
+
+from __future__ import annotations
+
+from btq_lang.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
+from btq_lang.record import replace
+from btq_lang.requirements.clauses import with_clauses
+from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
+from btq_lang.requirements.reader import Reader
+from btq_lang.syntax import Claim as WrittenClaim
+from btq_lang.syntax import Requirement as WrittenRequirement
+from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.requirements.model import Relation
+
+
+def with_constraints(reader: Reader, requirement: Requirement, written: WrittenRequirement) -> Requirement:
+    """A requirement with what its description demands; one that has clauses says it there."""
+    if written.clauses or written.text is None:
+        return requirement
+    names = frozenset(reader.nodes.names())
+    for constraint in constraints(written.text):
+        if can_be_checked(constraint.text, names):
+            requirement = _with(reader, requirement, constraint, written.text.span)
+    if not requirement.claims:
+        return requirement
+    return replace(requirement, classic=True, action=requirement.action or "fail")
+
+
+def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span: Span) -> Requirement:
+    if is_script(constraint.text):
+        keyword = "FailureIf" if constraint.violates else "SuccessIf"
+        text = f"{keyword} {constraint.text}"
+        verb = "never" if constraint.violates else "keeps"
+        claim = Claim(verb, text, reader.place(span), condition=Script(constraint.text))  # type: ignore[arg-type]  # verbs
+        return replace(requirement, claims=(*requirement.claims, claim))
+    found = clauses_of(constraint.text)
+    assert found is not None, "what can be checked is a script or has clauses"
+    item, text = found
+    if constraint.violates and not all(isinstance(clause, WrittenClaim) for clause in item.clauses):
+        return requirement
+    before = dict(reader.problems)
+    reader.begin(requirement.path, requirement.entry, source=(text, span))
+    claims_before = len(requirement.claims)
+    resolved = with_clauses(reader, requirement, item.clauses)
+    understood = len(reader.problems) == len(before)
+    reader.problems = before
+    added = resolved.claims[claims_before:]
+    if constraint.violates:
+        turned = [_turned(claim) for claim in added]
+        added = tuple(claim for claim in turned if claim is not None)
+        understood = understood and len(added) == len(turned)
+    return replace(resolved, claims=(*requirement.claims, *added)) if understood and added else requirement
+
+
+def _turned(claim: Claim) -> Claim | None:
+    """The claim that holds where this one does not; None where there is no such clause."""
+    if claim.condition is not None and claim.verb in ("keeps", "never"):
+        return replace(claim, verb="never" if claim.verb == "keeps" else "keeps")
+    if claim.condition is not None:
+        return replace(claim, condition=Not(claim.condition))
+    if claim.verb in ("takes", "uses", "tries") and claim.limit is not None and claim.limit.relation in _OPPOSITE:
+        return replace(claim, limit=Limit(_OPPOSITE[claim.limit.relation], claim.limit.value))
+    return None
+
+
+_OPPOSITE: Final[dict[str, Relation]] = {"<=": ">", "<": ">=", ">": "<=", ">=": "<"}
