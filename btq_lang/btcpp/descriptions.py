@@ -6,14 +6,14 @@ One invariant: what the user wrote stands first, unchanged, and the rest behind 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
 from btq_lang.btcpp.source import Source
 from btq_lang.lexer import tokens
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
+from btq_lang.syntax import Apply, Claim, Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
 from btq_lang.tokens import COMMENT
 from btq_lang.workspace import File
 
@@ -22,14 +22,43 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-def description(source: Source, entry: Entry, clauses: tuple[NodeClause, ...], own: str | None) -> str | None:
-    """The value of a `_description`, as it is spelt; None where the clauses say nothing about qualities.
+def description(
+    source: Source, entry: Entry, clauses: tuple[NodeClause, ...], own: str | None, others: tuple[str, ...] = ()
+) -> str | None:
+    """The value of a `_description`, as it is spelt; None where there is nothing to say about qualities.
 
     Args:
         own: what the user wrote, as it is spelt.
+        others: lines on what holds for the node and is said elsewhere.
     """
-    lines = tuple(dict.fromkeys(line for clause in clauses for line in _lines(source, entry, clause)))
+    lines = tuple(dict.fromkeys((*(line for clause in clauses for line in _lines(source, entry, clause)), *others)))
     return marked_description(own, map(escape, lines)) if lines else None
+
+
+def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
+    """What `apply` and claims with a subject of their own say of nodes: a line each, by `id(node)`."""
+    if not any(_speaks_of_nodes(entry.item) for path in source.scope.paths for entry in _entries(source, path)):
+        return {}
+    from btq_lang.requirements import requirements  # few missions need it, and it looks at all of them
+
+    found: dict[int, tuple[str, ...]] = {}
+    for applied in requirements(source.workspace, source.path).applied:
+        node = applied.node
+        if node is not None and applied.how != "satisfies":
+            given = ", ".join(f"{each.name} = {each.value.text}" for each in applied.arguments)
+            line = _defined(source, applied.requirement.name, f"({given})" if given else "")
+            found[id(node.node)] = (*found.get(id(node.node), ()), line)
+    return found
+
+
+def _entries(source: Source, path: str) -> tuple[Entry, ...]:
+    return source.workspace.files[path].parsed.entries
+
+
+def _speaks_of_nodes(item: object) -> bool:
+    if isinstance(item, Requirement):
+        return any(isinstance(clause, Claim) and clause.subject is not None for clause in item.clauses)
+    return isinstance(item, Apply)
 
 
 def requirement_line(

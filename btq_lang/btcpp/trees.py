@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting, is_number
-from btq_lang.btcpp.descriptions import description
+from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import is_xml_name
@@ -57,6 +57,7 @@ class Trees:
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
         self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # what a name says and becomes, by its spelling
+        self._said_elsewhere: Final = {} if source.verbatim else said_elsewhere(source)
         self._names: set[str] = set()  # of the SubTrees of the tree that is being made
 
     def element(self, entry: Entry, tree: Tree) -> Element:
@@ -111,7 +112,7 @@ class Trees:
             element = self._placeholder(entry, node)
         else:
             element = self._compact(entry, node, parent)
-        if node.clauses:
+        if node.clauses or id(node) in self._said_elsewhere:
             self._describe(entry, node, element)
         self.elements[id(node)] = element
         return element
@@ -255,12 +256,12 @@ class Trees:
 
     def _describe(self, entry: Entry, part: Node | Tree, element: Element) -> None:
         """Put what the clauses of a part say into the element's `_description`."""
-        if self._source.verbatim or not part.clauses:
+        if self._source.verbatim:
             return
         attributes = element.attributes
         index = next((index for index, each in enumerate(attributes) if each.name == "_description"), None)
         own = None if index is None else attributes[index].raw
-        raw = description(self._source, entry, part.clauses, own)
+        raw = description(self._source, entry, part.clauses, own, self._said_elsewhere.get(id(part), ()))
         if raw is None:
             return
         if index is None:
