@@ -103,11 +103,12 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
                 add(line, "before", remarks)
             else:
                 add(owner, "last", remarks)
-        if open_lines:  # whether it has a block is known now
+        if open_lines and open_lines[-1].behind:  # whether it has a block is known now
             above = open_lines[-1]
             has_block = above.level < line.level or "last" in found.get(above.start, ())
             add(above, "first" if has_block else "behind", above.behind)
-        add(line, "within", line.within)
+        if line.within:
+            add(line, "within", line.within)
         while open_lines and open_lines[-1].level >= line.level:
             open_lines.pop()
         open_lines.append(line)
