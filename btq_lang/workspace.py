@@ -108,6 +108,15 @@ class File:
     def lines(self) -> LineIndex:
         return LineIndex(self.text)
 
+    @cached_property
+    def defined(self) -> tuple[Definition, ...]:
+        """What the file itself defines, in the order of its text."""
+        return tuple(
+            Definition(self.path, entry, symbol)
+            for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)
+            for symbol in summary.symbols
+        )
+
     def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
         """Every word of one of the file's entries that names something."""
         known = self._mentions.get(id(entry))
@@ -116,6 +125,15 @@ class File:
 
             known = self._mentions[id(entry)] = mentions(entry.item)
         return known
+
+    @cached_property
+    def mentioned(self) -> dict[str, list[tuple[Entry, Mention]]]:
+        """The words that name something, by what they say."""
+        found: dict[str, list[tuple[Entry, Mention]]] = {}
+        for entry in self.parsed.entries:
+            for mention in self.mentions_of(entry):
+                found.setdefault(mention.name, []).append((entry, mention))
+        return found
 
     @cached_property
     def _mentions(self) -> dict[int, tuple[Mention, ...]]:
@@ -219,7 +237,6 @@ class Workspace:
         self.files = files
         self.project = project
         self._scopes: dict[str, Scope] = {}
-        self._defined: dict[str, tuple[Definition, ...]] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
@@ -316,14 +333,7 @@ class Workspace:
 
     def defined_in(self, path: str) -> tuple[Definition, ...]:
         """What a file itself defines, in the order of its text."""
-        if path not in self._defined:
-            file = self.files[path]
-            self._defined[path] = tuple(
-                Definition(path, entry, symbol)
-                for entry, summary in zip(file.parsed.entries, file.summaries, strict=True)
-                for symbol in summary.symbols
-            )
-        return self._defined[path]
+        return self.files[path].defined
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name in the project, to say where it could have come from."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
-from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, Subject, edition, everywhere, home_of
+from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, Subject, defined_elsewhere, edition, everywhere, home_of
 from btq_lang.features.outline import clauses_detail
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.mentions import What
@@ -58,7 +58,7 @@ def port(one: NodePort) -> str:
 
 def tree(workspace: Workspace, path: str, name: str) -> str:
     """A tree: its ports, what is attached to it, and who runs it."""
-    found = workspace.scope(path).find(Kind.TREE, name) or next(iter(workspace.defined_anywhere(Kind.TREE, name)), None)
+    found = workspace.scope(path).find(Kind.TREE, name) or next(defined_elsewhere(workspace, Kind.TREE, name), None)
     if found is None:
         return f"`{name}`: no tree of this name is known."
     item = found.symbol.target

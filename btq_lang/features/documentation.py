@@ -5,7 +5,7 @@ from __future__ import annotations
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.view import View
 from btq_lang.features import describe
-from btq_lang.features.meaning import own_quality, quality_match
+from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_match
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.symbols import Kind
 from btq_lang.text import Edit
@@ -60,4 +60,4 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
 
 
 def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:
-    return workspace.scope(path).find(kind, name) or next(iter(workspace.defined_anywhere(kind, name)), None)
+    return workspace.scope(path).find(kind, name) or next(defined_elsewhere(workspace, kind, name), None)

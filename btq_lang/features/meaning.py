@@ -8,13 +8,14 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
+from functools import lru_cache
 
-from btq_lang.catalog.nodes import lookup
+from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.mentions import Mention, What
 from btq_lang.record import record
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Node, Qualities, Requirement, Root, Tree, Word
+from btq_lang.syntax import Entry, Model, Node, Qualities, Requirement, Root, Word
 from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, NAME
 from btq_lang.workspace import Definition, Workspace
@@ -116,8 +117,19 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
     found = workspace.scope(path).find(kind, wanted.name)
     if found is not None and home_of(found) == wanted.home:
         return found
-    elsewhere = workspace.defined_anywhere(kind, wanted.name)
-    return next((one for one in elsewhere if not wanted.home or home_of(one) == wanted.home), None)
+    return next((one for one in defined_elsewhere(workspace, kind, wanted.name, wanted.home)), None)
+
+
+def defined_elsewhere(workspace: Workspace, kind: Kind, name: str, home: str = "") -> Iterator[Definition]:
+    """The definitions of a name in the whole project; with a home, the one that is there.
+
+    The workspace has an index of them, but it is made of all files at every edit, and one name is asked for here.
+    """
+    for path, file in workspace.files.items():
+        if name in file.text or _ESCAPED.search(name):
+            for one in workspace.defined_in(path):
+                if (one.symbol.kind, one.symbol.name) == (kind, name) and (not home or home_of(one) == home):
+                    yield one
 
 
 def home_of(found: Definition) -> str:
@@ -131,20 +143,43 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
     Args:
         paths: the files to look in; None: all.
     """
-    spelt = wanted.name if wanted.what not in (What.QUALITY, What.INCLUDE) and not _ESCAPED.search(wanted.name) else ""
-    if wanted.home == ENGINE:  # its tag is one of its spellings
-        spelt = ""
-    for path in paths if paths is not None else sorted(workspace.files):
+    words = _spellings(wanted)
+    for path in paths if paths is not None else _paths(workspace, wanted):
         file = workspace.files[path]
-        if spelt not in file.text:
-            continue
-        for entry in file.parsed.entries:
-            for mention in file.mentions_of(entry):
-                if spelt and mention.name != spelt:
-                    continue
-                found = Found(path, entry, mention)
-                if subject(workspace, found) == wanted:
-                    yield found
+        if words and not any(word in file.text for word in words):
+            continue  # and need not be parsed to know it
+        index = file.mentioned
+        names = words or [name for name in index if _may_name(wanted, name)]
+        found = [Found(path, *one) for name in names for one in index.get(name, ())]
+        if len(names) > 1:
+            found.sort(key=lambda one: one.span)
+        yield from (one for one in found if subject(workspace, one) == wanted)
+
+
+def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
+    """The files that may name a subject: those linked with its home, or all where it has none."""
+    home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
+    if home not in workspace.files:
+        return sorted(workspace.files)
+    mission = workspace.missions[home]
+    return sorted(path for path, of in workspace.missions.items() if of == mission)
+
+
+def _spellings(wanted: Subject) -> tuple[str, ...]:
+    """All words by which a subject can be named; none where they cannot be listed."""
+    if wanted.what is What.NODE and wanted.home == ENGINE:
+        kind = lookup(wanted.name, quoted=True)
+        return (*spellings(kind), "Switch") if kind is not None else ()
+    if wanted.what in (What.QUALITY, What.INCLUDE) or _ESCAPED.search(wanted.name):
+        return ()
+    return (wanted.name,)
+
+
+def _may_name(wanted: Subject, name: str) -> bool:
+    """Whether a word of a file may name a subject that has many spellings."""
+    if wanted.what is What.QUALITY and wanted.home != STANDARD:
+        return fold(name.rpartition(".")[2]) == fold(wanted.name)
+    return name == wanted.name or wanted.what in (What.QUALITY, What.INCLUDE)
 
 
 def edition(workspace: Workspace, path: str) -> str:
@@ -158,7 +193,12 @@ def edition(workspace: Workspace, path: str) -> str:
 
 def quality_match(workspace: Workspace, path: str, name: str) -> QualityMatch:
     """What the standard's names say of a quality."""
-    return find(tuple(name.split(".")), EDITIONS[edition(workspace, path)])
+    return _match(name, edition(workspace, path))
+
+
+@lru_cache(2_000)  # a colouring asks for each quality of a file, and a misspelt one is compared with all names
+def _match(name: str, edition: str) -> QualityMatch:
+    return find(tuple(name.split(".")), EDITIONS[edition])
 
 
 # ---- kinds of subjects ----
@@ -224,14 +264,11 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
     label = ""
     for other in workspace.scope(path).paths:
         file = workspace.files[other]
-        if name not in file.text:
-            continue
-        for entry in file.parsed.entries:
-            for mention in file.mentions_of(entry) if isinstance(entry.item, Tree) else ():
-                if mention.name == name and mention.what is What.NODE:
-                    return Subject(What.NODE, name)
-                if mention.name == name and mention.what is What.INSTANCE:
-                    label = label or f"{other}:{entry.start}"
+        for entry, mention in file.mentioned.get(name, ()) if name in file.text else ():
+            if mention.what is What.NODE:
+                return Subject(What.NODE, name)
+            if mention.what is What.INSTANCE:
+                label = label or f"{other}:{entry.start}"
     return Subject(What.INSTANCE, name, label) if label else Subject(What.NODE, name)
 
 

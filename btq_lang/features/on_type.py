@@ -7,7 +7,7 @@ from bisect import bisect_left
 from btq_lang.catalog.nodes import lookup
 from btq_lang.features.block import STEP
 from btq_lang.features.meaning import at, everywhere, subject
-from btq_lang.features.place import line_blanks, place_at, word_text, words_before
+from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
 from btq_lang.mentions import What
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model
@@ -62,7 +62,7 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
 
 def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:
     """The words of the last logical line before an offset that has any."""
-    tokens = workspace.files[path].parsed.tokens
+    tokens = item_tokens(workspace.files[path], start)
     index = bisect_left(tokens, start, key=lambda token: token.start) - 1
     while index >= 0:
         words = words_before(tokens, index - 1 if tokens[index].kind not in (NAME, STRING, SYMBOL, CLOSE) else index)

@@ -6,9 +6,10 @@ it is made of tokens, not of the tree, for the line that is being typed has none
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
+from btq_lang.lexer import tokens as tokens_of
 from btq_lang.record import record
 from btq_lang.syntax import unquote
 from btq_lang.text import Span
@@ -29,7 +30,7 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
-from btq_lang.workspace import Workspace
+from btq_lang.workspace import File, Workspace
 
 
 @record
@@ -103,7 +104,7 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
         KeyError: there is no such file.
     """
     file = workspace.files[path]
-    tokens = file.parsed.tokens
+    tokens = item_tokens(file, offset)
     index = bisect_left(tokens, offset, key=lambda token: token.start) - 1
     inside, text, span = "code", "", Span(offset, offset)
     if index >= 0 and (token := tokens[index]).end >= offset:
@@ -129,6 +130,16 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
             node = None
     prefix = file.text[span.start : offset]
     return Place(inside, text, prefix, span, block, parent, words, group, depth, callee, node)
+
+
+def item_tokens(file: File, offset: int) -> Sequence[Token]:
+    """The tokens of the item that an offset is in, or behind: of a file that is typed in, no more need be cut."""
+    entries = file.parsed.entries
+    index = bisect_right(entries, offset, key=lambda entry: entry.start)
+    start = entries[index - 1].start if index else 0
+    end = entries[index].start if index < len(entries) else len(file.text)
+    found = tokens_of(file.text[start:end])
+    return [Token(token.kind, token.start + start, token.text) for token in found] if start else found
 
 
 def word_text(token: Token) -> str:
