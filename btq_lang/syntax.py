@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 _ESCAPE = re.compile(r"\\([\"'\\nt])")
 _ESCAPED = {"n": "\n", "t": "\t"}
 _LINE_END = re.compile(r"\r\n?")
-_BETWEEN_WORDS = re.compile(r"\s+|/\*.*?\*/", re.DOTALL)
 
 
 class Word:
@@ -78,7 +77,7 @@ class TypeWord(Word):
     @property
     def text(self) -> str:
         """What it says: without blanks and comments."""
-        return _BETWEEN_WORDS.sub("", self.raw)
+        return re.sub(r"\s+|/\*.*?\*/", "", self.raw, flags=re.DOTALL)
 
 
 class Pair:
