@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from textwrap import dedent
 
 import pytest
@@ -292,6 +294,12 @@ def test_what_a_build_has_put_in_is_taken_out() -> None:
         "4:8 what a build wrote into this _description is left out",
         "5:8 what a build wrote into this _description is left out",
     )
+
+
+def test_the_example_of_the_document() -> None:
+    document = (Path(__file__).parents[1] / "docs" / "import.md").read_text(encoding="utf-8")
+    xml, btq = re.findall(r"^```(?:xml|text)\n(.*?)^```$", document, re.DOTALL | re.MULTILINE)
+    assert_import(xml, btq, keep_v3=False)
 
 
 V3 = """

@@ -1,7 +1,9 @@
 """BehaviorTree.CPP's XML: the document, reading and writing it, a mission as XML, XML as a mission.
 
 document    the elements, comments and texts of one file, and how they are written
-reader      XML text to document, as the engine reads it
+reader      XML text to document, as the engine reads it; `strict` says what other tools would refuse
+importing   a document as a mission; `wording` spells its words, `version3` says old files as new ones, `generated`
+            takes out what a build has put in
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
             and `spelling` the parts, `fragment` looks at elements that a mission spells out
 bundle      a mission and all that it includes as one document

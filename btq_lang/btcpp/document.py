@@ -15,17 +15,41 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
 
+class StartTag:
+    """A start tag in a file that was read: it knows where the attributes stand, and looks when somebody asks.
+
+    Not the element's business, or each element and its attributes would be a circle that only the collector of garbage
+    can break.
+    """
+
+    __slots__ = ("_places", "end", "source", "start")
+
+    def __init__(self, source: str, start: int, end: int) -> None:
+        self.source: Final = source
+        self.start: Final = start
+        self.end: Final = end
+        self._places: dict[str, tuple[int, int]] | None = None
+
+    @property
+    def places(self) -> dict[str, tuple[int, int]]:
+        """Where name and value begin, by name."""
+        if self._places is None:
+            found = attribute_matches(self.source, self.start, self.end)
+            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
+        return self._places
+
+
 class Attribute:
     """`name="raw"`.
 
     Attributes:
         raw: what stands between the quotes, references as they are.
-        origin: where name and value begin in the file it was read from, or the element that knows it.
+        origin: where name and value begin in the file it was read from, or the start tag that knows it.
     """
 
     __slots__ = ("name", "origin", "raw")
 
-    def __init__(self, name: str, raw: str, origin: Element | tuple[int, int] = (-1, -1)) -> None:
+    def __init__(self, name: str, raw: str, origin: StartTag | tuple[int, int] = (-1, -1)) -> None:
         self.name: Final = name
         self.raw: Final = raw
         self.origin: Final = origin
@@ -61,10 +85,9 @@ class Element:
         children: what stands in it, in order.
         start, end: its start tag in the file it was read from; -1 where it was made.
         close: where its end tag ends, likewise.
-        source: the text of that file.
     """
 
-    __slots__ = ("_places", "attributes", "children", "close", "end", "source", "start", "tag")
+    __slots__ = ("attributes", "children", "close", "end", "start", "tag")
 
     def __init__(
         self,
@@ -73,7 +96,6 @@ class Element:
         children: Iterable[Content] = (),
         start: int = -1,
         end: int = -1,
-        source: str = "",
     ) -> None:
         self.tag = tag
         self.attributes: Final = list(attributes)
@@ -81,16 +103,6 @@ class Element:
         self.start: Final = start
         self.end: Final = end
         self.close = end  # set once more, by the reader, when the end tag comes
-        self.source: Final = source
-        self._places: dict[str, tuple[int, int]] | None = None
-
-    @property
-    def places(self) -> dict[str, tuple[int, int]]:
-        """Where names and values of the attributes begin that were read; looked for when somebody asks."""
-        if self._places is None:
-            found = attribute_matches(self.source, self.start, self.end)
-            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
-        return self._places
 
     @property
     def elements(self) -> Iterator[Element]:

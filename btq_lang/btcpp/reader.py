@@ -23,6 +23,7 @@ from btq_lang.btcpp.document import (
     Content,
     Document,
     Element,
+    StartTag,
     Text,
     attribute_matches,
     unescape,
@@ -129,7 +130,7 @@ class _Reader:
                 opened.pop().close = at
                 contents = opened[-1].children if opened else top
                 continue
-            element = Element(name, (), (), text.rfind("<", 0, tag.start(1)), at, text)
+            element = Element(name, (), (), text.rfind("<", 0, tag.start(1)), at)
             if pairs:
                 self.attributes(element, pairs)
             contents.append(element)
@@ -145,7 +146,8 @@ class _Reader:
 
     def attributes(self, element: Element, pairs: str) -> None:
         """{ Name "=" Value } of a start tag whose shape is known to be right."""
-        found = [Attribute(name, raw, element) for name, _, raw in _ATTRIBUTES(pairs)]
+        tag = StartTag(self.text, element.start, element.end)
+        found = [Attribute(name, raw, tag) for name, _, raw in _ATTRIBUTES(pairs)]
         if len(found) > 1 and len({attribute.name for attribute in found}) < len(found):
             self.twice(element)
         element.attributes.extend(found)
