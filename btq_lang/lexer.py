@@ -14,8 +14,8 @@ from __future__ import annotations
 import re
 from functools import cache, lru_cache
 
+from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.patterns import read_tokens
 from btq_lang.scan import (
     COMPILED,
     blanks_end,
@@ -48,6 +48,9 @@ from btq_lang.tokens import (
     Token,
 )
 from btq_lang.units import nearest_units
+
+if not COMPILED:
+    from btq_lang.patterns import read_tokens
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -136,7 +139,7 @@ class Lexer:
         text, size = self.text, self.size
         start, position = line_opening(text, self.position)
         blanks = text[start:position]
-        while position < size and (text[position] == "#" or text[position] == "/"):
+        while position < size and ord(text[position]) in (HASH, SLASH):
             end = self._comment(position)
             if end == position:
                 break
@@ -176,18 +179,20 @@ class Lexer:
             if _extends(blanks, columns[-1], aliases[-1]):
                 columns.append(blanks)
                 aliases.append(())
-                level = len(columns) - 1
+                self.level = len(columns) - 1
+                return
+            level = self._adopting_level(blanks)
+            self.adopted = True
+            if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
+                self._report_indentation(blanks, columns[level])  # else it is what is left of the brackets
+            if level == 0:
+                aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
             else:
-                level = self._adopting_level(blanks)
-                self.adopted = True
-                if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
-                    self._report_indentation(blanks, columns[level])  # else it is what is left of the brackets
-                if level == 0:
-                    aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
-                else:
-                    aliases[level] = (*aliases[level], columns[level])[-_ALIASES:]
-                    columns[level] = blanks
-        del columns[level + 1 :], aliases[level + 1 :]
+                aliases[level] = (*aliases[level], columns[level])[-_ALIASES:]
+                columns[level] = blanks
+        while len(columns) > level + 1:
+            columns.pop()
+            aliases.pop()
         self.level = level
         if level < self._root_level:
             self._root_level = -1
@@ -477,8 +482,7 @@ class Lexer:
     def _comment(self, start: int) -> int:
         """The end of the comment that begins here, or `start` where none may begin."""
         text = self.text
-        sign = _COMMENT_SIGN.match(text, start)
-        if sign is None:
+        if ord(text[start]) != HASH and text[start : start + 2] not in ("//", "/*"):
             return start
         if start > 0 and text[start - 1] not in " \t\r\n(),\ufeff" and not text.startswith("*/", start - 2):
             return start

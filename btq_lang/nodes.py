@@ -5,11 +5,11 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
+from btq_lang.blocks import MAX_DEPTH, Block
 from btq_lang.clauses import VERBS, ClauseParser
 from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.lines import MAX_DEPTH, Block, read_lines
 from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.scan import COMPILED, line_start, path_end
@@ -45,6 +45,9 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
+
+if not COMPILED:
+    from btq_lang.lines import read_lines
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

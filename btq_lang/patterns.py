@@ -7,6 +7,7 @@ it is only what needs no second look: words of letters, digits and `_`, single b
 from __future__ import annotations
 
 import re
+from functools import cache
 
 from btq_lang.scan import number_at
 from btq_lang.syntax import (
@@ -65,7 +66,7 @@ def read_attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair
 def read_clause(text: str, start: int, blanks: str | None, base: int) -> tuple[NodeClause, int] | None:
     """ "satisfices" … | "satisfies" …, where nothing more follows in the brackets or, without `blanks`, on the line:
     the clause, and where it ends"""
-    match = (_LINE_LIST if blanks is None else _BRACKETED_LIST)(text, start)
+    match = (_line_list() if blanks is None else _bracketed_list()).match(text, start)
     if match is not None:
         end = match.end()
         if match[1] is not None:
@@ -73,7 +74,7 @@ def read_clause(text: str, start: int, blanks: str | None, base: int) -> tuple[N
             return Satisfices(start - base, end - base, qualities), end
         uses = tuple(ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES(text, *match.span(2)))
         return Satisfies(start - base, end - base, uses), end
-    match = _DEFINITION(text, start)
+    match = _definition().match(text, start)
     if match is None:
         return None
     quality, bracket_line, name, line, description = match.group(1, 2, 4, 5, 6)
@@ -158,15 +159,6 @@ read_between: Final = re.compile(rf"(?:[ \t]*(?:{_REMARK}|)\r?\n)+").match
 _ATTRIBUTE: Final = re.compile(
     rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(satisfices|satisfies|tags)(?= ))"
 ).match
-# 1 qualities, or 2 names of requirements
-_BRACKETED_LIST: Final = re.compile(_LIST + _BRACKETS_END).match
-_LINE_LIST: Final = re.compile(_LIST + _LINE_END).match
-# 1 the quality that encloses it, if one does, and 2 the blanks of the line that its bracket begins, if it does
-# 3 to 6 the requirement: its first word, its name, the blanks of the line that its description begins, if it does, and
-# the description
-_DEFINITION: Final = re.compile(
-    rf"satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(1)\)){_BRACKETS_END}"
-).match
 _NAMES: Final = re.compile(rf"{_NAME}(?:-\w+)*").finditer
 _PATHS: Final = re.compile(rf"(?:Quality ?= ?|)({_PATH})").finditer
 # A name has a follower, for in `Ready?`, `M->` and `a#` it is more or less than a name.
@@ -174,6 +166,32 @@ _TOKEN: Final = re.compile(
     rf"[ \t]*(?:({_NAME}(?:-\w+)*)(?=[ \t,()=:.<>\r\n])|({_STRING})|([0-9]+)|(==?|,|::?|\.|[<>]=?))"
 ).match
 _TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups of _TOKEN
+
+
+# ---- patterns that not every file needs: each takes a millisecond to compile ----------------------------------------
+
+
+@cache
+def _line_list() -> re.Pattern[str]:
+    """1 qualities, or 2 names of requirements"""
+    return re.compile(_LIST + _LINE_END)
+
+
+@cache
+def _bracketed_list() -> re.Pattern[str]:
+    """1 qualities, or 2 names of requirements"""
+    return re.compile(_LIST + _BRACKETS_END)
+
+
+@cache
+def _definition() -> re.Pattern[str]:
+    """1 the quality that encloses it, if one does, and 2 the blanks of the line that its bracket begins, if it does;
+    3 to 6 the requirement: its first word, its name, the blanks of the line that its description begins, if it does,
+    and the description"""
+    return re.compile(
+        rf"satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(1)\)){_BRACKETS_END}"
+    )
+
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
 

@@ -13,7 +13,29 @@ from __future__ import annotations
 
 import re
 
-from btq_lang.patterns import read_attributes, read_clause
+from btq_lang.characters import (
+    APOSTROPHE,
+    BACKSLASH,
+    CLOSING,
+    COMMA,
+    DOT,
+    EQUALS,
+    HASH,
+    LEFT_BRACE,
+    LINE_FEED,
+    MINUS,
+    NINE,
+    OPENING,
+    QUOTE,
+    RETURN,
+    SLASH,
+    SMALL_A,
+    SMALL_Z,
+    SPACE,
+    TAB,
+    ZERO,
+    begins_name,
+)
 from btq_lang.scan import COMPILED, blanks_end, braced_end, line_end, line_opening, name_end, number_at, symbol_at
 from btq_lang.syntax import (
     Node,
@@ -28,7 +50,10 @@ from btq_lang.syntax import (
     Tags,
     Word,
 )
-from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, STRING, SYMBOL
+from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, NUMBER, STRING, SYMBOL
+
+if not COMPILED:
+    from btq_lang.patterns import read_attributes, read_clause
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -48,12 +73,12 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
     """
     try:
         category, kind, label, end = _head(text, start, base)
-        at = end + 1 if text.startswith(" (", end) else _behind_word(text, end)
+        at = _behind_word(text, end)
         pairs: list[Pair] = []
         clauses: list[NodeClause] = []
-        if text[at] == "(":
+        if ord(text[at]) == OPENING:
             at = end = attributes(text, at + 1, blanks, base, pairs, clauses)
-        if text[at] == "\n":
+        if ord(text[at]) == LINE_FEED:
             at += 1
         else:
             known = len(clauses)
@@ -77,17 +102,21 @@ def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], i
 
 def _head(text: str, start: int, base: int) -> tuple[Word | None, Word | None, Word | None, int]:
     """Kind [ Label ]: the category, the kind, the label, and where they end"""
-    if symbol := symbol_at(text, start):
+    code = ord(text[start])
+    if (code < SMALL_A or code > SMALL_Z) and (symbol := symbol_at(text, start)):
         kind = Word(SYMBOL, start - base, symbol)
-    else:
-        kind = _name(text, start, base)
-        if kind.raw in _PERHAPS_NO_NODE:
-            raise Unusual
+        end = start + len(symbol)
+        at = _behind_word(text, end)
+        label = _label(text, at, base)
+        return None, kind, label, end if label is None else at + len(label.raw)
+    kind = _name(text, start, base)
     end = start + len(kind.raw)
     at = _behind_word(text, end)
     second = _label(text, at, base)
-    if kind.raw not in CATEGORIES:
+    if kind.raw not in _NO_KINDS:
         return None, kind, second, end if second is None else at + len(second.raw)
+    if kind.raw not in CATEGORIES:
+        raise Unusual
     if second is None:
         return kind, None, None, end
     end = at + len(second.raw)
@@ -105,20 +134,23 @@ class Unusual(Exception):
 
 def _name(text: str, start: int, base: int) -> Word:
     """NAME | STRING"""
-    character = text[start]
-    if character.isalpha() or character == "_":
-        raw = text[start : name_end(text, start)]
-        if raw in _NO_NAMES:
-            raise Unusual
-        return Word(NAME, start - base, raw)
-    if character == '"' or character == "'":
-        return Word(STRING, start - base, _string(text, start))
-    raise Unusual
+    code = ord(text[start])
+    if begins_name(code):
+        return Word(NAME, start - base, _raw_name(text, start, code))
+    return Word(STRING, start - base, _string(text, start, code))
+
+
+def _raw_name(text: str, start: int, code: int) -> str:
+    raw = text[start : name_end(text, start)]
+    if code < SMALL_A and raw in _NO_NAMES:
+        raise Unusual
+    return raw
 
 
 def _label(text: str, start: int, base: int) -> Word | None:
     """[ Name ]"""
-    if text[start] in "(\r\n#/":
+    code = ord(text[start])
+    if code in (OPENING, LINE_FEED, RETURN, HASH, SLASH):
         return None
     word = _name(text, start, base)
     return None if word.raw in NODE_CLAUSES else word
@@ -126,45 +158,71 @@ def _label(text: str, start: int, base: int) -> Word | None:
 
 def _behind_word(text: str, end: int) -> int:
     """Behind the blanks that follow a word outside brackets; nothing else but a bracket or the line's end may."""
-    character = text[end]
-    if character not in " \t(\r\n":
-        raise Unusual
-    while character == " " or character == "\t":
-        end += 1
-        character = text[end]
-    return end
+    code = ord(text[end])
+    if code != SPACE and code != TAB:
+        if code != OPENING and code != LINE_FEED and code != RETURN:
+            raise Unusual
+        return end
+    return _behind_blanks(text, end)
+
+
+def _behind_blanks(text: str, at: int) -> int:
+    while (code := ord(text[at])) == SPACE or code == TAB:
+        at += 1
+    return at
 
 
 def _value(text: str, start: int, base: int) -> Word:
     """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-    character = text[start]
-    if character == '"' or character == "'":
-        word = Word(STRING, start - base, _string(text, start))
-    elif character.isalpha() or character == "_":
-        raw = text[start : name_end(text, start)]
-        if raw in _NO_NAMES:
-            raise Unusual
-        word = Word(NAME, start - base, raw)
-    elif character == "{":
+    code = ord(text[start])
+    if code in (QUOTE, APOSTROPHE):
+        word = Word(STRING, start - base, _string(text, start, code))
+    elif begins_name(code):
+        word = Word(NAME, start - base, _raw_name(text, start, code))
+    elif code == LEFT_BRACE:
         word = Word(BRACED, start - base, text[start : braced_end(text, start)])
-    elif "0" <= character <= "9" or (character == "-" and "0" <= text[start + 1] <= "9"):
-        kind, end = number_at(text, start)
+    elif ZERO <= code <= NINE or (code == MINUS and ZERO <= ord(text[start + 1]) <= NINE):
+        end = start + 1
+        while ZERO <= (code := ord(text[end])) <= NINE:
+            end += 1
+        kind = NUMBER
+        if code not in (CLOSING, COMMA, LINE_FEED):
+            kind, end = number_at(text, start)
         word = Word(kind, start - base, text[start:end])
         if kind == ERROR:
             raise Unusual
     else:
         raise Unusual
-    if text[start + len(word.raw)] not in " ,)\r\n\t":
-        raise Unusual
+    _ends_word(text, start + len(word.raw))
     return word
 
 
-def _string(text: str, start: int) -> str:
-    """STRING without a backslash, none of whose lines may be the start of an item"""
-    raw = text[start : text.find(text[start], start + 1) + 1]
-    if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+def _ends_word(text: str, at: int) -> None:
+    """What may stand behind a word in brackets or in a list"""
+    code = ord(text[at])
+    if code not in (SPACE, CLOSING, COMMA, LINE_FEED, RETURN, TAB):
         raise Unusual
-    return raw
+
+
+def _string(text: str, start: int, quote: int) -> str:
+    """STRING without a backslash, none of whose lines may be the start of an item"""
+    if quote != QUOTE and quote != APOSTROPHE:
+        raise Unusual
+    if not COMPILED:
+        raw = text[start : text.find(text[start], start + 1) + 1]
+        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+            raise Unusual
+        return raw
+    at = start + 1
+    while (code := ord(text[at])) != quote:
+        at += 1
+        if code == BACKSLASH:
+            raise Unusual
+        if code in (LINE_FEED, RETURN):
+            following = ord(text[at])
+            if following != SPACE and following != TAB and following != LINE_FEED and following != RETURN:
+                raise Unusual
+    return text[start : at + 1]
 
 
 # ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
@@ -182,46 +240,43 @@ def attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], cl
                 if text[at] == ",":
                     at += 1
                 continue
-        character = text[at]
-        if character == ")":
+        code = ord(text[at])
+        if code == CLOSING:
             return at + 1
-        if character in " \t\r\n#/":
+        if code in (SPACE, LINE_FEED, RETURN, TAB, HASH, SLASH):
             at = _gap(text, at, blanks)
             continue
-        if not (character.isalpha() or character == "_"):
+        if not begins_name(code):
             raise Unusual
         end = name_end(text, at)
         key = text[at:end]
         start = _behind_equals(text, end)
         if start < 0:
             at = _clause(text, at, key, blanks, base, clauses)
-        elif key in _NO_NAMES:
+        elif code < SMALL_A and key in _NO_NAMES:
             raise Unusual
         else:
             value = _value(text, start, base)
             pairs.append(Pair(Word(NAME, at - base, key), value))
             at = start + len(value.raw)
-        if text[at] == ",":
+        if ord(text[at]) == COMMA:
             at += 1
 
 
 def _behind_equals(text: str, at: int) -> int:
     """Behind a `=` on this line and the blanks around it; -1 where none stands."""
-    while text[at] == " " or text[at] == "\t":
-        at += 1
-    if text[at] != "=" or text[at + 1] == "=":
+    at = _behind_blanks(text, at)
+    if ord(text[at]) != EQUALS or ord(text[at + 1]) == EQUALS:
         return -1
-    at += 1
-    while text[at] == " " or text[at] == "\t":
-        at += 1
-    return at
+    return _behind_blanks(text, at + 1)
 
 
 def _gap(text: str, at: int, blanks: str | None) -> int:
     """Behind blanks and, in brackets, over line ends and comments"""
-    if text[at] == " ":
+    if ord(text[at]) == SPACE:
         at += 1
-    if text[at] not in " \t\r\n#/":
+    code = ord(text[at])
+    if code not in (SPACE, LINE_FEED, RETURN, TAB, HASH, SLASH):
         return at
     if blanks is None:
         return blanks_end(text, at, len(text))
@@ -231,19 +286,18 @@ def _gap(text: str, at: int, blanks: str | None) -> int:
         if start > at:
             line = start
         at = end
-        character = text[at]
-        if character == "/" and text[at + 1] != "/":
-            raise Unusual
-        if character != "#" and character != "/":
+        code = ord(text[at])
+        if code != HASH and code != SLASH:
             break
         at = _comment_end(text, at)
-    if line >= 0 and not text.startswith(blanks, line):
+    if line >= 0 and not text[line:at].startswith(blanks):
         raise Unusual
     return at
 
 
 def _comment_end(text: str, at: int) -> int:
-    if text[at - 1] not in " \t\r\n(),":
+    """Behind the comment that begins there, if it is one of the rest of a line"""
+    if text[at - 1] not in " \t\r\n()," or (ord(text[at]) == SLASH and ord(text[at + 1]) != SLASH):
         raise Unusual
     return line_end(text, at)
 
@@ -254,18 +308,16 @@ def _comment_end(text: str, at: int) -> int:
 def line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
     """{ NodeClause } NL, outside brackets; returns where the next line begins"""
     at = _gap(text, at, None)
-    while (character := text[at]).isalpha():
+    while begins_name(code := ord(text[at])):
         word = text[at : name_end(text, at)]
         at = _clause(text, at, word, None, base, clauses)
-    if character == "#" or character == "/":
-        if character == "/" and text[at + 1] != "/":
-            raise Unusual
+    if code in (HASH, SLASH):
         at = _comment_end(text, at)
-        character = text[at]
-    if character == "\n" or (character == "\r" and text[at + 1] != "\n"):
+        code = ord(text[at])
+    if code == LINE_FEED:
         return at + 1
-    if character == "\r":
-        return at + 2
+    if code == RETURN:
+        return at + 2 if ord(text[at + 1]) == LINE_FEED else at + 1
     raise Unusual
 
 
@@ -310,17 +362,19 @@ def _clause(text: str, start: int, word: str, blanks: str | None, base: int, cla
 
 def _next_element(text: str, at: int, word: str, blanks: str | None) -> int:
     """Where the list goes on, behind a comma or, as classic files are written, without one; -1 where it ends"""
-    comma = text[at] == ","
+    comma = ord(text[at]) == COMMA
     if comma:
         at = _gap(text, at + 1, blanks)
-    character = text[at]
-    name = text[at : name_end(text, at)] if character.isalpha() or character == "_" else ""
+    code = ord(text[at])
+    if not comma and code == CLOSING:
+        return -1
+    name = text[at : name_end(text, at)] if begins_name(code) else ""
     if name == ("Quality" if word == "satisfices" else "QualityReq") and word != "tags":
         return at
     if not comma:
         return -1
     if blanks is not None and (
-        character == ")" or name in NODE_CLAUSES or name == "parameters" or _behind_equals(text, at + len(name)) >= 0
+        code == CLOSING or name in NODE_CLAUSES or name == "parameters" or _behind_equals(text, at + len(name)) >= 0
     ):
         return -1
     return at
@@ -329,8 +383,7 @@ def _next_element(text: str, at: int, word: str, blanks: str | None) -> int:
 def _element(text: str, at: int, base: int) -> Word:
     """Name, and behind it what may follow in a list"""
     name = _name(text, at, base)
-    if text[at + len(name.raw)] not in " ,)\r\n\t":
-        raise Unusual
+    _ends_word(text, at + len(name.raw))
     return name
 
 
@@ -344,21 +397,21 @@ def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality
     name = _name(text, at, base)
     names = [name]
     end = at + len(name.raw)
-    while text[end] == ".":
+    while ord(text[end]) == DOT:
         name = _name(text, end + 1, base)
         names.append(name)
         end += 1 + len(name.raw)
-    if text[end] not in " ,()\r\n\t":
-        raise Unusual
+    if ord(text[end]) != OPENING:
+        _ends_word(text, end)
     requirements: list[Requirement] = []
-    if classic and text[bracket := _gap(text, end, blanks)] == "(":
+    if classic and ord(text[bracket := _gap(text, end, blanks)]) == OPENING:
         inner = _blanks_before(text, bracket)
         at = _gap(text, bracket + 1, inner)
-        while text[at] != ")":
+        while ord(text[at]) != CLOSING:
             requirement, end = _requirement(text, at, inner, base)
             requirements.append(requirement)
             at = _gap(text, end, inner)
-            if text[at] == ",":
+            if ord(text[at]) == COMMA:
                 at = _gap(text, at + 1, inner)
         end = at + 1
     return Quality(QualityPath(tuple(names)), tuple(requirements)), end
@@ -367,9 +420,9 @@ def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality
 def _blanks_before(text: str, at: int) -> str | None:
     """The blanks of the line that begins there; None where no line does"""
     start = at
-    while text[start - 1] == " " or text[start - 1] == "\t":
+    while (code := ord(text[start - 1])) == SPACE or code == TAB:
         start -= 1
-    return text[start:at] if text[start - 1] in "\r\n" else None
+    return text[start:at] if code in (LINE_FEED, RETURN) else None
 
 
 def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[Requirement, int]:
@@ -384,7 +437,7 @@ def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[
     name = _element(text, at, base)
     end = at + len(name.raw)
     at = _gap(text, end, blanks)
-    if text[at] == ",":
+    if ord(text[at]) == COMMA:
         at = _gap(text, at + 1, blanks)
     description: Word | None = None
     if text.startswith("description", at) and (at := _behind_equals(text, at + len("description"))) >= 0:
@@ -393,7 +446,8 @@ def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[
     return Requirement(start - base, end - base, name, True, (), None, description, ()), end
 
 
-_PERHAPS_NO_NODE: Final = NODE_CLAUSES | DIRECTIONS | {"xml"}
-# NAMEs that are none: two are symbols, and a line that begins with one of the others ends all brackets.
+_NO_KINDS: Final = CATEGORIES | NODE_CLAUSES | DIRECTIONS | {"xml"}
+# NAMEs that are none, all with a capital: two are symbols, and a line that begins with one of the others ends all
+# brackets.
 _NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))
 _OUTER_LINE: Final = re.compile(r"[\r\n][^ \t\r\n]").search

@@ -11,6 +11,17 @@ from __future__ import annotations
 
 import re
 
+from btq_lang.characters import (
+    BANG,
+    EQUALS,
+    LINE_FEED,
+    MINUS,
+    QUESTION,
+    RETURN,
+    SPACE,
+    TAB,
+    goes_on,
+)
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 from btq_lang.units import SYMBOLS as UNITS
 from btq_lang.units import parse_unit
@@ -27,11 +38,11 @@ def name_end(text: str, start: int) -> int:
     size = len(text)
     end = word_end(text, start + 1, size)
     while end < size:
-        character = text[end]
-        if character == "-" and (further := word_end(text, end + 1, size)) > end + 1:
+        code = ord(text[end])
+        if code == MINUS and (further := word_end(text, end + 1, size)) > end + 1:
             end = further
         else:
-            if (character == "?" or character == "!") and not text.startswith("=", end + 1):
+            if code in (QUESTION, BANG) and (end + 1 == size or ord(text[end + 1]) != EQUALS):
                 end += 1
             break
     return end
@@ -41,10 +52,7 @@ def word_end(text: str, start: int, size: int) -> int:
     """Behind letters, digits and `_`."""
     if not COMPILED:
         return _WORD(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
-    while start < size:
-        character = text[start]
-        if not (character.isalnum() or character == "_"):
-            break
+    while start < size and goes_on(ord(text[start])):
         start += 1
     return start
 
@@ -54,8 +62,8 @@ def blanks_end(text: str, start: int, size: int) -> int:
     if not COMPILED:
         return _BLANKS(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
     while start < size:
-        character = text[start]
-        if character != " " and character != "\t":
+        code = ord(text[start])
+        if code != SPACE and code != TAB:
             break
         start += 1
     return start
@@ -70,10 +78,10 @@ def line_opening(text: str, start: int) -> tuple[int, int]:
     size = len(text)
     at = start
     while at < size:
-        character = text[at]
-        if character == "\n" or character == "\r":
+        code = ord(text[at])
+        if code in (LINE_FEED, RETURN):
             start = at + 1
-        elif character != " " and character != "\t":
+        elif code != SPACE and code != TAB:
             break
         at += 1
     return start, at
@@ -81,6 +89,11 @@ def line_opening(text: str, start: int) -> tuple[int, int]:
 
 def line_end(text: str, start: int) -> int:
     """Where the line of text ends."""
+    if COMPILED:
+        size = len(text)
+        while start < size and (code := ord(text[start])) != LINE_FEED and code != RETURN:
+            start += 1
+        return start
     return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
@@ -97,7 +110,7 @@ def path_end(text: str, start: int) -> int:
 def symbol_at(text: str, start: int) -> str:
     """The longest symbol that begins at `start`; empty where none does."""
     for symbol in _BY_FIRST.get(text[start], ()):
-        if text.startswith(symbol, start):
+        if text[start : start + len(symbol)] == symbol:
             return symbol
     return ""
 
@@ -131,7 +144,7 @@ def number_at(text: str, start: int) -> tuple[int, int]:
     size = len(text)
     end = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
     unit = end
-    while unit < size and (text[unit] == " " or text[unit] == "\t"):
+    while unit < size and ((code := ord(text[unit])) == SPACE or code == TAB):
         unit += 1
     if unit < size and ((character := text[unit]).isalpha() or character in "_%1°"):
         unit_end = unit_at(text, unit)

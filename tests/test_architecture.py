@@ -18,7 +18,8 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
-        {"tokens", "scan", "lexer", "syntax", "cursor", "conditions", "clauses", "nodes", "lines", "patterns", "plain"}
+        {"tokens", "characters", "scan", "lexer", "words", "syntax", "cursor"}
+        | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain"}
         | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),

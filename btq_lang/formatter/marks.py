@@ -100,7 +100,7 @@ def marks_of(parsed: Parsed) -> Marks:
                 parts += part
             elif not isinstance(part, Word | str | int | None):
                 marker.mark(part, entry.start)
-                fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # as every class of syntax
+                fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # as every class of syntax
                 parts += [getattr(part, field) for field in fields]
     return marker.marks
 

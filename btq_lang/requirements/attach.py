@@ -97,7 +97,7 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
         return tuple([_filled(each, values) for each in part])
     if type(part).__module__ != Requirement.__module__ or isinstance(part, SourceNode):
         return part
-    fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every record has them
+    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # every record has them
     if "signal" in fields and "verb" not in fields:
         return part  # what is read has no parameters in it, and its signal may be large
     changes = {}

@@ -1,0 +1,35 @@
+"""The blocks that are open while a tree is read.
+
+One invariant: a node gets its children when its block closes, all at once.
+"""
+
+from __future__ import annotations
+
+from btq_lang.syntax import Node, NodeClause, Verbatim
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
+
+
+class Block:
+    """The open block of a node, or of the tree itself: what was read of it so far."""
+
+    __slots__ = ("children", "clauses", "level", "node")
+
+    def __init__(self, level: int, node: Node | None) -> None:
+        self.level: Final = level  # of the line that opened it
+        self.node: Final = node
+        self.clauses: list[NodeClause] = []
+        self.children: list[Node | Verbatim] = []
+
+    def has_nodes(self) -> bool:
+        return any(isinstance(child, Node) for child in self.children)
+
+    def close(self) -> None:
+        if self.node is not None:
+            self.node.children = tuple(self.children)
+            if self.clauses:
+                self.node.clauses += tuple(self.clauses)

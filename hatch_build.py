@@ -1,0 +1,85 @@
+"""Compile the parser when a wheel is built with `BTQ_COMPILE=1`; without it the wheel is pure Python.
+
+One invariant: nothing compiled ever lies in the checkout.  The package is copied, compiled in a folder that is removed
+when the wheel is made, and only the compiled modules are taken from there; the sources stay beside them in the wheel,
+for tracebacks, and Python prefers the compiled ones.
+
+Which modules: those where the parser spends its time.  `@record` makes classes while a module is loaded, which cannot
+be compiled, so modules with records stay as they are.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+PACKAGE = "btq_lang"
+COMPILED = (
+    "characters",
+    "words",
+    "scan",
+    "plain",
+    "blocks",
+    "lexer",
+    "cursor",
+    "conditions",
+    "clauses",
+    "nodes",
+    "parser",
+)
+# mypyc makes C of typed Python and calls setuptools to have it compiled.
+REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=77")
+
+
+def is_wanted() -> bool:
+    return os.environ.get("BTQ_COMPILE", "") not in ("", "0")
+
+
+class CompileHook(BuildHookInterface[Any]):
+    """Hatchling's hook (https://hatch.pypa.io/latest/plugins/build-hook/custom/) for the target `wheel`."""
+
+    def dependencies(self) -> list[str]:
+        return list(REQUIRED) if is_wanted() else []
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Compile and add the modules; `editable` installs run the checkout and stay pure."""
+        if not is_wanted() or version == "editable":
+            return
+        self.folder = Path(tempfile.mkdtemp(prefix="btq-compile-"))
+        compiled = compile_package(Path(self.root), self.folder)
+        build_data["pure_python"] = False
+        build_data["infer_tag"] = True
+        build_data["force_include"] |= {str(file): str(file.relative_to(self.folder)) for file in compiled}
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        if hasattr(self, "folder"):
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def compile_package(root: Path, folder: Path) -> list[Path]:
+    """Compile the package of a checkout in another folder.
+
+    Returns:
+        The compiled modules, in `folder` where they belong beside the package's sources.
+
+    Raises:
+        RuntimeError: mypyc or the C compiler failed; the message is what they said.
+    """
+    shutil.copytree(root / PACKAGE, folder / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
+    modules = [f"{PACKAGE}/{module}.py" for module in COMPILED]
+    environment = {"MYPYC_OPT_LEVEL": "3"} | os.environ | {"MYPYPATH": str(folder)}
+    options = ("--python-version", f"{sys.version_info.major}.{sys.version_info.minor}")
+    command = (sys.executable, "-m", "mypyc", *options, *modules)
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"mypyc failed:\n{done.stdout}{done.stderr}")
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    return sorted((*folder.glob(f"*{suffix}"), *(folder / PACKAGE).glob(f"*{suffix}")))

@@ -1,0 +1,92 @@
+"""The compiled parser (hatch_build.py) reads as the pure one does: the same tree, offsets and diagnostics.
+
+It is compiled into a temporary folder, without optimisation, and runs in a process of its own, since one process
+imports a package only once.  Skipped, saying so, where the tools to compile it are missing.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from missions import mission
+from test_plain import CLASSIC, EXAMPLES, SHORT, torn
+
+ROOT = Path(__file__).resolve().parents[1]
+
+TELL = """
+import json, sys
+from btq_lang import parser
+
+def told(part):
+    if isinstance(part, (list, tuple)) and not hasattr(part, "_fields"):
+        return [told(element) for element in part]
+    if hasattr(part, "__match_args__"):
+        return [type(part).__name__, *(told(getattr(part, field)) for field in type(part).__match_args__)]
+    return repr(part)
+
+print(json.dumps(parser.__file__))
+for line in sys.stdin:
+    parsed = parser.parse(json.loads(line))
+    print(json.dumps(told([parsed.entries, parsed.diagnostics, parsed.tokens])))
+"""
+
+
+def answers(package: Path, texts: list[str]) -> tuple[Path, list[str]]:
+    """What the parser of a package says of each text, and where that parser lies."""
+    said = subprocess.run(
+        [sys.executable, "-c", TELL],
+        input="".join(json.dumps(text) + "\n" for text in texts),
+        cwd=package,  # which stands first in the path of `-c`
+        env=os.environ | {"PYTHONPATH": str(package)},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    return Path(json.loads(said[0])), said[1:]
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the package compiled as for a wheel."""
+    for module in ("hatchling", "mypyc", "setuptools"):
+        if importlib.util.find_spec(module) is None:
+            pytest.skip(f"the parser cannot be compiled here: {module} is not installed")
+    if shutil.which(os.environ.get("CC", "cc")) is None:
+        pytest.skip("the parser cannot be compiled here: there is no C compiler")
+    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
+    assert spec is not None
+    assert spec.loader is not None
+    hatch_build = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(hatch_build)
+    folder = tmp_path_factory.mktemp("compiled")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MYPYC_OPT_LEVEL", "0")
+        hatch_build.compile_package(ROOT, folder)
+    return folder
+
+
+def test_the_compiled_parser_reads_as_the_pure_one(compiled: Path) -> None:
+    draw = random.Random(1)
+    texts = [path.read_bytes().decode("utf-8") for path in EXAMPLES]
+    texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
+    texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
+    pure_file, pure = answers(ROOT, texts)
+    compiled_file, by_compiled = answers(compiled, texts)
+    assert pure_file == ROOT / "btq_lang" / "parser.py"
+    assert compiled_file.parent == compiled / "btq_lang"
+    assert compiled_file.suffix != ".py"
+    assert len(pure) == len(by_compiled) == len(texts)
+    for text, expected, found in zip(texts, pure, by_compiled, strict=True):
+        assert found == expected, text
+
+
+def test_nothing_compiled_lies_in_the_checkout(compiled: Path) -> None:
+    assert not [*ROOT.glob("*.so"), *(ROOT / "btq_lang").rglob("*.so"), *(ROOT / "btq_lang").rglob("*.pyd")]
