@@ -5,43 +5,41 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
-from btq_lang.checks.demanded import Found, claims, highest, resolved, seconds, summed
-from btq_lang.checks.view import View
+from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.composition import port_seconds
-from btq_lang.requirements.durations import Term
+from btq_lang.requirements.durations import Term, together
 
 
-def budget_exceeded(view: View) -> Iterator[Found]:
+def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
     """What the children may take is more than their parent may: in the worst case, or always."""
-    _, budgets = resolved(view)
-    for applied, claim, node, place in claims(view):
+    for applied, claim, node, place in demanded.claims:
         most = highest(claim) if claim.verb in ("takes", "succeeds") else None
         if most is None or not (node.children or node.category == "SubTree"):
             continue
-        budget = budgets.composed(node)
+        budget = demanded.budgets.composed(node)
         allowed = budget.success if claim.verb == "succeeds" else budget.completes
         if allowed is None:
             continue
+        terms = together(allowed.terms)
         if allowed.low > most[0]:
             message = f"{node.shown} takes at least {seconds(allowed.low)}, so it can never keep to `{most[1]}`"
         elif allowed.high == inf or allowed.high <= most[0] or applied.requirement.odds is not None:
             continue
         else:
-            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}`: {summed(allowed.terms)}"
-        related = tuple(Related(term.node.place, _share(term)) for term in allowed.terms)
+            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}`: {summed(terms)}"
+        related = tuple(Related(term.node.place, _share(term)) for term in terms)
         yield place, Diagnostic("budget-exceeded", place.span, message, related=related)
 
 
-def timeout_never_succeeds(view: View) -> Iterator[Found]:
+def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
     """A Timeout shorter than the shortest way to its child's success."""
-    found, budgets = resolved(view)
-    for node in found.nodes.all:
+    for node in demanded.requirements.nodes.all:
         limit = port_seconds(node, "msec") if node.tag == "Timeout" and len(node.children) == 1 else None
-        if not limit or node.path != view.path:
+        if not limit or node.path != demanded.view.path:
             continue
         (child,) = node.children
-        success = budgets.of(child).success
+        success = demanded.budgets.of(child).success
         if success is None or success.low <= limit:
             continue
         related = (Related(child.place, f"takes at least {seconds(success.low)}"),)

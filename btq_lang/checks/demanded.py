@@ -19,16 +19,25 @@ if TYPE_CHECKING:
 Found: TypeAlias = tuple[Place, Diagnostic]
 
 
-def resolved(view: View) -> tuple[Requirements, Budgets]:
-    """The requirements of a file that has some, and the budgets of its nodes."""
-    assert view.requirements is not None, "the rules are asked only where there are requirements"
-    assert view.budgets is not None, "there are budgets where there are requirements"
-    return view.requirements, view.budgets
+class Demanded:
+    """What is demanded in a file.
+
+    Attributes:
+        claims: all that hold for nodes and can be told of in this file: what is applied, the claim, the node, and where
+            to tell of it.
+        budgets: how long the nodes take if they all hold.
+    """
+
+    def __init__(self, view: View) -> None:
+        assert view.requirements is not None, "the rules are asked only where there are requirements"
+        assert view.budgets is not None, "there are budgets where there are requirements"
+        self.view = view
+        self.requirements: Requirements = view.requirements
+        self.budgets: Budgets = view.budgets
+        self.claims = tuple(_claims(view, self.requirements))
 
 
-def claims(view: View) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
-    """Each claim with the node that it holds for, and where in this file to tell of it."""
-    found, _ = resolved(view)
+def _claims(view: View, found: Requirements) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
     for applied in found.applied:
         if applied.node is None:
             continue

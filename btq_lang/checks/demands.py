@@ -22,8 +22,10 @@ def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def all_demands(view: View) -> dict[int, list[Diagnostic]]:
     """What the rules find in the file, by the item that it stands in."""
     from btq_lang.checks import budgets, limits, odds, signals, swallowing  # few files need them
+    from btq_lang.checks.demanded import Demanded
 
-    found: dict[int, list[Diagnostic]] = {}
+    held = Demanded(view)
+    found: dict[int, dict[Diagnostic, None]] = {}  # each once: it may hold for many nodes
     for rule in (
         limits.limit_too_small,
         limits.limit_on_synchronous_node,
@@ -38,8 +40,7 @@ def all_demands(view: View) -> dict[int, list[Diagnostic]]:
         signals.signal_may_be_unset,
         swallowing.swallowed_failure,
     ):
-        for place, diagnostic in rule(view):
-            same = found.setdefault(id(place.anchor), [])
-            if place.path == view.path and diagnostic not in same:
-                same.append(diagnostic)
-    return found
+        for place, diagnostic in rule(held):
+            if place.path == view.path:
+                found.setdefault(id(place.anchor), {})[diagnostic] = None
+    return {item: list(same) for item, same in found.items()}

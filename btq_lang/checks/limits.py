@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
-from btq_lang.checks.demanded import Found, claims, highest, is_enforced, lowest, resolved, seconds
-from btq_lang.checks.view import View
+from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, SourceNode, Target, Value
@@ -15,9 +14,9 @@ from btq_lang.rules import Severity
 _OF_TIME = frozenset(("takes", "succeeds"))
 
 
-def limit_too_small(view: View) -> Iterator[Found]:
+def limit_too_small(demanded: Demanded) -> Iterator[Found]:
     """A limit that the engine takes for none: it counts whole milliseconds, and 0 is no limit to it."""
-    for applied, claim, _, place in claims(view):
+    for applied, claim, _, place in demanded.claims:
         most = highest(claim) if claim.verb in _OF_TIME and is_enforced(applied) else None
         if most is None or most[0] >= 0.001:
             continue
@@ -31,13 +30,12 @@ def limit_too_small(view: View) -> Iterator[Found]:
         )
 
 
-def limit_on_synchronous_node(view: View) -> Iterator[Found]:
+def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
     """A limit on a node that completes within one tick: nobody looks at the clock while it runs."""
-    _, budgets = resolved(view)
-    for applied, claim, node, place in claims(view):
+    for applied, claim, node, place in demanded.claims:
         if claim.verb not in _OF_TIME or not is_enforced(applied) or highest(claim) is None:
             continue
-        if budgets.composed(node).waits:
+        if demanded.budgets.composed(node).waits:
             continue
         yield (
             place,
@@ -51,17 +49,16 @@ def limit_on_synchronous_node(view: View) -> Iterator[Found]:
         )
 
 
-def dead_bound(view: View) -> Iterator[Found]:
+def dead_bound(demanded: Demanded) -> Iterator[Found]:
     """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is told
     for that."""
-    _, budgets = resolved(view)
-    for _, claim, node, place in claims(view):
+    for _, claim, node, place in demanded.claims:
         most = highest(claim) if claim.verb in _OF_TIME else None
         timeout = next(_timeouts(node), None) if most is not None else None
         if most is None or timeout is None or most[0] <= timeout[1]:
             continue
         above, limit = timeout
-        success = budgets.of(above.children[0]).success if above.children else None
+        success = demanded.budgets.of(above.children[0]).success if above.children else None
         if success is not None and success.low > limit:
             continue
         message = f"`{most[1]}` is never reached: a Timeout halts {node.shown} after {seconds(limit)}"
@@ -69,9 +66,9 @@ def dead_bound(view: View) -> Iterator[Found]:
         yield place, Diagnostic("dead-bound", place.span, message, related=related)
 
 
-def attempts_mismatch(view: View) -> Iterator[Found]:
+def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
     """`tries at most` against the number of attempts that Retry and Repeat make."""
-    for _, claim, node, place in claims(view):
+    for _, claim, node, place in demanded.claims:
         most = highest(claim) if claim.verb == "tries" else None
         if most is None or most[0] == inf or not isinstance(claim.per, Target):
             continue
@@ -91,11 +88,11 @@ def attempts_mismatch(view: View) -> Iterator[Found]:
             yield place, Diagnostic("attempts-mismatch", place.span, message, related=related, severity=Severity.HINT)
 
 
-def contradicting_bounds(view: View) -> Iterator[Found]:
+def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
     """Two bounds on one node that cannot both hold; or one that cannot hold by itself."""
     least: dict[tuple[object, ...], tuple[float, str, Place]] = {}
     most: dict[tuple[object, ...], tuple[float, str, Place]] = {}
-    for applied, claim, node, place in claims(view):
+    for applied, claim, node, place in demanded.claims:
         if applied.requirement.odds is not None:
             continue
         scopes = tuple(scope.text for scope in applied.requirement.scopes)

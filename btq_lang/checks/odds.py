@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil, inf, log
 
-from btq_lang.checks.demanded import Found, claims, highest, resolved
-from btq_lang.checks.view import View
+from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Claim, SourceNode
 
 
-def odds_beyond_children(view: View) -> Iterator[Found]:
+def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
     """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures."""
-    _, budgets = resolved(view)
-    for applied, claim, node, place in claims(view):
+    for applied, claim, node, place in demanded.claims:
         odds = applied.requirement.odds
         if (odds is not None and odds.experiments == "runs") or not (node.children or node.category == "SubTree"):
             continue
         wanted = odds.probability if odds is not None else 1.0
-        ensured = _ensured(budgets, claim, node)
+        ensured = _ensured(demanded.budgets, claim, node)
         if ensured is None or ensured[0] >= wanted - 1e-9:
             continue
         likely, parts = ensured
@@ -32,16 +30,15 @@ def odds_beyond_children(view: View) -> Iterator[Found]:
         yield place, Diagnostic("odds-beyond-children", place.span, message, related=related, notes=notes)
 
 
-def window_too_small(view: View) -> Iterator[Found]:
+def window_too_small(demanded: Demanded) -> Iterator[Found]:
     """A window in which even a run without any failure shows too little.
 
     Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
     "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
     """
-    found, _ = resolved(view)
-    for requirement in found.all.values():
+    for requirement in demanded.requirements.all.values():
         odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
-        if requirement.path != view.path or odds is None or window is None or window.count is None:
+        if requirement.path != demanded.view.path or odds is None or window is None or window.count is None:
             continue
         if confidence is None or not 0.0 < confidence < 1.0:
             continue

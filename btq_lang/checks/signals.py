@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.checks.demanded import Found, claims, is_enforced, resolved
+from btq_lang.checks.demanded import Demanded, Found, is_enforced
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.near import near
-from btq_lang.requirements.model import Applied, Claim, Signal, SourceNode
+from btq_lang.requirements.model import Signal, SourceNode
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Pair, Port, Tree
@@ -18,17 +18,17 @@ from btq_lang.syntax import Model, Pair, Port, Tree
 _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
 
 
-def signal_never_written(view: View) -> Iterator[Found]:
+def signal_never_written(demanded: Demanded) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
     same name, or where a guard reads it; the robot's program may write it, so then it is a hint."""
-    found, _ = resolved(view)
+    found, view = demanded.requirements, demanded.view
     here = [signal for signal in found.signals.values() if signal.place.path == view.path and signal.key is not None]
     if not here or not found.nodes.all or not view.scope.complete or not view.is_read:
         return
     if view.path in view.workspace.included_files:
         return  # who writes it may be in the files that include this one
     written = _written(view, found.nodes.all)
-    guarding = {signal.name for applied, claim, _, _ in claims(view) for signal in _read_by_guard(applied, claim)}
+    guarding = {signal.name for signals, _ in _guards(demanded) for signal in signals}
     for signal in here:
         key = (signal.key or "").removeprefix("@")
         likely = near(key, written) if key not in written else ()
@@ -46,19 +46,19 @@ def signal_never_written(view: View) -> Iterator[Found]:
         )
 
 
-def signal_may_be_unset(view: View) -> Iterator[Found]:
+def signal_may_be_unset(demanded: Demanded) -> Iterator[Found]:
     """A guard on a signal without a first value: until somebody writes it, the engine ends the mission."""
     told: dict[str, list[Related]] = {}
     signals: dict[str, Signal] = {}
-    for applied, claim, _, place in claims(view):
-        for signal in _read_by_guard(applied, claim):
+    for read, place in _guards(demanded):
+        for signal in read:
             if signal.key is None or signal.initially is not None:
                 continue
             signals[signal.name] = signal
             told.setdefault(signal.name, []).append(Related(place, "this is checked by the engine"))
     for name, related in told.items():
         signal = signals[name]
-        place = signal.place if signal.place.path == view.path else related[0].place
+        place = signal.place if signal.place.path == demanded.view.path else related[0].place
         yield (
             place,
             Diagnostic(
@@ -71,12 +71,17 @@ def signal_may_be_unset(view: View) -> Iterator[Found]:
         )
 
 
-def _read_by_guard(applied: Applied, claim: Claim) -> list[Signal]:
-    """The signals that the engine reads to enforce a claim, each once."""
-    if claim.verb not in _GUARDS or not is_enforced(applied):
-        return []
-    scopes = tuple(scope.condition for scope in applied.requirement.scopes)
-    return list({each.name: each for each in _signals((claim.condition, claim.signal, scopes))}.values())
+def _guards(demanded: Demanded) -> Iterator[tuple[tuple[Signal, ...], Place]]:
+    """The signals that the engine reads to enforce a claim, each once, and where to tell of it."""
+    known: dict[tuple[int, ...], tuple[Signal, ...]] = {}
+    for applied, claim, _, place in demanded.claims:
+        if claim.verb not in _GUARDS or not is_enforced(applied):
+            continue
+        parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
+        key = tuple(map(id, parts))  # one claim may hold for many nodes
+        if key not in known:
+            known[key] = tuple({each.name: each for each in _signals(parts)}.values())
+        yield known[key], place
 
 
 def _signals(part: object) -> Iterator[Signal]:

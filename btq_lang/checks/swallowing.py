@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.checks.demanded import Found, claims, is_enforced, resolved
-from btq_lang.checks.view import View
+from btq_lang.checks.demanded import Demanded, Found, is_enforced
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.composition import port_count
@@ -14,10 +13,10 @@ from btq_lang.requirements.model import SourceNode
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
 
-def swallowed_failure(view: View) -> Iterator[Found]:
+def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
     """A failure that never reaches the root, whichever way the node is run."""
-    found, _ = resolved(view)
-    for applied, claim, node, place in claims(view):
+    found = demanded.requirements
+    for applied, claim, node, place in demanded.claims:
         if applied.requirement.action != "fail" or not is_enforced(applied) or claim.verb in _NEVER_ENFORCED:
             continue
         swallower = _swallower(found, node)

@@ -6,11 +6,12 @@ the engine can enforce, nor what a run of the robot was like.
     requirements(workspace, path)   all of a file and what it includes
     model.py     what a requirement says once its words are resolved
     nodes.py     which written nodes a path, a kind or a tag means
+    paths.py     the one node that a path names
     reader.py    values and conditions: names, units, what compares with what
     clauses.py   what each verb asks for
     classic.py   SuccessIf and FailureIf in classic descriptions
     attach.py    which requirement holds for which node
-    budgets.py   how long nodes take when all that is demanded of their children holds
+    durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from btq_lang.requirements.classic import with_constraints
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, SourceNode, Trace
 from btq_lang.requirements.nodes import Nodes
-from btq_lang.requirements.reader import Problem, Reader
+from btq_lang.requirements.paths import Problem
+from btq_lang.requirements.reader import Reader
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Context, Operand, Quality, Satisfices, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement

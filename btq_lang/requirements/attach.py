@@ -74,9 +74,12 @@ def attach(
         if requirement.claims and not attached:
             traces += (Trace(requirement.name, use.target.node) for use in counting)
             continue
+        alone = replace(requirement, claims=tuple(attached)) if len(attached) < len(requirement.claims) else requirement
+        filled: dict[tuple[Argument, ...], Requirement] = {}  # most nodes get the same arguments, or none
         for use in counting:
-            filled = fill(replace(requirement, claims=tuple(attached)), use.arguments)
-            applied.append(Applied(filled, use.target, use.arguments, use.place, use.how))
+            if use.arguments not in filled:
+                filled[use.arguments] = fill(alone, use.arguments)
+            applied.append(Applied(filled[use.arguments], use.target, use.arguments, use.place, use.how))
     return tuple(applied), tuple(traces), frozenset(mentioned)
 
 

@@ -47,20 +47,7 @@ def plus(first: Range | None, second: Range | None) -> Range | None:
     """One after the other."""
     if first is None or second is None:
         return None
-    return Range(first.low + second.low, first.high + second.high, _together(first.terms, second.terms))
-
-
-def _together(first: tuple[Term, ...], second: tuple[Term, ...]) -> tuple[Term, ...]:
-    """The terms of both; what is the same is one, more often."""
-    if not first or not second:
-        return first or second
-    count: dict[tuple[int, float], int] = {}
-    terms: dict[tuple[int, float], Term] = {}
-    for term in first + second:
-        key = id(term.node), term.seconds
-        terms.setdefault(key, term)
-        count[key] = count.get(key, 0) + term.times
-    return tuple(replace(term, times=count[key]) for key, term in terms.items())
+    return Range(first.low + second.low, first.high + second.high, first.terms + second.terms)
 
 
 def hull(*ranges: Range | None) -> Range | None:
@@ -107,3 +94,13 @@ def total(ranges: Iterable[Range | None]) -> Range | None:
     for each in ranges:
         result = plus(result, each)
     return result
+
+
+def together(terms: Iterable[Term]) -> tuple[Term, ...]:
+    """Terms, each once: what is the same is one, more often."""
+    found: dict[tuple[int, float], Term] = {}
+    for term in terms:
+        key = id(term.node), term.seconds
+        same = found.get(key)
+        found[key] = term if same is None else replace(same, times=same.times + term.times)
+    return tuple(found.values())
