@@ -74,6 +74,12 @@ class Server(LanguageServer):
         capabilities = getattr(self.client_capabilities.workspace, what, None)
         return bool(capabilities and capabilities.refresh_support)
 
+    def knows_command(self, command: str) -> bool:
+        """Whether the editor has said, under `experimental`, that it has a command of its own."""
+        experimental = self.client_capabilities.experimental
+        commands = experimental.get("commands") if isinstance(experimental, dict) else None
+        return isinstance(commands, list) and command in commands
+
     # ---- asking features ----
 
     def at(self, document: types.TextDocumentIdentifier) -> tuple[Workspace, str] | None:

@@ -396,10 +396,35 @@ def test_hints_and_lenses_can_be_switched_off(editor: Editor) -> None:
     (hint,) = editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole)
     assert (hint["label"], hint["position"]) == ("= 2000", {"line": 1, "character": 23})
     (lens,) = editor.request("textDocument/codeLens", **editor.document("main.btq"))
-    assert (lens["command"]["title"], lens["command"]["command"]) == ("0 calls", "btq.showReferences")
+    assert (lens["command"]["title"], lens["command"]["command"]) == ("0 calls", "")
     editor.notify("workspace/didChangeConfiguration", settings={"btq": {"inlayHints": False, "codeLens": False}})
     assert editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole) == []
     assert editor.request("textDocument/codeLens", **editor.document("main.btq")) == []
+
+
+def test_a_lens_calls_the_command_of_an_editor_that_has_it(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, capabilities={"experimental": {"commands": ["btq.showReferences"]}})
+    editor.open("main.btq", "Root Main\nBehaviorTree Main\n    Pick\n")
+    (lens,) = editor.request("textDocument/codeLens", **editor.document("main.btq"))
+    assert (lens["command"]["title"], lens["command"]["command"]) == ("1 call", "btq.showReferences")
+    uri, place, uses = lens["command"]["arguments"]
+    assert (uri, place) == (editor.uri("main.btq"), {"line": 1, "character": 13})
+    assert uses == [{"uri": uri, "range": {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 9}}}]
+    assert editor.close() == ""
+
+
+def test_commands(editor: Editor) -> None:
+    editor.open("main.btq", "BehaviorTree Main\n    -> First\n        Retry (num_attempts = 2)\n            Pick\n")
+    place = editor.at("main.btq", 3, 13)
+    path = editor.request("workspace/executeCommand", command="btq.server.nodePath", arguments=[place])
+    assert path == "Main/First/Retry/Pick"
+    document = editor.document("main.btq")["textDocument"]
+    xml = editor.request("workspace/executeCommand", command="btq.server.xml", arguments=[document])
+    assert '<Sequence name="First">' in xml
+    refused = editor.ask(
+        "workspace/executeCommand", command="btq.server.xml", arguments=[{"uri": editor.uri("nowhere.btq")}]
+    )
+    assert refused["error"]["message"] == "this file is in none of the editor's folders"
 
 
 # ---- the way there ----
@@ -433,6 +458,8 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     editor.open("main.btq", WRONG)
     answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
     assert "broken" in answer["error"]["message"]
+    unknown = editor.ask("workspace/executeCommand", command="btq.unknown", arguments=[])
+    assert unknown["error"]["code"] == -32602
     assert editor.diagnostics("main.btq") != []
     assert "ZeroDivisionError: broken" in editor.close()
 

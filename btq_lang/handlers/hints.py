@@ -11,7 +11,7 @@ from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
-SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's: it opens its own list
+SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's, which opens its own list
 
 
 def register(server: Server) -> None:
@@ -88,5 +88,6 @@ def register(server: Server) -> None:
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
             arguments = [convert.uri(path), range_.start, uses]
-            found.append(types.CodeLens(range_, types.Command(lens.title, SHOW_REFERENCES, arguments=arguments)))
+            command = SHOW_REFERENCES if server.knows_command(SHOW_REFERENCES) else ""
+            found.append(types.CodeLens(range_, types.Command(lens.title, command, arguments=arguments)))
         return found

@@ -21,6 +21,7 @@ from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.features.hover import hover
 from btq_lang.features.moves import moved_files
 from btq_lang.features.navigation import find_references, goto_definition, highlights
+from btq_lang.features.node_path import node_path
 from btq_lang.features.on_type import linked_ranges, on_type
 from btq_lang.features.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.features.proposals import Proposal
@@ -393,6 +394,11 @@ def check_linked(text: str) -> None:
     fixture.expect("name", ((fixture.at[1], span) for span in linked_ranges(*fixture.at)))
 
 
+def check_node_path(text: str, path: str | None) -> None:
+    """The path of the node at the cursor."""
+    assert node_path(*Fixture(text).at) == path
+
+
 def check_moved(text: str, moves: Mapping[str, str], after: str) -> None:
     """When files are called otherwise their includes are mended so."""
     fixture = Fixture(text, cursor=False)
@@ -418,6 +424,7 @@ def answer_everything(text: str, offset: int) -> None:
     found = hover(*at)
     assert found is None or _lies_in(found.span, whole)
     signature_help(*at)
+    node_path(*at)
     completed = complete(*at)
     assert completed.span.start <= offset <= completed.span.end <= len(text)
     for one in completed.proposals[:3]:

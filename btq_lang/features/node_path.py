@@ -1,0 +1,24 @@
+"""The path of a node, as a requirement names it: `Deliver/Delivery/MoveBase`."""
+
+from __future__ import annotations
+
+from btq_lang.features.block import node_at
+from btq_lang.features.meaning import entry_at
+from btq_lang.syntax import Node, Tree, is_name, quote
+from btq_lang.workspace import Workspace
+
+
+def node_path(workspace: Workspace, path: str, offset: int) -> str | None:
+    """The names of the tree and of all nodes down to the one at a place, instance names before kinds; a control node
+    that is a symbol and has no name is left out, for no path can name it.  None: there is no node here."""
+    entry = entry_at(workspace, path, offset)
+    standing = node_at(workspace.files[path], entry, offset) if entry is not None else None
+    if standing is None or entry is None or not isinstance(entry.item, Tree):
+        return None
+    parents: dict[int, Node] = {id(child): node for node in entry.item.walk() for child in node.nodes}
+    line: list[Node] = [standing.node]
+    while (parent := parents.get(id(line[-1]))) is not None:
+        line.append(parent)
+    words = [entry.item.name, *(node.name or node.id for node in reversed(line))]
+    names = [word.text for word in words if word is not None and (word.quoted or is_name(word.text))]
+    return "/".join(name if is_name(name) else quote(name) for name in names)
