@@ -103,7 +103,7 @@ def file_of(path: str, text: str) -> File:
         return File(path, text)
     from btq_lang.btcpp.importing import import_xml
 
-    done = import_xml(text, keep_v3=True, symbols=False)  # messages name nodes as the XML does
+    done = import_xml(text, keep_v3=True, for_people=False)
     return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))
 
 

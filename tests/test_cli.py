@@ -259,6 +259,24 @@ def test_import_writes_over_nothing(btq: Run, tmp_path: Path) -> None:
     assert (tmp_path / "x.btq").read_text() == (tmp_path / "made" / "x.btq").read_text()
 
 
+def test_files_imported_together_include_each_other(btq: Run, tmp_path: Path) -> None:
+    for name in ("main", "imported", "other"):
+        includes = '<include path="sub/imported.xml"/><include path="sub/other.xml"/><include path="sub/absent.xml"/>'
+        (tmp_path / "sub").mkdir(exist_ok=True)
+        (tmp_path / ("" if name == "main" else "sub") / f"{name}.xml").write_text(
+            f"<root BTCPP_format='4'>{includes if name == 'main' else ''}</root>"
+        )
+    done = btq("import", "main.xml", "sub/imported.xml", "-o", "made")
+    assert (tmp_path / "made" / "main.btq").read_text() == (
+        'Root (BTCPP_format = 4)\n\ninclude "imported.btq"\ninclude "../sub/other.xml"\ninclude "sub/absent.xml"\n'
+    )
+    assert "main.xml:1:39: includes `imported.btq`\n" in done.stderr
+    assert btq("import", "main.xml", "sub/imported.xml").returncode == 0
+    assert (tmp_path / "main.btq").read_text() == (
+        'Root (BTCPP_format = 4)\n\ninclude "sub/imported.btq"\ninclude "sub/other.xml"\ninclude "sub/absent.xml"\n'
+    )
+
+
 def test_import_of_broken_xml_writes_nothing_and_shows_it(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "x.xml").write_text(XML.replace("</BehaviorTree>", "</Sequence>"))
     done = btq("import", "x.xml")

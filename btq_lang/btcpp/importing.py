@@ -27,9 +27,10 @@ from btq_lang.tokens import CATEGORIES
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from typing import Final, TypeAlias
 
+    IncludedAs: TypeAlias = Callable[[str], str]
     # A word of a line, and what it was made of: an attribute's value, or what stands between two places.
     Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
     # A line: which one it is and where on it the words begin, the words, the pairs in brackets with what they were made
@@ -59,13 +60,17 @@ class Imported:
         return all((each.severity or RULES[each.rule].severity) is not Severity.ERROR for each in self.diagnostics)
 
 
-def import_xml(text: str, keep_v3: bool = False, symbols: bool = True) -> Imported:
+def import_xml(
+    text: str, keep_v3: bool = False, for_people: bool = True, included_as: IncludedAs | None = None
+) -> Imported:
     """Read an XML file as a .btq file.
 
     Args:
         text: the XML, any string at all.
         keep_v3: leave what version 3 of the engine says as it is, instead of saying it as version 4 does.
-        symbols: write `->` for Sequence and so on.
+        for_people: write `->` for Sequence and so on, and break long lines; for those who only check, nodes keep their
+            names and lines are as long as they are, so that a comment silences a rule for all of an element.
+        included_as: what an `include` says for the path of an `<include>`; None: the same.
     """
     collecting = gc.isenabled()
     gc.disable()  # as in `reader`: nothing made here is garbage
@@ -79,7 +84,7 @@ def import_xml(text: str, keep_v3: bool = False, symbols: bool = True) -> Import
             span = Span(root.start + 1, root.start + 1 + len(root.tag))
             problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
             return Imported("", (), (*done.problems, problem), Places())
-        writer = _Writer(text, symbols)
+        writer = _Writer(text, for_people, included_as or _as_it_is)
         if may_be_generated(text):
             without_generated(done.document, writer.changes)
         if not keep_v3 and is_version_3(root):
@@ -94,6 +99,10 @@ def import_xml(text: str, keep_v3: bool = False, symbols: bool = True) -> Import
             gc.enable()
 
 
+def _as_it_is(path: str) -> str:
+    return path
+
+
 def _start(change: Change) -> Span:
     return change.span
 
@@ -101,9 +110,11 @@ def _start(change: Change) -> Span:
 class _Writer:
     """A .btq file, written up to some line."""
 
-    def __init__(self, source: str, symbols: bool) -> None:
+    def __init__(self, source: str, for_people: bool, included_as: IncludedAs) -> None:
         self.source: Final = source
-        self.symbols: Final = symbols
+        self.symbols: Final = for_people
+        self.columns: Final = _COLUMNS if for_people else len(source) * 10
+        self.included_as: Final = included_as
         self.out: Final[list[str]] = []
         self.marks: Final[list[Mark]] = []
         self.has_returns: Final = _RETURN.search(source) is not None
@@ -167,7 +178,12 @@ class _Writer:
             self.nodes(element, level + 1)
         elif element.tag == "include" and (path := self.first(element, "path")) and not element.children:
             others = [each for each in attributes if each is not path]
-            self.line(level, [tag, (string(path.raw), path)], others)
+            named = path.value if element.get("ros_pkg") else self.included_as(path.value)
+            if named != path.value:
+                span = Span(path.value_start, path.value_start + len(path.raw))
+                self.changes.append(Change(span, f"includes `{named}`"))
+            said = string_of(named) if named != path.value else string(path.raw)
+            self.line(level, [tag, (said, path)], others)
         elif element.tag == "TreeNodesModel" and first is None:
             self.line(level, [tag])
             self.models(element, level + 1)
@@ -313,8 +329,9 @@ class _Writer:
             pairs = [f"{name(each.name)} = {value(each.raw)}" for each in attributes]
             group = " ".join(pairs)
             column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
-            if _fits(f"({group}){behind}", column) or (
-                behind and _fits(f"({group})", column) and not _fits(f"){behind}", len(indent))
+            columns = self.columns
+            if _fits(f"({group}){behind}", column, columns) or (
+                behind and _fits(f"({group})", column, columns) and not _fits(f"){behind}", len(indent), columns)
             ):
                 line = f"{out} ({group}){behind}\n"
             else:
@@ -408,12 +425,12 @@ def _tag(element: Element, word: str) -> Piece:
     return word, (start, start + len(element.tag))
 
 
-def _fits(text: str, column: int) -> bool:
-    """Whether a text keeps within the columns of the formatter, from a column on."""
+def _fits(text: str, column: int, columns: int) -> bool:
+    """Whether a text keeps within the columns, from one on."""
     if "\n" not in text:
-        return column + len(text) <= _COLUMNS
+        return column + len(text) <= columns
     first, *others = text.split("\n")
-    return column + len(first) <= _COLUMNS and all(len(line) <= _COLUMNS for line in others)
+    return column + len(first) <= columns and all(len(line) <= columns for line in others)
 
 
 def _is(attribute: Attribute, key: str, raw: str) -> bool:
@@ -457,7 +474,7 @@ def _is_metadata(element: Element) -> bool:
 
 
 _INDENT: Final = "    "
-_COLUMNS: Final = 100
+_COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
 _MAY_BE_PLACEHOLDERS: Final = frozenset(("Script", "ScriptCondition", "ScriptAction"))
 _RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

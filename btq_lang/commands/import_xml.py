@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
@@ -32,8 +32,9 @@ def run(options: Namespace) -> int:
     """Import each file; one that cannot be read as XML stops none of the others."""
     jobs: list[_Job] = []
     problems: list[LoadProblem] = []
+    targets = {absolute(path): _target(path, options) for path in options.files if path != _STDIN}
     for path in options.files:
-        job = _job(path, options, problems)
+        job = _job(path, targets, options, problems)
         if job is not None:
             jobs.append(job)
     jobs = [job for job in jobs if not _clashes(job, jobs, options.force, problems)]
@@ -50,7 +51,13 @@ def run(options: Namespace) -> int:
     return int(len(good) < len(jobs))
 
 
-def _job(path: str, options: Namespace, problems: list[LoadProblem]) -> _Job | None:
+def _target(path: str, options: Namespace) -> str:
+    """Where the .btq file of an XML file goes."""
+    name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
+    return absolute(os.path.join(options.output or os.path.dirname(path), name))
+
+
+def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     if path == _STDIN:
         xml = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
         return _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
@@ -59,9 +66,20 @@ def _job(path: str, options: Namespace, problems: list[LoadProblem]) -> _Job | N
     if text is None or problem is not None:  # what is no UTF-8 would lose something
         problems.extend([problem] if problem else [])
         return None
-    name = f"{os.path.splitext(os.path.basename(path))[0]}.btq"
-    target = absolute(os.path.join(options.output or os.path.dirname(path), name))
-    return _Job(path, text, _with_side_file(path, text, import_xml(text, options.keep_v3)), target)
+    folder, target = os.path.dirname(path), targets[path]
+    moves = os.path.dirname(target) != folder
+
+    def included_as(named: str) -> str:
+        """What is imported beside it is included as it is now, and the rest where it is."""
+        other = absolute(os.path.join(folder, named))
+        if other in targets:
+            other = targets[other]
+        elif not moves or os.path.isabs(named) or not os.path.isfile(other):
+            return named
+        return os.path.relpath(other, os.path.dirname(target)).replace(os.sep, "/")
+
+    done = import_xml(text, options.keep_v3, included_as=included_as)
+    return _Job(path, text, _with_side_file(path, text, done), target)
 
 
 def _with_side_file(path: str, xml: str, done: Imported) -> Imported:

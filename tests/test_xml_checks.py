@@ -1,0 +1,128 @@
+"""XML in a workspace: checked as it is, shown as it stands, and included by missions."""
+
+from __future__ import annotations
+
+import pickle
+
+import pytest
+from check_asserts import assert_clean, assert_problems, workspace_of
+
+from btq_lang.checks import check
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.project import Project
+from btq_lang.symbols import Kind
+from btq_lang.workspace import File, Workspace
+
+SKILLS = """\
+//- main.btq
+include "skills.xml"
+
+BehaviorTree Main
+    ->
+        MoveBase (station = "bench")
+        SubTree Pick
+{more}
+//- skills.xml
+<root BTCPP_format="4">
+  <BehaviorTree ID="Pick"><AlwaysSuccess/></BehaviorTree>
+  <TreeNodesModel>
+    <Action ID="MoveBase"><input_port name="station"/></Action>
+  </TreeNodesModel>
+</root>
+"""
+
+
+def test_an_include_brings_trees_and_models() -> None:
+    assert_clean(SKILLS.format(more=""))
+
+
+def test_what_no_included_xml_has_is_nowhere() -> None:
+    text = SKILLS.format(more="        SubTree Pikc\n        MoveBsae\n")
+    assert_problems(
+        text,
+        "main.btq:7:17 error unknown-tree «Pikc» there is no tree `Pikc` in this file or in those it includes",
+        "main.btq:8:9 warning unknown-node «MoveBsae» unknown node `MoveBsae`",
+    )
+
+
+def test_what_could_not_be_read_may_hold_anything() -> None:
+    text = SKILLS.format(more="        SubTree Pikc\n").replace("</TreeNodesModel>", "</TreeNodes>")
+    assert_problems(
+        text,
+        "skills.xml:5:3 error xml-syntax «</TreeNodes>» </TreeNodes> stands where </TreeNodesModel> is expected",
+    )
+
+
+def test_related_places_stand_in_the_xml() -> None:
+    workspace = workspace_of(
+        {
+            "a.xml": '<root>\n  <BehaviorTree ID="T"><A/></BehaviorTree>\n</root>',
+            "main.btq": 'include "a.xml"\n\nBehaviorTree T\n    A\n',
+        }
+    )
+    (found,) = (each for each in check(workspace, "main.btq") if each.rule == "duplicate-tree")
+    place = found.related[0].place
+    assert place.path == "a.xml"
+    assert workspace.files["a.xml"].source[place.span.start : place.span.end] == "T"
+    assert found.fixes == ()
+
+
+def test_comments_in_xml_silence_rules_for_a_whole_element() -> None:
+    node = '<Timeout msec="1" b="{x}" ' + " ".join(f'long{number}="value"' for number in range(12)) + "><A/></Timeout>"
+    around = '<root BTCPP_format="4"><BehaviorTree ID="T">\n', "</BehaviorTree></root>"
+    xml = f"<!-- btq: ignore[unknown-port] -->\n{node}".join(around)
+    assert_clean_xml(xml)
+    assert "unknown-port" in {each.rule for each in problems(xml.replace("ignore", "say"))}
+
+
+def test_a_name_that_a_build_would_mend_is_an_error_in_xml() -> None:
+    (found,) = problems('<root BTCPP_format="4"><BehaviorTree ID="a b"><A/></BehaviorTree></root>')
+    assert (found.rule, found.effective_severity.value) == ("forbidden-name", "error")
+    assert found.message == "the engine refuses the tree name `a b`: it contains a blank"
+
+
+def test_explicit_forms_are_refused_only_directly_below_a_reactive_sequence() -> None:
+    xml = (
+        '<root BTCPP_format="4"><BehaviorTree ID="T"><{tag}><Action ID="A"/><SubTree ID="S"/></{tag}></BehaviorTree>'
+        '<BehaviorTree ID="S"><B/></BehaviorTree></root>'
+    )
+    for tag, expected in (("ReactiveSequence", ["explicit-in-reactive"]), ("ReactiveFallback", []), ("Sequence", [])):
+        text = xml.replace("{tag}", tag)
+        assert [each.rule for each in problems(text) if each.rule == "explicit-in-reactive"] == expected
+    old = Project(engines=("4.6",))
+    workspace = workspace_of({"a.xml": xml.replace("{tag}", "ReactiveSequence")}, old)
+    assert [each.rule for each in check(workspace, "a.xml") if each.rule == "explicit-in-reactive"] == []
+
+
+def test_files_of_any_name_that_begin_like_xml_are_xml() -> None:
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><A/></BehaviorTree></root>'
+    assert workspace_of({"a.tree": f"\n{xml}"}).files["a.tree"].origin is not None
+    assert workspace_of({"a.btq": xml}).files["a.btq"].origin is None
+
+
+def test_a_file_of_xml_is_a_value() -> None:
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><A x="1"/></BehaviorTree></root>'
+    (file, other) = (workspace_of({"a.xml": text}).files["a.xml"] for text in (xml, xml.replace(" x", "  x")))
+    assert file.text == other.text
+    assert file != other
+    again = pickle.loads(pickle.dumps(file))
+    assert isinstance(again, File)
+    assert again == file
+    assert again.origin is not None
+    workspace = Workspace({"a.xml": again}, Project())
+    assert workspace.scope("a.xml").find(Kind.TREE, "T") is not None
+    assert check(workspace, "a.xml") == check(Workspace({"a.xml": file}, Project()), "a.xml")
+
+
+@pytest.mark.parametrize("xml", ["", "<", "<root>", "<Sequence/>", "<root/>", "<root><a/></root>", "text"])
+def test_every_xml_is_answered(xml: str) -> None:
+    for each in problems(xml):
+        assert 0 <= each.span.start <= each.span.end <= len(xml)
+
+
+def problems(xml: str) -> tuple[Diagnostic, ...]:
+    return check(workspace_of({"a.xml": xml}), "a.xml")
+
+
+def assert_clean_xml(xml: str) -> None:
+    assert [(each.rule, each.message) for each in problems(xml)] == []
