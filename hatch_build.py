@@ -36,7 +36,7 @@ COMPILED = (
     "parser",
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
-REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=77")
+REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")
 
 
 def is_wanted() -> bool:
