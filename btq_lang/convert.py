@@ -44,9 +44,9 @@ class Converter:
     # ---- from the editor ----
 
     def path(self, uri: str) -> str:
-        """The path of a file; what is no file (an untitled buffer) goes by its whole URI."""
+        """The path of a file; what is no file (an untitled buffer) goes by its URI, as if that stood at the top."""
         parts = urlsplit(uri)
-        return absolute(url2pathname(parts.path)) if parts.scheme == "file" else unquote(uri)
+        return absolute(url2pathname(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
 
     def offset(self, workspace: Workspace, path: str, position: types.Position) -> int:
         place = Position(position.line, position.character)

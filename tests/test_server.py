@@ -49,6 +49,22 @@ def test_diagnostics_come_and_go_as_one_types(editor: Editor) -> None:
     assert editor.published("main.btq") == {"uri": editor.uri("main.btq"), "diagnostics": [], "version": 3}
 
 
+def test_typed_key_by_key_it_is_what_it_would_be_at_once(tmp_path: Path) -> None:
+    text = 'QualityReq rq : speed "Fast"\n    takes at most 3 sek\nBehaviorTree Main\n    Retry\n        Pick satisfies rq\n'
+    typing, reading = Editor(tmp_path), Editor(tmp_path)
+    typing.open("main.btq", "")
+    for end in range(1, len(text) + 1):
+        typing.change("main.btq", text[:end])
+    reading.open("main.btq", text)
+    while (told := typing.published("main.btq")).pop("version") != len(text) + 1:
+        pass
+    expected = reading.published("main.btq")
+    assert expected.pop("version") == 1
+    assert told == expected
+    assert len(told["diagnostics"]) > 2
+    assert typing.close() == reading.close() == ""
+
+
 def test_an_edit_in_one_file_reaches_the_file_that_includes_it(editor: Editor) -> None:
     editor.open("skills.btq", "Action Dock\n")
     assert editor.diagnostics("skills.btq") == []
@@ -87,6 +103,19 @@ def test_closing_a_file_that_is_on_no_disk_clears_it(editor: Editor) -> None:
     assert editor.diagnostics("main.btq") != []
     editor.shut("main.btq")
     assert editor.diagnostics("main.btq") == []
+
+
+def test_a_buffer_without_a_file(editor: Editor) -> None:
+    uri = "untitled:Untitled-1"
+    editor.notify("textDocument/didOpen", textDocument={"uri": uri, "languageId": "btq", "version": 1, "text": WRONG})
+    told = editor.wait_for(lambda message: message.get("params", {}).get("uri") == uri)["params"]
+    assert [each["code"] for each in told["diagnostics"]] == ["unknown-node"]
+    place = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 14}}
+    made = editor.request("textDocument/rename", **place, newName="Mission")["changes"]
+    assert edits(made[uri]) == [(0, 13, 17, "Mission")]
+    editor.notify("textDocument/didClose", textDocument={"uri": uri})
+    told = editor.wait_for(lambda message: message.get("params", {}).get("uri") == uri)["params"]
+    assert told["diagnostics"] == []
 
 
 def test_files_that_change_on_the_disk(tmp_path: Path) -> None:

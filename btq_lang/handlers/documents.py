@@ -33,7 +33,6 @@ def register(server: Server) -> None:
         server.versions.pop(path, None)
         server.tokens.pop(path, None)
         server.check_soon((path, *session.close(path)))
-        convert.uris.pop(path, None)
 
 
 def _diagnostics(server: Server) -> None:

@@ -1,0 +1,120 @@
+"""A session says after every change what a new one would say of the same texts."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from btq_lang.features.completion import complete
+from btq_lang.features.navigation import find_references
+from btq_lang.features.outline import document_symbols
+from btq_lang.session import Session
+
+MAIN = """include "skills.btq"
+include "requirements.btq"
+Root Main
+BehaviorTree Main
+    ->
+        Pick (from = {shelf}) satisfies rq1
+        SubTree Carry (to = "x")
+        Place satisfies rq2
+"""
+SKILLS = """Action Pick
+    input from : string
+BehaviorTree Carry
+    input to : string
+    Move (to = {to})
+"""
+REQUIREMENTS = """QualityReq rq1 : safety "Slowly"
+    takes at most 3 s
+"""
+OTHER = "BehaviorTree Alone\n    Pick\n"
+FILES = {"main.btq": MAIN, "skills.btq": SKILLS, "requirements.btq": REQUIREMENTS, "other.btq": OTHER}
+PIECES = (
+    *(
+        "\n",
+        "    ",
+        "Pick",
+        "rq1",
+        "rq2",
+        "Carry",
+        "satisfies ",
+        '"',
+        "(",
+        ")",
+        "{",
+        "# ",
+        'include "other.btq"\n',
+        "BehaviorTree ",
+    ),
+    *("QualityReq rq2 ", "input ", "Root ", "3 s", "takes ", "Action Place\n"),
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def session_of(folder: Path, texts: dict[str, str]) -> Session:
+    session = Session()
+    session.folders = (str(folder),)
+    session.open.update(texts)
+    session.reload()
+    return session
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int) -> None:
+    chance = random.Random(seed)
+    session = session_of(folder, {})
+    told = {path: session.diagnostics(path) for path in session.paths()}
+    texts: dict[str, str] = {}
+    for step in range(60):
+        name = chance.choice(sorted(FILES))
+        path = f"{folder}/{name}"
+        if path in texts and chance.random() < 0.1:
+            del texts[path]
+            changed = session.close(path)
+        else:
+            text = texts.get(path, FILES[name])
+            at = chance.randrange(len(text) + 1)
+            gone = chance.choice((0, 0, 1, 5, 20))
+            texts[path] = text[:at] + chance.choice(PIECES) + text[at + gone :]
+            changed = session.edit(path, texts[path])
+        told.update({each: session.diagnostics(each) for each in changed})
+        new = session_of(folder, texts)
+        assert told == {each: new.diagnostics(each) for each in new.paths()}, (seed, step, texts)
+        if path in texts:
+            workspaces = session.workspace_of(path), new.workspace_of(path)
+            assert workspaces[0] == workspaces[1]
+            at = chance.randrange(len(texts[path]) + 1)
+            for feature in (complete, find_references):
+                mine, fresh = (feature(each, path, at) for each in workspaces if each is not None)
+                assert mine == fresh
+            mine, fresh = (document_symbols(each, path) for each in workspaces if each is not None)
+            assert mine == fresh
+
+
+def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None:
+    session = session_of(folder, {})
+    skills = f"{folder}/skills.btq"
+    linked = [skills, f"{folder}/main.btq", f"{folder}/requirements.btq"]
+    assert session.edit(skills, SKILLS)[0] == skills  # opened: everything is looked at again
+    assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
+    every = [*linked[:2], f"{folder}/other.btq", linked[2]]
+    assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == every
+
+
+def test_a_file_that_no_folder_has(tmp_path: Path) -> None:
+    session = Session()
+    path = f"{tmp_path}/alone.btq"
+    assert session.edit(path, "BehaviorTree Main\n    Sequnce\n        Pick\n") == (path, path)
+    assert [found.rule for found in session.diagnostics(path)] == ["unknown-node"]
+    assert session.close(path) == ()
+    assert session.workspace_of(path) is None
+    assert session.diagnostics(path) == ()
