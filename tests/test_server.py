@@ -50,7 +50,8 @@ def test_diagnostics_come_and_go_as_one_types(editor: Editor) -> None:
 
 
 def test_typed_key_by_key_it_is_what_it_would_be_at_once(tmp_path: Path) -> None:
-    text = 'QualityReq rq : speed "Fast"\n    takes at most 3 sek\nBehaviorTree Main\n    Retry\n        Pick satisfies rq\n'
+    requirement = 'QualityReq rq : speed "Fast"\n    takes at most 3 sek\n'
+    text = f"{requirement}BehaviorTree Main\n    Retry\n        Pick satisfies rq\n"
     typing, reading = Editor(tmp_path), Editor(tmp_path)
     typing.open("main.btq", "")
     for end in range(1, len(text) + 1):
