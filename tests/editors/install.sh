@@ -15,6 +15,7 @@ mkdir -p "$store"
 
 main() {
     attempt "Chromium and Neovim of this system" from_apt
+    attempt "Emacs with Eglot, Vim with ALE" more_from_apt
     attempt "Node.js and VS Code" vscode
     attempt "the extension's package" package
     attempt "the browser's driver" driver
@@ -36,11 +37,19 @@ attempt() { # name, command …: what it prints is shown only if it fails
 from_apt() {
     set -e
     command -v chromium >/dev/null && command -v nvim >/dev/null && return
-    local as_root=()
-    [ "$(id -u)" = 0 ] || as_root=(sudo -n)
+    as_root apt-get update -qq
+    as_root apt-get install -y -qq --no-install-recommends chromium neovim fonts-dejavu-core
+}
+
+more_from_apt() {
+    set -e
+    command -v emacs >/dev/null && [ -d /usr/share/vim-ale ] && command -v vim >/dev/null && return
+    as_root apt-get install -y -qq --no-install-recommends emacs-nox elpa-eglot vim vim-ale
+}
+
+as_root() {
     export DEBIAN_FRONTEND=noninteractive
-    "${as_root[@]}" apt-get update -qq
-    "${as_root[@]}" apt-get install -y -qq --no-install-recommends chromium neovim fonts-dejavu-core
+    if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi
 }
 
 vscode() {

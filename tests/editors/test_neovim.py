@@ -87,6 +87,104 @@ def test_formatting(neovim: Neovim) -> None:
     ]
 
 
+REQUIREMENTS = """\
+QualityReq in_time : performance-efficiency.time-behaviour "größer als nötig"
+    takes at most 30 s
+"""
+MISSION = """\
+include "shared/requirements.btq"
+BehaviorTree Main
+    ->
+        Größe (ü = "😀") satisfies in_time
+        Charge satisfies in_time
+"""
+FILES = {"main.btq": MISSION, "shared/requirements.btq": REQUIREMENTS}
+
+
+def test_a_reference_leads_to_the_definition_in_another_file(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    btq.to('in_time')
+    vim.lsp.buf.definition()
+    btq.wait(function() return vim.fn.expand('%:t') == 'requirements.btq' end, 'the jump')
+    return vim.api.nvim_win_get_cursor(0)
+    """
+    assert neovim.run(FILES, script) == [1, 11]
+
+
+def test_references_and_hover(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    btq.to('in_time', 2)
+    local found = btq.ask('textDocument/references', { context = { includeDeclaration = true } })
+    local places = vim.tbl_map(function(item)
+      return vim.fn.fnamemodify(item.filename, ':t') .. ':' .. item.lnum .. ':' .. item.col
+    end, vim.lsp.util.locations_to_items(found, btq.client().offset_encoding))
+    table.sort(places)
+    return { places, btq.ask('textDocument/hover').contents.value }
+    """
+    places, hover = neovim.run(FILES, script)
+    column = MISSION.splitlines()[3].encode().index(b"in_time") + 1
+    assert places == [f"main.btq:4:{column}", "main.btq:5:26", "requirements.btq:1:12"]
+    assert "größer als nötig" in hover
+
+
+def test_renaming_changes_every_file(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    btq.to('in_time', 2)
+    vim.lsp.buf.rename('punctual')
+    btq.wait(function() return btq.lines()[5]:find('punctual') end, 'the new name')
+    return { btq.lines(), btq.lines(vim.fn.bufnr('requirements.btq')) }
+    """
+    mission, requirements = neovim.run(FILES, script)
+    assert mission == MISSION.replace("in_time", "punctual").splitlines()
+    assert requirements == REQUIREMENTS.replace("in_time", "punctual").splitlines()
+
+
+def test_completion_proposes_qualities(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    vim.o.virtualedit = 'onemore'
+    vim.fn.cursor(3, 20)
+    local answer = btq.ask('textDocument/completion')
+    return vim.tbl_map(function(item) return item.label end, answer.items or answer)
+    """
+    labels = neovim.run({"main.btq": "BehaviorTree Main\n    Dock\n        satisfices \n"}, script)
+    assert {"performance-efficiency", "reliability", "safety"} <= set(labels)
+
+
+def test_a_code_action_mends_the_mistake(neovim: Neovim) -> None:
+    script = """
+    btq.diagnostics(1)
+    btq.to('Sequnce')
+    local range = vim.lsp.util.make_range_params(0, btq.client().offset_encoding).range
+    local wrong = { range = range, message = 'unknown node', code = 'unknown-node' }
+    local context = { diagnostics = { wrong } }
+    for _, action in ipairs(btq.ask('textDocument/codeAction', { range = range, context = context })) do
+      if action.edit and action.title:find('Sequence') then
+        vim.lsp.util.apply_workspace_edit(action.edit, btq.client().offset_encoding)
+        return btq.lines()
+      end
+    end
+    """
+    assert neovim.run({"main.btq": WRONG}, script) == WRONG.replace("Sequnce", "Sequence").splitlines()
+
+
+def test_a_code_lens_lists_the_uses(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    for _, lens in ipairs(btq.ask('textDocument/codeLens')) do
+      if lens.range.start.line == 0 then
+        vim.lsp.commands[lens.command.command](lens.command, { client_id = btq.client().id })
+        return vim.tbl_map(function(item) return item.lnum end, vim.fn.getqflist())
+      end
+    end
+    """
+    text = REQUIREMENTS + MISSION.partition("\n")[2]
+    assert neovim.run({"main.btq": text}, script) == [5, 6]
+
+
 def test_one_server_serves_a_project(neovim: Neovim) -> None:
     script = """
     btq.wait(btq.client, 'the server')

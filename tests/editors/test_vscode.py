@@ -76,6 +76,82 @@ def test_saving_formats(code: Workbench) -> None:
     code.on_disk("untidy.btq", "BehaviorTree Main\n    ->\n        Action Dock (x = 1)\n")
 
 
+REQUIREMENTS = """\
+QualityReq soon_there : performance-efficiency.time-behaviour "In time"
+    takes at most 30 s
+"""
+MISSION = """\
+include "demands.btq"
+
+BehaviorTree Visit
+    Dock satisfies soon_there
+"""
+
+
+def test_f12_leads_to_the_definition_in_another_file(code: Workbench) -> None:
+    code.write("demands.btq", REQUIREMENTS)
+    code.write("visit.btq", MISSION)
+    code.open("visit.btq")
+    code.cursor(4, 22)
+    code.keys("F12")
+    code.see(".tab.active:has-text('demands.btq')")
+    code.at(1, 12)
+
+
+def test_renaming_changes_both_files(code: Workbench) -> None:
+    code.write("demands.btq", REQUIREMENTS)
+    code.write("visit.btq", MISSION)
+    code.open("demands.btq")
+    code.open("visit.btq")
+    code.cursor(4, 22)
+    code.keys("F2")
+    code.see(".rename-box input.rename-input")
+    code.page.wait_for_function("document.activeElement.classList.contains('rename-input')")
+    code.keys("Control+a")
+    code.type("punctual")
+    code.keys("Enter")
+    code.see(".view-line:has-text('punctual')")
+    code.command("File: Save All")
+    code.on_disk("visit.btq", MISSION.replace("soon_there", "punctual"))
+    code.on_disk("demands.btq", REQUIREMENTS.replace("soon_there", "punctual"))
+
+
+def test_completion_offers_qualities_and_hover_explains_them(code: Workbench) -> None:
+    code.write("concerns.btq", "BehaviorTree Main\n    Dock\n        satisfices reliab\n")
+    code.open("concerns.btq")
+    code.cursor(3, 26)
+    assert "reliability" in code.suggestions()
+    code.keys("Enter")
+    code.see(".view-line:has-text('satisfices reliability')")
+    code.keys("Escape", "Control+k", "Control+i")
+    code.see(".monaco-hover:not(.hidden):has-text('reliability')")
+    code.keys("Escape", "Escape")
+    code.save()
+
+
+def test_the_light_bulb_mends(code: Workbench) -> None:
+    code.write("wrong.btq", WRONG)
+    code.open("wrong.btq")
+    code.see(".squiggly-warning")
+    code.cursor(3, 10)
+    code.keys("Control+.")
+    code.see(".action-widget .monaco-list-row:has-text('Sequence')")
+    code.keys("Enter")
+    code.see(".view-line:has-text('Sequence')")
+    code.save()
+    code.on_disk("wrong.btq", WRONG.replace("Sequnce", "Sequence"))
+
+
+def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
+    code.write("demands.btq", REQUIREMENTS)
+    code.write("visit.btq", MISSION)
+    code.open("visit.btq")
+    code.open("demands.btq")
+    code.see(".codelens-decoration a").click()
+    code.see(".peekview-widget .reference-zone-widget, .zone-widget .ref-tree, .peekview-widget")
+    code.keys("Escape")
+
+
 def test_enter_indents_below_what_has_a_block_and_leaves_it_at_the_second(code: Workbench) -> None:
     code.write("typed.btq", "")
     code.open("typed.btq")

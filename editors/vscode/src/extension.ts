@@ -2,7 +2,7 @@
 // One invariant: whatever goes wrong with the server is said once, with a button that helps, and the rest goes on working.
 import { execFile } from "node:child_process";
 import * as vscode from "vscode";
-import { LanguageClient, State, TransportKind } from "vscode-languageclient/node";
+import { LanguageClient, type Location, type Position, State, TransportKind } from "vscode-languageclient/node";
 
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
@@ -35,6 +35,14 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.check", async () => {
       const found = await runTask("check", await line());
       await vscode.commands.executeCommand("setContext", "btq.checkedClean", found === 0);
+    }),
+    // What the server's code lenses run: positions come as the protocol has them.
+    vscode.commands.registerCommand("btq.showReferences", async (uri: string, at: Position, places: Location[]) => {
+      const converter = client?.protocol2CodeConverter;
+      if (!converter) return;
+      const found = places.map(({ uri, range }) => new vscode.Location(vscode.Uri.parse(uri), converter.asRange(range)));
+      const here = converter.asPosition(at);
+      await vscode.commands.executeCommand("editor.action.showReferences", vscode.Uri.parse(uri), here, found);
     }),
     vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
@@ -85,6 +93,7 @@ async function start(
           { scheme: "untitled", language: "btq" },
         ],
         outputChannel: log,
+        synchronize: { configurationSection: "btq" },
         diagnosticCollectionName: "btq",
       },
     );

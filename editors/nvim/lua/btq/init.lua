@@ -22,6 +22,13 @@ end
 
 --- Start the server for every mission that is opened from now on.
 function M.setup()
+  -- What the server's code lenses run.
+  vim.lsp.commands['btq.showReferences'] = function(command, context)
+    local client = vim.lsp.get_client_by_id(context.client_id)
+    local places = vim.lsp.util.locations_to_items(command.arguments[3], client.offset_encoding)
+    vim.fn.setqflist({}, ' ', { title = command.title, items = places })
+    vim.cmd('botright copen')
+  end
   if vim.lsp.config and vim.lsp.enable then -- 0.11 and newer
     vim.lsp.config('btq', { cmd = M.command(), filetypes = { 'btq' }, root_markers = MARKERS })
     vim.lsp.enable('btq')

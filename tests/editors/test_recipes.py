@@ -1,0 +1,93 @@
+"""The recipes of docs/editors.md, as they stand there, in the editors they are for."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, there
+
+RECIPES = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
+WRONG = "BehaviorTree   Main\n    ->\n        Sequnce\n            Dock\n"
+TIDY = WRONG.replace("   Main", " Main")
+
+
+def recipe(language: str) -> str:
+    """The block of a language; there is one."""
+    (block,) = re.findall(rf"^```{language}\n(.*?)^```$", RECIPES, re.DOTALL | re.MULTILINE)
+    return block.replace("/path/to/btq", str(ROOT))
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> dict[str, str]:
+    """`btq-lsp` is on the PATH and is this checkout's."""
+    program = tmp_path / "bin" / "btq-lsp"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m btq_lang.server "$@"\n')
+    program.chmod(0o755)
+    path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    return {**os.environ, "PATH": path, "HOME": str(tmp_path), "PYTHONPATH": str(ROOT)}
+
+
+def test_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
+    there(shutil.which("emacs"), "Emacs")
+    (tmp_path / "main.btq").write_text(WRONG)
+    (tmp_path / "recipe.el").write_text(recipe("elisp"))
+    (tmp_path / "test.el").write_text(
+        """
+        (load (expand-file-name "recipe.el"))
+        (require 'eglot)
+        (find-file "main.btq")
+        (call-interactively #'eglot)
+        (with-timeout (60 (error "no diagnostics"))
+          (while (null (flymake-diagnostics)) (accept-process-output nil 0.05)))
+        (eglot-format-buffer)
+        (princ (format "%s\\n" (mapcar #'flymake-diagnostic-text (flymake-diagnostics))))
+        (princ (buffer-string))
+        """
+    )
+    if "eglot" not in run(
+        ["emacs", "-q", "--batch", "--eval", '(princ (locate-library "eglot"))'], tmp_path, environment
+    ):
+        pytest.skip("Eglot is not installed: tests/editors/install.sh")
+    said = run(["emacs", "-q", "--batch", "-l", "test.el"], tmp_path, environment)
+    assert "unknown node `Sequnce`" in said
+    assert said.endswith(TIDY)
+
+
+def test_vim_with_ale(tmp_path: Path, environment: dict[str, str]) -> None:
+    there(shutil.which("vim"), "Vim")
+    ale = there("/usr/share/vim-ale", "ALE")
+    (tmp_path / "main.btq").write_text(WRONG)
+    (tmp_path / "recipe.vim").write_text(recipe("vim"))
+    (tmp_path / "test.vim").write_text(
+        f"""
+        set nocompatible
+        set runtimepath+={ale}
+        runtime plugin/ale.vim
+        source recipe.vim
+        edit main.btq
+        ALELint
+        let turn = 0
+        while turn < 600 && empty(ale#engine#GetLoclist(bufnr('')))
+          sleep 100m
+          let turn += 1
+        endwhile
+        let found = map(copy(ale#engine#GetLoclist(bufnr(''))), '[v:val.lnum, v:val.col, v:val.code]')
+        call writefile([json_encode([&filetype, &commentstring, found])], 'found.json')
+        qall!
+        """
+    )
+    run(["vim", "-es", "-n", "-N", "-u", "NONE", "-S", "test.vim"], tmp_path, environment)
+    assert json.loads((tmp_path / "found.json").read_text()) == ["btq", "# %s", [[3, 9, "unknown-node"]]]
+
+
+def run(command: list[str], folder: Path, environment: dict[str, str]) -> str:
+    """What it prints; batch editors of some versions end with another code than 0 when all went well."""
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120).stdout
