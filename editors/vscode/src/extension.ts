@@ -2,12 +2,12 @@
 // One invariant: whatever goes wrong with the server is said once, with a button that helps, and the rest goes on working.
 import { execFile } from "node:child_process";
 import * as vscode from "vscode";
-import { LanguageClient, type Location, type Position, State, TransportKind } from "vscode-languageclient/node";
+import { ExecuteCommandRequest, LanguageClient, type Location, type Position, State, TransportKind } from "vscode-languageclient/node";
 
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
 import { runTask, Tasks } from "./tasks";
-import { XmlView } from "./xml";
+import { type Ask, XmlView } from "./xml";
 
 let client: LanguageClient | undefined;
 let server: Server | undefined;
@@ -20,7 +20,11 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   status.command = { command: "btq.showLog", title: "Show Log" };
 
   const line = (): Promise<string[]> => commandLine(context);
-  const xml = new XmlView(context, line);
+  const ask: Ask = async (command, ...parameters) => {
+    if (!client?.isRunning()) throw new Error("the server of btq does not run");
+    return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters });
+  };
+  const xml = new XmlView(context, ask);
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
   const restart = (): Promise<void> => (turn = turn.then(() => start(context, log, status)));
@@ -46,6 +50,19 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     }),
     vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
+    vscode.commands.registerCommand("btq.copyNodePath", async () => {
+      const editor = vscode.window.activeTextEditor;
+      if (editor?.document.languageId !== "btq") return;
+      const { line, character } = editor.selection.active;
+      const textDocument = { uri: editor.document.uri.toString() };
+      const path = await ask("btq.server.nodePath", { textDocument, position: { line, character } });
+      if (typeof path !== "string") {
+        void vscode.window.showInformationMessage("No node stands here.");
+        return;
+      }
+      await vscode.env.clipboard.writeText(path);
+      vscode.window.setStatusBarMessage(`$(clippy) ${path}`, 4000);
+    }),
     vscode.tasks.registerTaskProvider("btq", new Tasks(line)),
     vscode.workspace.onDidSaveTextDocument(async (document) => {
       if (document.languageId === "btq" && vscode.workspace.getConfiguration("btq", document).get("buildOnSave")) {
@@ -97,6 +114,13 @@ async function start(
         diagnosticCollectionName: "btq",
       },
     );
+    client.registerFeature({
+      // The server shows lenses that can be clicked only where it is told that somebody knows what to do then.
+      fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences"] }),
+      initialize: () => undefined,
+      getState: () => ({ kind: "static" }),
+      clear: () => undefined,
+    });
     client.onDidChangeState(({ newState }) => {
       status.busy = newState === State.Starting;
       status.severity =

@@ -1,9 +1,10 @@
 // The XML of a mission as it stands in the editor, saved or not, in a document beside it that cannot be edited.
-import { execFile } from "node:child_process";
-import path from "node:path";
 import * as vscode from "vscode";
 
 const SCHEME = "btq-xml";
+
+/** Asks the server a command; rejects with the reason why not. */
+export type Ask = (command: string, ...parameters: unknown[]) => Promise<unknown>;
 
 export class XmlView implements vscode.TextDocumentContentProvider {
   private readonly changed = new vscode.EventEmitter<vscode.Uri>();
@@ -11,7 +12,7 @@ export class XmlView implements vscode.TextDocumentContentProvider {
 
   constructor(
     context: vscode.ExtensionContext,
-    private readonly commandLine: () => Promise<string[]>,
+    private readonly ask: Ask,
   ) {
     let timer: NodeJS.Timeout | undefined;
     context.subscriptions.push(
@@ -23,7 +24,7 @@ export class XmlView implements vscode.TextDocumentContentProvider {
         timer = setTimeout(() => {
           // Any mission may be included by the one that is shown.
           for (const { uri } of vscode.workspace.textDocuments) if (uri.scheme === SCHEME) this.changed.fire(uri);
-        }, 400);
+        }, 300);
       }),
     );
   }
@@ -43,17 +44,11 @@ export class XmlView implements vscode.TextDocumentContentProvider {
   }
 
   async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
-    const document = await vscode.workspace.openTextDocument(vscode.Uri.parse(uri.query, true));
-    const [program, ...args] = await this.commandLine();
-    if (program === undefined) return "<!-- there is no Python to write it -->\n";
-    const { fsPath } = document.uri;
-    const words = [...args, "build", "-", "--stdin-filename", fsPath];
-    return new Promise((resolve) => {
-      const child = execFile(program, words, { cwd: path.dirname(fsPath) }, (error, xml, complaint) =>
-        resolve(error ? `<!--\n${complaint.replaceAll("--", "- -")}\n-->\n` : xml),
-      );
-      child.stdin?.on("error", () => undefined); // it ended before it read: the complaint says why
-      child.stdin?.end(document.getText());
-    });
+    try {
+      return String(await this.ask("btq.server.xml", { uri: uri.query }));
+    } catch (error) {
+      const reason = error instanceof Error ? error.message : String(error);
+      return `<!-- ${reason.replaceAll("--", "- -")} -->\n`;
+    }
   }
 }

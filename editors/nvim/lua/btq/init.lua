@@ -20,9 +20,15 @@ function M.command()
   return { 'btq-lsp' }
 end
 
+--- What the client can do, and the command that the server's code lenses run.
+local function capabilities()
+  local known = vim.lsp.protocol.make_client_capabilities()
+  known.experimental = { commands = { 'btq.showReferences' } }
+  return known
+end
+
 --- Start the server for every mission that is opened from now on.
 function M.setup()
-  -- What the server's code lenses run.
   vim.lsp.commands['btq.showReferences'] = function(command, context)
     local client = vim.lsp.get_client_by_id(context.client_id)
     local places = vim.lsp.util.locations_to_items(command.arguments[3], client.offset_encoding)
@@ -30,7 +36,7 @@ function M.setup()
     vim.cmd('botright copen')
   end
   if vim.lsp.config and vim.lsp.enable then -- 0.11 and newer
-    vim.lsp.config('btq', { cmd = M.command(), filetypes = { 'btq' }, root_markers = MARKERS })
+    vim.lsp.config('btq', { cmd = M.command(), capabilities = capabilities(), filetypes = { 'btq' }, root_markers = MARKERS })
     vim.lsp.enable('btq')
     return
   end
@@ -54,13 +60,13 @@ function M.attach(buffer)
   local file = vim.api.nvim_buf_get_name(buffer)
   local root = M.root(file)
   if vim.lsp.start then -- 0.8 to 0.10
-    vim.lsp.start({ name = 'btq', cmd = command, root_dir = root }, { bufnr = buffer })
+    vim.lsp.start({ name = 'btq', cmd = command, capabilities = capabilities(), root_dir = root }, { bufnr = buffer })
     return
   end
   M.clients = M.clients or {} -- 0.7 does not know which clients are of one project
   local client = M.clients[root]
   if not client or vim.lsp.client_is_stopped(client) then
-    client = vim.lsp.start_client({ name = 'btq', cmd = command, root_dir = root })
+    client = vim.lsp.start_client({ name = 'btq', cmd = command, capabilities = capabilities(), root_dir = root })
     M.clients[root] = client
   end
   vim.lsp.buf_attach_client(buffer, client)
