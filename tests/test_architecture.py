@@ -25,6 +25,7 @@ ROWS: tuple[frozenset[str], ...] = (
     frozenset({"catalog"}),
     frozenset(
         {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
+        | {"graph"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "features"}),
     frozenset(

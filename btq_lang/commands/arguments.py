@@ -6,6 +6,8 @@ from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from typing import TYPE_CHECKING, Any
 
 from btq_lang.commands.options import CheckOptions
+from btq_lang.graph import DIRECTIONS
+from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.render import FORMATS
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_format(commands)
     _add_build(commands)
     _add_import(commands)
+    _add_graph(commands)
     _add_explain(commands)
     _add_init(commands)
     _add_completion(commands)
@@ -122,6 +125,25 @@ def _add_import(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
     parser.add_argument("--force", action="store_true", help="write over .btq files that are there")
     _add_color(parser)
+
+
+def _add_graph(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "graph",
+        "draw a mission's trees",
+        epilog="exit codes: 0 drawn, 2 usage or I/O\n\n"
+        "examples:\n  btq graph mission.btq --qualities -o mission.svg   for documents\n"
+        "  btq graph mission.btq --format mermaid             for pull requests\n",
+    )
+    parser.add_argument("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
+    parser.add_argument(
+        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
+    )
+    parser.add_argument("--format", choices=GRAPH_FORMATS, default="svg", help="default: svg")
+    parser.add_argument("--qualities", action="store_true", help="with qualities and requirements beside their nodes")
+    parser.add_argument("--direction", choices=DIRECTIONS, default="down", help="where children stand; default: down")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
 
 
 def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:

@@ -1,0 +1,33 @@
+"""`btq graph`: draw a mission's trees."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from btq_lang.commands.files import Files, usage_problem
+from btq_lang.commands.output import write_output
+from btq_lang.graph import draw
+from btq_lang.graph.missions import figures
+from btq_lang.loader import LoadProblem, shown
+
+
+def run(options: Namespace) -> int:
+    """Draw the trees of one file; what is wrong with it is drawn as far as it can be read."""
+    if problem := usage_problem(options.paths):
+        print(f"btq graph: {problem}", file=sys.stderr)
+        return 2
+    groups, problems = Files().groups(options.paths, options.stdin_filename)
+    given = [(group.workspace, path) for group in groups for path in group.given]
+    if len(given) > 1:
+        problems += (LoadProblem(given[1][1], "one file at a time is drawn"),)
+    for each in problems:
+        print(f"btq: {each}", file=sys.stderr)
+    if problems or not given:
+        return 2
+    ((workspace, path),) = given
+    found = figures(workspace, path, options.qualities)
+    if not found:
+        print(f"btq graph: {shown(path)} has no trees", file=sys.stderr)
+        return 2
+    return write_output("graph", options.output, draw(found, options.format, options.direction))

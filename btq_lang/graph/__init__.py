@@ -1,0 +1,50 @@
+"""A mission as a picture, in the notation of the behavior-tree literature, with qualities beside their nodes.
+
+One invariant: the same mission gives the same bytes.  It knows no disk and starts no program: no Graphviz is needed.
+
+    figure.py    what is drawn: boxes, and what is attached to them
+    missions.py  a mission's trees as figures
+    layout.py    where the boxes stand: a tidy tree in linear time
+    widths.py    how wide a text is
+    placing.py   a figure with the place of everything in it
+    svg.py, dot.py, mermaid.py   the writers
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btq_lang.graph.figure import Figure
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+FORMATS: Final = ("svg", "dot", "mermaid")
+DIRECTIONS: Final = ("down", "right")
+
+
+def draw(figures: Sequence[Figure], form: str = "svg", direction: str = "down") -> str:
+    """Figures as one text in one of FORMATS.
+
+    Args:
+        direction: whether children stand below their parent or to the right of it.
+
+    Raises:
+        ValueError: there is no such format or direction.
+    """
+    if direction not in DIRECTIONS:
+        raise ValueError(f"no direction {direction!r}: there are {', '.join(DIRECTIONS)}")
+    if form == "svg":
+        from btq_lang.graph.svg import document
+
+        return document(figures, direction)
+    if form == "dot":
+        from btq_lang.graph.dot import dot
+
+        return dot(figures, direction)
+    if form == "mermaid":
+        from btq_lang.graph.mermaid import mermaid
+
+        return mermaid(figures, direction)
+    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")

@@ -1,0 +1,61 @@
+"""Mermaid, which code hosts draw in Markdown files, issues and pull requests.
+
+The format: https://mermaid.js.org/syntax/flowchart.html.  Texts stand in quotes, with entity codes for what Mermaid
+would read itself: quotes, brackets of HTML, `#`, and the backtick that begins Markdown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btq_lang.graph.figure import Figure
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def mermaid(figures: Sequence[Figure], direction: str = "down") -> str:
+    """Figures as one flow chart, each tree a subgraph of it."""
+    side = "TB" if direction == "down" else "LR"
+    lines = [f"flowchart {side}"]
+    for number, figure in enumerate(figures):
+        lines += [f'  subgraph tree{number}["{_escaped(figure.title)}"]', f"    direction {side}"]
+        lines += [f"    {line}" for line in _lines(figure, f"t{number}")]
+        lines.append("  end")
+    lines.append("  classDef quality stroke:#2f7d4f,stroke-dasharray:6 3;")
+    lines.append("  classDef requirement stroke:#a8650f;")
+    return "\n".join(lines) + "\n"
+
+
+def _lines(figure: Figure, prefix: str) -> Iterator[str]:
+    for number, box in enumerate(figure.boxes):
+        name = f"{prefix}n{number}"
+        opening, closing = _BRACKETS[box.outline]
+        yield f"{name}{opening}{_text((box.title, *box.lines))}{closing}"
+        if box.parent is not None:
+            yield f"{prefix}n{box.parent} --- {name}"
+        for at, note in enumerate(box.notes):
+            key = f"{name}q{at}"
+            opening, closing = ("([", "])") if note.kind == "quality" else ("[", "]")
+            yield f"{key}{opening}{_text((note.title, *note.lines))}{closing}:::{note.kind}"
+            yield f"{name} -.- {key}"
+
+
+def _text(lines: Sequence[str]) -> str:
+    return f'"{"<br/>".join(map(_escaped, lines))}"'
+
+
+def _escaped(text: str) -> str:
+    return "".join(_CODES.get(character, character) for character in text.replace("\n", " "))
+
+
+_CODES: Final = {'"': "#quot;", "#": "#35;", "<": "#lt;", ">": "#gt;", "&": "#amp;", "`": "#96;"}
+_BRACKETS: Final = {
+    "control": ("[", "]"),
+    "action": ("[", "]"),
+    "condition": ("([", "])"),
+    "decorator": ("{{", "}}"),
+    "subtree": ("[[", "]]"),
+    "unknown": ("[", "]"),
+}

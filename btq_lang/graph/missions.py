@@ -1,0 +1,179 @@
+"""The trees of a mission as figures: what each node is drawn as and what is written on it.
+
+One invariant: one box for each written node.  A SubTree node is a box; its tree is a figure of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from btq_lang.graph.figure import Box, Figure, Note
+from btq_lang.placeholders import is_placeholder
+from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.model import Applied, Claim, SourceNode
+from btq_lang.syntax import Node, NodeClause, Satisfices, Tree
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.graph.figure import Outline
+
+
+def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tuple[Figure, ...]:
+    """A figure for each tree of a file, in the order of its text.
+
+    Args:
+        with_qualities: qualities and requirements stand beside their nodes.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    found = requirements(workspace, path)
+    mine = [node for node in found.nodes.all if node.path == path]
+    notes = _notes(found) if with_qualities else {}
+    keys = {id(node): f"n{number}" for number, node in enumerate(mine)}
+    return tuple(figure(nodes, keys, notes) for nodes in by_tree(mine))
+
+
+def by_tree(nodes: Iterable[SourceNode]) -> Iterator[tuple[SourceNode, ...]]:
+    """Nodes in the order of their text, those of each tree together."""
+    found: dict[int, list[SourceNode]] = {}
+    for node in nodes:
+        found.setdefault(id(node.entry), []).append(node)
+    return map(tuple, found.values())
+
+
+def figure(
+    nodes: tuple[SourceNode, ...],
+    keys: Mapping[int, str],
+    notes: Mapping[int, tuple[Note, ...]],
+    links: Mapping[str, str] | None = None,
+) -> Figure:
+    """A tree's figure.
+
+    Args:
+        nodes: all of the tree's, parents before their children.
+        keys: of each node, by `id(node)`.
+        notes: of each node that has some, by `id(node)`.
+        links: where a SubTree node leads, by the name of its tree.
+    """
+    at = {id(node): number for number, node in enumerate(nodes)}
+    boxes = [
+        Box(
+            keys[id(node)],
+            at[id(node.parent)] if node.parent is not None else None,
+            _outline(node),
+            _title(node),
+            _lines(node),
+            _text(node),
+            notes.get(id(node), ()),
+            (links or {}).get(node.node.id.text, "") if node.category == "SubTree" and node.node.id else "",
+        )
+        for node in nodes
+    ]
+    return Figure(nodes[0].tree or "", tuple(boxes))
+
+
+def concerns(node: SourceNode) -> Iterator[tuple[str, Satisfices]]:
+    """The qualities that a node, or its tree, satisfices, as they are written, and the clause that says so."""
+    for clause in clauses_of(node):
+        if isinstance(clause, Satisfices):
+            for quality in clause.qualities:
+                yield ".".join(name.text for name in quality.path.names), clause
+
+
+def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:
+    """The clauses of a node; of the one node of a tree those of the tree as well."""
+    tree = node.entry.item
+    if node.parent is None and isinstance(tree, Tree) and sum(isinstance(each, Node) for each in tree.children) == 1:
+        return (*tree.clauses, *node.node.clauses)
+    return node.node.clauses
+
+
+def said(applied: Applied) -> tuple[str, ...]:
+    """The clauses that hold for a subject, as typed but for the subject; of a requirement without any its title."""
+    requirement = applied.requirement
+    lines = [_predicate(claim) for claim in requirement.claims]
+    lines += [scope.text for scope in requirement.scopes]
+    if requirement.odds is not None:
+        lines.append(requirement.odds.text)
+    if requirement.action is not None and not requirement.classic:
+        lines.append(f"on violation {requirement.action}")
+    return tuple(lines) or ((" ".join(requirement.title.split()),) if requirement.title else ())
+
+
+def _predicate(claim: Claim) -> str:
+    """`takes at most 30 s` of `BatteryCheck/MoveBase takes at most 30 s`."""
+    _, verb, behind = f" {claim.text} ".partition(f" {claim.verb} ")
+    return (verb + behind).strip() if claim.subject is not None and verb else claim.text
+
+
+def arguments(applied: Applied) -> str:
+    """`(limit = 5 min)`; nothing where there are none."""
+    given = ", ".join(f"{each.name} = {each.value.text}" for each in applied.arguments)
+    return f"({given})" if given else ""
+
+
+def _notes(found: Requirements) -> dict[int, tuple[Note, ...]]:
+    notes: dict[int, list[Note]] = {}
+    for node in found.nodes.all:
+        for name, _ in concerns(node):
+            notes.setdefault(id(node), []).append(Note("quality", name, name, text=f"satisfices {name}"))
+    for applied in found.applied:
+        if applied.node is not None:
+            lines, name = said(applied), applied.requirement.name
+            note = Note("requirement", name, name + arguments(applied), lines, "; ".join((name, *lines)))
+            notes.setdefault(id(applied.node), []).append(note)
+    for trace in found.traces:
+        notes.setdefault(id(trace.node), []).append(Note("requirement", trace.requirement, trace.requirement))
+    return {key: tuple(dict.fromkeys(each)) for key, each in notes.items()}
+
+
+def _outline(node: SourceNode) -> Outline:
+    category = node.category
+    if category == "SubTree":
+        return "subtree"
+    return _OUTLINES.get(category or "", "unknown")
+
+
+def _title(node: SourceNode) -> str:
+    """The symbol of a control node, or what it is; of a placeholder its name."""
+    if is_placeholder(node.node) and node.node.name is not None:
+        return node.node.name.text
+    if node.kind is not None:
+        return node.kind.symbols[0] if node.kind.symbols else node.kind.tag
+    return node.node.head.text
+
+
+def _lines(node: SourceNode) -> tuple[str, ...]:
+    """The instance name, and of a built-in what its ports are set to."""
+    lines = []
+    name = node.node.name
+    if name is not None and name.text != _title(node):
+        lines.append(name.text)
+    if node.kind is not None:
+        values = [pair for pair in node.node.attributes if pair.key.text in _ports(node) and pair.value is not None]
+        lines += [f"{pair.key.text} = {pair.value.text}" for pair in values if pair.value is not None]
+    return tuple(" ".join(line.split()) for line in lines)
+
+
+def _ports(node: SourceNode) -> frozenset[str]:
+    return frozenset(port.name for port in node.kind.ports) if node.kind is not None else frozenset()
+
+
+def _text(node: SourceNode) -> str:
+    head = node.node.head.text
+    name = node.node.name
+    shown = head if name is None or name.text == head else f"{head} {name.text}"
+    values = [f"{pair.key.text} = {pair.value.text}" for pair in node.node.attributes if pair.value is not None]
+    return f"{shown} ({', '.join(values)})" if values else shown
+
+
+_OUTLINES: Final[Mapping[str, Outline]] = {
+    "Action": "action",
+    "Condition": "condition",
+    "Control": "control",
+    "Decorator": "decorator",
+}

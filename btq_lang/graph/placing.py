@@ -1,0 +1,198 @@
+"""A figure on paper: where every box, note and line of it is.
+
+One invariant: nothing overlaps, and every text is inside what it belongs to.  Units are CSS pixels.  Notes hang on a
+leaf in the direction in which children would follow, and stand beside an inner node, so that its children stay below.
+"""
+
+from __future__ import annotations
+
+from btq_lang.graph.figure import Box, Figure, Note
+from btq_lang.graph.layout import Size, layout
+from btq_lang.graph.widths import shortened, width, wrapped
+from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+TITLE: Final = 13  # sizes of letters
+SMALL: Final = 11
+LEADING: Final = 16  # from line to line
+MARGIN: Final = 12
+
+Line: TypeAlias = "tuple[tuple[int, int], ...]"
+
+
+@record
+class Rectangle:
+    """Left, top, width and height."""
+
+    x: int
+    y: int
+    w: int
+    h: int
+
+    @property
+    def middle(self) -> tuple[int, int]:
+        return self.x + self.w // 2, self.y + self.h // 2
+
+
+@record
+class PlacedNote:
+    """A note; lines: its texts as they fit, the title first."""
+
+    note: Note
+    at: Rectangle
+    lines: tuple[str, ...]
+
+
+@record
+class PlacedBox:
+    """A box, its texts as they fit, and its notes.
+
+    Attributes:
+        edge: the line from its parent; none at the top.
+        ties: the line that its notes hang on.
+    """
+
+    box: Box
+    at: Rectangle
+    lines: tuple[str, ...]
+    notes: tuple[PlacedNote, ...]
+    edge: Line
+    ties: Line
+
+
+@record
+class Drawing:
+    """A figure on paper of a width and a height."""
+
+    title: str
+    width: int
+    height: int
+    boxes: tuple[PlacedBox, ...]
+
+
+def place(figure: Figure, direction: str = "down") -> Drawing:
+    """Place everything in a figure.
+
+    Args:
+        direction: `down` or `right`.
+    """
+    down = direction == "down"
+    inner = {box.parent for box in figure.boxes}
+    parts = [_Part(box, number in inner, down) for number, box in enumerate(figure.boxes)]
+    sizes = [Size(part.w, part.h, part.across) if down else Size(part.h, part.w, part.across) for part in parts]
+    parents = [box.parent for box in figure.boxes]
+    places = layout(sizes, parents, _GAP if down else _GAP // 2, _LEVEL_GAP)
+    corners = [(x, y) if down else (y, x) for x, y in places]
+    placed: list[PlacedBox] = []
+    for part, (x, y), parent in zip(parts, corners, parents, strict=True):
+        placed.append(part.placed(x + MARGIN, y + MARGIN, placed[parent] if parent is not None else None))
+    right = max((x + part.w for part, (x, _) in zip(parts, corners, strict=True)), default=0)
+    bottom = max((y + part.h for part, (_, y) in zip(parts, corners, strict=True)), default=0)
+    return Drawing(figure.title, right + 2 * MARGIN, bottom + 2 * MARGIN, tuple(placed))
+
+
+class _Part:
+    """A box with its notes, before it has a place.
+
+    Attributes:
+        w, h: of all of it.
+        across: where its anchor is: the middle of the box.
+    """
+
+    def __init__(self, box: Box, is_inner: bool, down: bool) -> None:
+        self._box = box
+        self._down = down
+        self._lines = (shortened(box.title, TITLE, _ROOM), *(shortened(line, SMALL, _ROOM) for line in box.lines))
+        self._w, self._h = _box_size(box, self._lines)
+        self._notes = [_note_lines(note) for note in box.notes]
+        self._note_w = max((_note_width(lines) for lines in self._notes), default=0)
+        heights = [len(lines) * LEADING + _NOTE_PAD for lines in self._notes]
+        notes_h = sum(heights) + _NOTE_GAP * (len(heights) - 1) if heights else 0
+        self._heights = heights
+        # Beside the box, to its right: of a leaf that grows to the right, and of an inner node that grows down.
+        self._beside = bool(heights) and (is_inner if down else not is_inner)
+        if self._beside:
+            self.w = self._w + _TIE + self._note_w
+            self.h = max(self._h, notes_h)
+        elif heights:
+            self.w = max(self._w, self._note_w + (0 if down else _INDENT))
+            self.h = self._h + _TIE + notes_h
+        else:
+            self.w, self.h = self._w, self._h
+        self._box_x = 0 if self._beside or not down else (self.w - self._w) // 2
+        self._box_y = 0 if not self._beside or down else (self.h - self._h) // 2
+        self.across = self._box_x + self._w // 2 if down else self._box_y + self._h // 2
+
+    def placed(self, x: int, y: int, parent: PlacedBox | None) -> PlacedBox:
+        at = Rectangle(x + self._box_x, y + self._box_y, self._w, self._h)
+        notes: list[PlacedNote] = []
+        if self._beside:
+            left, top = at.x + at.w + _TIE, y
+        elif self._down:
+            left, top = x + (self.w - self._note_w) // 2, at.y + at.h + _TIE
+        else:
+            left, top = x + _INDENT, at.y + at.h + _TIE
+        for note, lines, height in zip(self._box.notes, self._notes, self._heights, strict=True):
+            notes.append(PlacedNote(note, Rectangle(left, top, self._note_w, height), lines))
+            top += height + _NOTE_GAP
+        return PlacedBox(self._box, at, self._lines, tuple(notes), self._edge(at, parent), self._ties(at, notes))
+
+    def _edge(self, at: Rectangle, parent: PlacedBox | None) -> Line:
+        """From the parent: along, across in the gap before this layer, along."""
+        if parent is None:
+            return ()
+        (x, y), (px, py) = at.middle, parent.at.middle
+        if self._down:
+            turn = at.y - self._box_y - _LEVEL_GAP // 2
+            start, end = parent.at.y + parent.at.h, at.y
+            if abs(x - px) <= 1:  # places are rounded
+                return (x, start), (x, end)
+            return (px, start), (px, turn), (x, turn), (x, end)
+        turn = at.x - self._box_x - _LEVEL_GAP // 2
+        start, end = parent.at.x + parent.at.w, at.x
+        if abs(y - py) <= 1:
+            return (start, y), (end, y)
+        return (start, py), (turn, py), (turn, y), (end, y)
+
+    def _ties(self, at: Rectangle, notes: list[PlacedNote]) -> Line:
+        if not notes:
+            return ()
+        first = notes[0].at
+        if self._beside:
+            y = max(first.y, min(at.middle[1], first.y + first.h)) if len(notes) == 1 else at.middle[1]
+            return (at.x + at.w, y), (first.x, y)
+        x = at.middle[0] if self._down else min(first.x + _INDENT, at.x + at.w - _INDENT // 2)
+        return (x, at.y + at.h), (x, first.y)
+
+
+def _box_size(box: Box, lines: tuple[str, ...]) -> tuple[int, int]:
+    widths = [width(lines[0], TITLE, bold=True), *(width(line, SMALL) for line in lines[1:])]
+    w, h = max(widths) + _PAD[box.outline], len(lines) * LEADING + 10
+    if box.outline == "condition":
+        w, h = w + w // 6, h + 6 * len(lines)
+    return max(w + w % 2, _LEAST), h + h % 2
+
+
+def _note_lines(note: Note) -> tuple[str, ...]:
+    lines = [part for line in note.lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST)]
+    return (shortened(note.title, SMALL, _NOTE_ROOM), *lines)
+
+
+def _note_width(lines: tuple[str, ...]) -> int:
+    return max(width(lines[0], SMALL, bold=True), *(width(line, SMALL) for line in lines)) + 2 * _NOTE_PAD
+
+
+_GAP: Final = 20  # between siblings
+_LEVEL_GAP: Final = 32
+_TIE: Final = 14  # between a box and its notes
+_INDENT: Final = 16
+_LEAST: Final = 36
+_ROOM: Final = 220  # for the texts of a box
+_PAD: Final = {"control": 16, "action": 20, "condition": 30, "decorator": 34, "subtree": 34, "unknown": 20}
+_NOTE_ROOM: Final = 190
+_NOTE_MOST: Final = 3  # lines of one clause
+_NOTE_PAD: Final = 8
+_NOTE_GAP: Final = 6

@@ -1,0 +1,185 @@
+"""SVG, written by hand: a document that stands alone, or a part of a page.
+
+One invariant: the same figures give the same bytes, and texts are escaped.  Standing alone, it has a ground of its own,
+light or dark as the reader's system is; in a page, the page's style sheet paints it (`STYLE` has the classes' shapes,
+`LIGHT` and `DARK` their colours).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from html import escape
+
+from btq_lang.graph.figure import Figure
+from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+# What paints which part, and its colour on light and on dark ground; text on its ground has a contrast of 4.5 and more.
+_COLOURS: Final = (
+    (".ground", "fill", "#ffffff", "#16191d"),
+    (".edge, .tie", "stroke", "#6b7580", "#8f9aa6"),
+    (".box .outline", "stroke", "#3b4754", "#aeb9c4"),
+    (".box .outline", "fill", "#ffffff", "#20252b"),
+    (".box.control .outline", "fill", "#e6ebf2", "#2e3742"),
+    (".box.decorator .outline", "fill", "#eeeaf6", "#352f45"),
+    (".box.subtree .outline", "fill", "#e8f1fa", "#233445"),
+    (".box.condition .outline", "fill", "#fdf8e6", "#37331f"),
+    ("text", "fill", "#14181c", "#eef1f4"),
+    ("text.caption", "fill", "#14181c", "#eef1f4"),
+    (".note .outline", "fill", "#fff4e2", "#3d2d15"),
+    (".note .outline", "stroke", "#a8650f", "#e0a55a"),
+    (".note.quality .outline", "fill", "#e7f5ec", "#183625"),
+    (".note.quality .outline", "stroke", "#2f7d4f", "#6cc592"),
+)
+STYLE: Final = """\
+text { font-family: "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; text-anchor: middle; }
+text.title, text.caption { font-weight: bold; }
+text.caption { text-anchor: start; }
+.note text { text-anchor: start; }
+.edge, .tie { fill: none; stroke-width: 1.2; }
+.tie { stroke-dasharray: 2 3; }
+.box .outline { stroke-width: 1.4; }
+.box.unknown .outline { stroke-dasharray: 5 3; }
+.note .outline { stroke-width: 1.2; }
+.note.monitored .outline, .note.quality .outline { stroke-dasharray: 6 3; }
+.note.enforced .outline { stroke-width: 2.4; }
+.note.reviewed .outline { stroke-dasharray: 1.5 2.5; }
+"""
+
+
+def colours(dark: bool) -> str:
+    """The colours of the classes, as rules of a style sheet."""
+    return "".join(f"{part} {{ {what}: {dark_ if dark else light}; }}\n" for part, what, light, dark_ in _COLOURS)
+
+
+def document(figures: Sequence[Figure], direction: str = "down") -> str:
+    """Figures below each other, each with its title, as a file of its own."""
+    drawings = [place(figure, direction) for figure in figures]
+    title = ", ".join(drawing.title for drawing in drawings)
+    total = max((max(drawing.width, _title_width(drawing)) for drawing in drawings), default=2 * MARGIN)
+    height = sum(drawing.height + _CAPTION for drawing in drawings)
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{total}" height="{height}" viewBox="0 0 {total} {height}"'
+        ' role="img" aria-labelledby="title">',
+        f'<title id="title">{escape(title)}</title>',
+        f"<style>\n{STYLE}{colours(False)}@media (prefers-color-scheme: dark) {{\n{colours(True)}}}\n</style>",
+        f'<rect class="ground" width="{total}" height="{height}"/>',
+    ]
+    top = 0
+    for drawing in drawings:
+        caption = escape(drawing.title)
+        lines.append(f'<text class="caption" font-size="{TITLE}" x="{MARGIN}" y="{top + 20}">{caption}</text>')
+        lines.append(f'<g transform="translate(0 {top + _CAPTION})">')
+        lines += _drawn(drawing)
+        lines.append("</g>")
+        top += drawing.height + _CAPTION
+    return "\n".join((*lines, "</svg>")) + "\n"
+
+
+def part(drawing: Drawing, label: str) -> str:
+    """A drawing as a part of a page, which has the style sheet.
+
+    Args:
+        label: what it shows, for those who hear the page.
+    """
+    lines = [
+        f'<svg class="tree" width="{drawing.width}" height="{drawing.height}"'
+        f' viewBox="0 0 {drawing.width} {drawing.height}" role="group" aria-label="{escape(label)}">',
+        *_drawn(drawing),
+        "</svg>",
+    ]
+    return "\n".join(lines)
+
+
+def _title_width(drawing: Drawing) -> int:
+    from btq_lang.graph.widths import width
+
+    return width(drawing.title, TITLE, bold=True) + 2 * MARGIN
+
+
+def _drawn(drawing: Drawing) -> Iterator[str]:
+    """Lines below boxes."""
+    for box in drawing.boxes:
+        if box.edge:
+            yield f'<path class="edge" d="{_path(box.edge)}"/>'
+        if box.ties:
+            yield f'<path class="tie" d="{_path(box.ties)}"/>'
+    for box in drawing.boxes:
+        yield from _box(box)
+        for note in box.notes:
+            yield from _note(note)
+
+
+def _box(placed: PlacedBox) -> Iterator[str]:
+    box, at = placed.box, placed.at
+    x = at.middle[0]
+    names = " ".join(dict.fromkeys(note.note.key for note in placed.notes))
+    told = f' data-notes="{escape(names)}"' if names else ""
+    yield f'<g class="box {box.outline}" id="{escape(box.key)}"{told}>'
+    yield f"<title>{escape(box.text or box.title)}</title>"
+    yield from _opened(box.link)
+    yield _outline(box.outline, at)
+    top = at.y + (at.h - len(placed.lines) * LEADING) // 2 + 12
+    for number, line in enumerate(placed.lines):
+        kind, size = ("title", TITLE) if number == 0 else ("small", SMALL)
+        yield f'<text class="{kind}" font-size="{size}" x="{x}" y="{top + number * LEADING}">{escape(line)}</text>'
+    yield from _closed(box.link)
+    yield "</g>"
+
+
+def _note(placed: PlacedNote) -> Iterator[str]:
+    note, at = placed.note, placed.at
+    yield f'<g class="note {note.kind} {note.state}" data-note="{escape(note.key)}">'.replace(' "', '"')
+    yield f"<title>{escape(note.text or note.title)}</title>"
+    yield from _opened(note.link)
+    radius = at.h // 2 if note.kind == "quality" and len(placed.lines) == 1 else 3
+    yield f'<rect class="outline" x="{at.x}" y="{at.y}" width="{at.w}" height="{at.h}" rx="{radius}"/>'
+    left = at.x + (at.w - _note_text(placed)) // 2 if note.kind == "quality" and len(placed.lines) == 1 else at.x + 8
+    for number, line in enumerate(placed.lines):
+        kind = "title" if number == 0 else "small"
+        y = at.y + 15 + number * LEADING
+        yield f'<text class="{kind}" font-size="{SMALL}" x="{left}" y="{y}">{escape(line)}</text>'
+    yield from _closed(note.link)
+    yield "</g>"
+
+
+def _note_text(placed: PlacedNote) -> int:
+    from btq_lang.graph.widths import width
+
+    return width(placed.lines[0], SMALL, bold=True)
+
+
+def _opened(link: str) -> Iterator[str]:
+    if link:
+        yield f'<a href="{escape(link)}">'
+
+
+def _closed(link: str) -> Iterator[str]:
+    if link:
+        yield "</a>"
+
+
+def _outline(outline: str, at: Rectangle) -> str:
+    x, y, w, h = at.x, at.y, at.w, at.h
+    if outline == "condition":
+        return f'<ellipse class="outline" cx="{x + w // 2}" cy="{y + h // 2}" rx="{w // 2}" ry="{h // 2}"/>'
+    if outline == "decorator":
+        tip = 12
+        points = ((x, y + h // 2), (x + tip, y), (x + w - tip, y), (x + w, y + h // 2), (x + w - tip, y + h))
+        corners = " ".join(f"{a},{b}" for a, b in (*points, (x + tip, y + h)))
+        return f'<polygon class="outline" points="{corners}"/>'
+    if outline == "subtree":
+        left, right = x + 6, x + w - 6
+        bars = f"M{left} {y}V{y + h}M{right} {y}V{y + h}"
+        return f'<path class="outline" d="M{x} {y}H{x + w}V{y + h}H{x}Z{bars}"/>'
+    return f'<rect class="outline" x="{x}" y="{y}" width="{w}" height="{h}" rx="{2 if outline == "action" else 0}"/>'
+
+
+def _path(line: Line) -> str:
+    return "M" + "L".join(f"{x} {y}" for x, y in line)
+
+
+_CAPTION: Final = 28
