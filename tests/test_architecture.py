@@ -27,7 +27,7 @@ ROWS: tuple[frozenset[str], ...] = (
         {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
         | {"graph"}
     ),
-    frozenset({"checks", "formatter", "render", "fixes", "btcpp", "features"}),
+    frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features"}),
     frozenset(
         {
             "loader",

@@ -25,6 +25,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_build(commands)
     _add_import(commands)
     _add_graph(commands)
+    _add_diff(commands)
     _add_explain(commands)
     _add_init(commands)
     _add_completion(commands)
@@ -144,6 +145,27 @@ def _add_graph(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("--qualities", action="store_true", help="with qualities and requirements beside their nodes")
     parser.add_argument("--direction", choices=DIRECTIONS, default="down", help="where children stand; default: down")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_color(parser)
+
+
+def _add_diff(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "diff",
+        "tell what changed between two missions",
+        epilog="exit codes: 0 the same, 1 different, 2 usage or I/O\n\n"
+        "examples:\n  btq diff old.btq new.btq                   two missions, XML or btq\n"
+        "  btq diff --git HEAD                        what has changed since the last commit\n"
+        "  btq diff --git main...HEAD --format markdown mission.btq\n",
+    )
+    parser.add_argument(
+        "paths", nargs="*", metavar="PATH", help="two files or folders; with --git any number, default: ."
+    )
+    parser.add_argument(
+        "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"
+    )
+    parser.add_argument("--format", choices=("text", "markdown", "json"), default="text", help="default: text")
+    _add_color(parser)
 
 
 def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:

@@ -1,0 +1,134 @@
+"""`btq diff`: what changed between two missions, or between two revisions of one."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Callable, Iterator
+
+from btq_lang.commands.files import Files, Group
+from btq_lang.commands.git import GitTrouble, Revisions, revisions
+from btq_lang.diff import as_json, as_markdown, as_text
+from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
+from btq_lang.loader import LoadProblem, absolute, shown
+from btq_lang.render.colour import painter, wants_colour
+from btq_lang.rules import Severity
+from btq_lang.workspace import File
+
+
+class Trouble(Exception):
+    """What was asked for cannot be compared."""
+
+
+def run(options: Namespace) -> int:
+    """Compare and print; 0 the same, 1 different, 2 neither can be said."""
+    try:
+        comparisons = tuple(_of_revisions(options) if options.git is not None else _of_paths(options.paths))
+    except (Trouble, GitTrouble) as trouble:
+        print(f"btq diff: {trouble}", file=sys.stderr)
+        return 2
+    for comparison in comparisons:
+        for side in (comparison.old, comparison.new):
+            _warn(side)
+    for line in _rendered(comparisons, options):
+        print(line)
+    return int(any(comparison.changes for comparison in comparisons))
+
+
+def _rendered(comparisons: tuple[Comparison, ...], options: Namespace) -> Iterator[str]:
+    if options.format == "json":
+        return as_json.render(comparisons)
+    if options.format == "markdown":
+        return as_markdown.render(comparisons)
+    colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
+    return as_text.render(comparisons, painter(colour))
+
+
+def _warn(side: Side) -> None:
+    """Say of what is compared only in part that it is."""
+    for path in side.paths:
+        file = side.workspace.files[path]
+        if error := _first_error(file):
+            print(f"btq: {side.shown(path)}:{error}; what could be understood is compared", file=sys.stderr)
+
+
+def _first_error(file: File) -> str | None:
+    own = file.origin.diagnostics if file.origin is not None else file.parsed.diagnostics
+    for diagnostic in own:
+        if diagnostic.effective_severity is Severity.ERROR:
+            line, column = file.source_lines.position(diagnostic.span.start)
+            return f"{line + 1}:{column + 1}: {diagnostic.message}"
+    return None
+
+
+# ---- two files, two folders ----
+
+
+def _of_paths(paths: list[str]) -> Iterator[Comparison]:
+    if len(paths) != 2:
+        raise Trouble(f"two missions can be compared, not {len(paths)}; revisions of one: btq diff --git HEAD FILE")
+    old, new = (None if path == os.devnull else absolute(path) for path in paths)
+    if old is not None and new is not None and os.path.isdir(old) != os.path.isdir(new):
+        # As `diff` does: a file and the one of its name in a folder.
+        old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
+        new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
+    sides = [{} if path is None else _sides(path) for path in (old, new)]
+    for name in sorted(sides[0].keys() | sides[1].keys()):
+        yield compared(sides[0].get(name, NOWHERE), sides[1].get(name, NOWHERE))
+
+
+def _sides(path: str) -> dict[str, Side]:
+    """The mission of a file, with all that it includes; or those of a folder, each by itself, by their names in it."""
+    is_folder = os.path.isdir(path)
+    found: dict[str, Side] = {}
+    for group in _groups([path]):
+        for each in group.given:
+            paths = (each,) if is_folder else group.workspace.closure(each)
+            name = each.removeprefix(f"{path}/") if is_folder else ""
+            found[name] = Side(shown(each), group.workspace, paths, shown)
+    return found
+
+
+def _groups(paths: list[str]) -> tuple[Group, ...]:
+    groups, problems = Files().groups(paths)
+    _raise(problems)
+    return groups
+
+
+def _raise(problems: tuple[LoadProblem, ...]) -> None:
+    if problems:
+        raise Trouble("\nbtq diff: ".join(map(str, problems)))
+
+
+# ---- revisions ----
+
+
+def _of_revisions(options: Namespace) -> Iterator[Comparison]:
+    for path in map(absolute, options.paths or ["."]):
+        known = revisions(options.git, path)
+        if not os.path.isdir(path):
+            yield compared(_revised(known, known.old, path, True), _revised(known, known.new, path, True))
+            continue
+        for before, after in known.changed(path):
+            yield compared(_revised(known, known.old, before, False), _revised(known, known.new, after, False))
+
+
+def _revised(known: Revisions, revision: str | None, path: str | None, with_includes: bool) -> Side:
+    """A file as it was; revision: None is the working tree."""
+    if path is None:
+        return NOWHERE
+    if revision is None:
+        if not os.path.exists(path):
+            return NOWHERE
+        group = _groups([path])[0]
+        return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
+    workspace = known.workspace(revision, path)
+    if workspace is None:
+        return NOWHERE
+    name = _named(known.names[revision])
+    return Side(name(path), workspace, workspace.closure(path) if with_includes else (path,), name)
+
+
+def _named(revision: str) -> Callable[[str], str]:
+    return lambda path: f"{revision}:{shown(path)}"

@@ -1,0 +1,140 @@
+"""What git knows of a file: the texts of its revisions.  Git is called as a process, and only here.
+
+One invariant: nothing is written, and no argument that comes from outside is read by git as an option.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+
+from btq_lang.loader import SUFFIXES, absolute, file_of, find_project
+from btq_lang.project import include_candidates
+from btq_lang.workspace import File, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+class GitTrouble(Exception):
+    """Git is missing, or does not know what was asked for."""
+
+
+class Revisions:
+    """Two revisions of what is in a repository.
+
+    Attributes:
+        old, new: commits; None is the working tree.
+        names: commits as they were asked for.
+    """
+
+    def __init__(self, root: str, old: str, new: str | None, names: dict[str, str]) -> None:
+        self.old: Final = old
+        self.new: Final = new
+        self.names: Final = names
+        self._root: Final = root
+
+    def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
+        """The missions below a folder whose text changed: where they were and are; None where they were or are not."""
+        commits = [self.old] if self.new is None else [self.old, self.new]
+        run = ["diff", "--name-status", "--find-renames", "-z", *commits, "--", self._inside(folder) or "."]
+        words = _git(self._root, *run).split("\0")
+        pairs: list[tuple[str | None, str | None]] = []
+        at = 0
+        while at + 1 < len(words):
+            status, path = words[at][:1], self._outside(words[at + 1])
+            target = self._outside(words[at + 2]) if status in ("R", "C") else path
+            at += 3 if status in ("R", "C") else 2
+            pair = (None if status in ("A", "C") else path, None if status == "D" else target)
+            if any(each is not None and each.endswith(SUFFIXES) for each in pair):
+                pairs.append(pair)
+        return pairs
+
+    def workspace(self, commit: str, path: str) -> Workspace | None:
+        """A file of a commit with all that it includes there; None where the commit has no such file."""
+        project = find_project(path).project
+        files: dict[str, File] = {}
+        waiting = [path]
+        for each in waiting:
+            text = self._text(commit, each)
+            if text is None or each in files:
+                continue
+            files[each] = file_of(each, text)
+            for include in files[each].includes:
+                if include.path is not None:
+                    found = include_candidates(project, each, include.path.text)
+                    waiting += [candidate for candidate in found if self._has(commit, candidate)][:1]
+        return Workspace(files, project) if path in files else None
+
+    def _text(self, commit: str, path: str) -> str | None:
+        if not self._has(commit, path):
+            return None
+        data = _git_bytes(self._root, "cat-file", "blob", f"{commit}:{self._inside(path)}")
+        return data.decode("utf-8", "replace").removeprefix("\ufeff")
+
+    def _has(self, commit: str, path: str) -> bool:
+        inside = self._inside(path)
+        return bool(inside) and _succeeds(self._root, "cat-file", "-e", f"{commit}:{inside}")
+
+    def _inside(self, path: str) -> str:
+        """A path as git names it: from the root of the repository."""
+        real = absolute(os.path.realpath(path))
+        return "" if real == self._root else os.path.relpath(real, self._root).replace(os.sep, "/")
+
+    def _outside(self, path: str) -> str:
+        """A path of git's, as it is asked for: relative to the current folder, whatever links lead there."""
+        return absolute(os.path.relpath(f"{self._root}/{path}", os.path.realpath(".")))
+
+
+def revisions(asked: str, path: str) -> Revisions:
+    """What `REV`, `REV..REV` and `REV...REV` mean for a file or folder (gitrevisions(7)).
+
+    Args:
+        asked: one revision means it and the working tree; `A..B` two, `A...B` where B branched off A, and B.
+
+    Raises:
+        GitTrouble: the path is in no repository, a revision is not known, git is not installed.
+    """
+    folder = path if os.path.isdir(path) else os.path.dirname(path)
+    root = absolute(_git(folder, "rev-parse", "--show-toplevel").rstrip("\n"))
+    first, dots, second = asked.partition("..." if "..." in asked else "..")
+    first, second = first or "HEAD", second or "HEAD"
+    old = _commit(root, first)
+    if not dots:
+        return Revisions(root, old, None, {old: first})
+    new = _commit(root, second)
+    if dots == "...":
+        old = _git(root, "merge-base", old, new).strip()
+        return Revisions(root, old, new, {old: f"{first}...{second}", new: second})
+    return Revisions(root, old, new, {new: second, old: first})
+
+
+def _commit(root: str, revision: str) -> str:
+    words = ("rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
+    if not _succeeds(root, *words):
+        raise GitTrouble(f"git knows no revision `{revision}`")
+    return _git(root, *words).strip()
+
+
+def _git(folder: str, *arguments: str) -> str:
+    return os.fsdecode(_git_bytes(folder, *arguments))
+
+
+def _git_bytes(folder: str, *arguments: str) -> bytes:
+    run = _run(folder, *arguments)
+    if run.returncode != 0:
+        said = os.fsdecode(run.stderr).strip().removeprefix("fatal: ")
+        raise GitTrouble(f"git: {said}")
+    return run.stdout
+
+
+def _succeeds(folder: str, *arguments: str) -> bool:
+    return _run(folder, *arguments).returncode == 0
+
+
+def _run(folder: str, *arguments: str) -> subprocess.CompletedProcess[bytes]:
+    try:
+        return subprocess.run(["git", "-C", folder or ".", *arguments], capture_output=True)
+    except OSError as error:
+        raise GitTrouble(f"git cannot be run: {error.strerror}") from error

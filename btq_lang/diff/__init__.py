@@ -1,0 +1,42 @@
+"""What changed between two missions.
+
+said        what a mission says, whatever its spelling: a form that can be compared
+matching    which node of the one is which of the other
+nodes       from that, the changes of the trees
+items       the changes of all else
+changes     changes as data
+as_text, as_markdown, as_json   for a terminal, a pull request, a program
+
+One invariant: there is no change if and only if the missions say the same.  It does not know where the missions came
+from: two files, two revisions of one, XML.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btq_lang.diff.changes import THINGS, Change, Detail, section
+from btq_lang.diff.items import item_changes, renamed_items
+from btq_lang.diff.matching import Forest, match
+from btq_lang.diff.nodes import tree_changes
+from btq_lang.diff.said import Place, said
+from btq_lang.workspace import Workspace
+
+__all__ = ["Change", "Detail", "Place", "compare"]
+
+
+def compare(old: Workspace, old_paths: Iterable[str], new: Workspace, new_paths: Iterable[str]) -> tuple[Change, ...]:
+    """What changed between two missions.
+
+    Args:
+        old_paths: the files of the old workspace that are the mission, as `Workspace.closure` gives them: its own file
+            is the last.
+        new_paths: those of the new one.
+    """
+    before, after = said(old, old_paths), said(new, new_paths)
+    renamed = renamed_items(before.items, after.items)
+    forests = Forest(before.trees), Forest(after.trees)
+    match(*forests, renamed)
+    of_items = item_changes(before.items, after.items, renamed, tuple(forest.parts for forest in forests))
+    changes = [*of_items, *tree_changes(*forests, renamed)]
+    return tuple(sorted(changes, key=lambda change: THINGS.index(section(change))))  # a stable sort

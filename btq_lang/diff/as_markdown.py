@@ -1,0 +1,61 @@
+"""Comparisons for a pull request: Markdown as GitHub and GitLab read it.
+
+One invariant: what a mission says is never markup: names and values stand in code spans.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from btq_lang.diff.changes import THINGS, Change, section
+from btq_lang.diff.comparison import Comparison
+from btq_lang.diff.wording import TITLES, headline, lines, summary
+
+
+def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
+    """The lines of the document."""
+    comparisons = tuple(each for each in comparisons if each.changes)
+    if not comparisons:
+        yield "The missions say the same."
+    for number, comparison in enumerate(comparisons):
+        if number:
+            yield ""
+        yield f"### {code(comparison.title)}"
+        yield ""
+        yield f"{summary(comparison.changes)}."
+        for thing in THINGS:
+            changes = [change for change in comparison.changes if section(change) == thing]
+            if changes:
+                yield ""
+                yield f"#### {TITLES[thing]}"
+                yield ""
+                for change in changes:
+                    yield from _change(comparison, change)
+
+
+def code(text: str) -> str:
+    """A code span that says a text, whatever is in it (CommonMark 6.1)."""
+    ticks = "`" * (max(map(len, re.findall("`+", text)), default=0) + 1)
+    blank = " " if text.startswith("`") or text.endswith("`") else ""
+    return f"{ticks}{blank}{text}{blank}{ticks}"
+
+
+def _change(comparison: Comparison, change: Change) -> Iterator[str]:
+    thing, name, happened = headline(change)
+    what, _, more = happened.partition(" ")
+    said = [thing, code(name) if name else "", f"**{what}**", _more(change, more), f"({code(comparison.line(change))})"]
+    yield f"- {' '.join(word for word in said if word)}"
+    for line in lines(change):
+        yield f"  - {_WORDS[line.sign]}{code(line.text)}"
+
+
+def _more(change: Change, more: str) -> str:
+    for before in ("from around ", "around ", "from ", "to "):
+        head, found, names = more.partition(before)
+        if found:
+            return f"{head}{before}{code(names)}"
+    return more
+
+
+_WORDS = {"+": "added ", "-": "removed ", "~": ""}

@@ -1,0 +1,70 @@
+"""Two missions, compared, with all that is needed to show where a change stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from btq_lang.diff import Change, Place, compare
+from btq_lang.record import record
+from btq_lang.text import Position
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+@record
+class Side:
+    """One of two missions.
+
+    Attributes:
+        name: what it is called; None where there is none, and all of the other was added or removed.
+        paths: its files, its own the last.
+        shown: a path as people read it.
+    """
+
+    name: str | None
+    workspace: Workspace
+    paths: tuple[str, ...]
+    shown: Callable[[str], str]
+
+    def place(self, place: Place) -> tuple[str, Position, Position]:
+        """A place: the file as people read it, and where it begins and ends, counted from 0."""
+        lines = self.workspace.files[place.path].source_lines
+        return self.shown(place.path), lines.position(place.span.start), lines.position(place.span.end)
+
+
+@record
+class Comparison:
+    """Two missions and what changed between them."""
+
+    old: Side
+    new: Side
+    changes: tuple[Change, ...]
+
+    def line(self, change: Change) -> str:
+        """`mission.btq:12`: where a change is seen, in the new mission where it can be."""
+        side, place = (self.new, change.new) if change.new is not None else (self.old, change.old)
+        assert place is not None, "a change has a place"
+        path, start, _ = side.place(place)
+        return f"{path}:{start.line + 1}"
+
+    @property
+    def title(self) -> str:
+        """`old.btq -> new.btq`."""
+        if self.old.name is None or self.new.name is None:
+            return f"{self.new.name or self.old.name} ({'added' if self.old.name is None else 'removed'})"
+        return f"{self.old.name} -> {self.new.name}"
+
+
+def compared(old: Side, new: Side) -> Comparison:
+    """Compare two missions."""
+    return Comparison(old, new, compare(old.workspace, old.paths, new.workspace, new.paths))
+
+
+def all_changes(comparisons: Iterable[Comparison]) -> tuple[Change, ...]:
+    return tuple(change for comparison in comparisons for change in comparison.changes)
+
+
+NOWHERE: Final = Side(None, Workspace.of({}), (), str)

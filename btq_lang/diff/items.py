@@ -1,0 +1,100 @@
+"""What changed beside the trees: requirements, signals, contexts, qualities, models, includes.
+
+One invariant: things are the same by their name; those that say the same under another name were renamed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+
+from btq_lang.diff.changes import Change, Detail, details
+from btq_lang.diff.said import MAIN, MISSION, Item, Part, Value
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+# What may be renamed: what others refer to by its name.
+_RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")
+
+
+def renamed_items(old: Iterable[Item], new: Iterable[Item]) -> dict[tuple[str, str], str]:
+    """The new names of things that say the same under another name, by thing and old name."""
+    before, after = _by_name(old), _by_name(new)
+    gone = _by_content(item for key, item in before.items() if key not in after)
+    came = _by_content(item for key, item in after.items() if key not in before)
+    return {
+        (items[0].thing, items[0].name): came[content][0].name
+        for content, items in gone.items()
+        if len(items) == 1 == len(came.get(content, ()))
+    }
+
+
+def item_changes(
+    old: Sequence[Item], new: Sequence[Item], renamed: dict[tuple[str, str], str], nodes: tuple[Iterable[Part], ...]
+) -> Iterator[Change]:
+    """The changes of things, in the order of the new mission, then what is gone.
+
+    Args:
+        nodes: those of the old and of the new mission, for the requirements that are attached to them.
+    """
+    before, after = _by_name(old), _by_name(new)
+    names = {(thing, new_name): old_name for (thing, old_name), new_name in renamed.items()}
+    attached = [_attached(each) for each in nodes]
+    for (thing, name), item in after.items():
+        earlier = names.get((thing, name))
+        was = before.get((thing, earlier if earlier is not None else name))
+        if was is None:
+            yield Change("added", thing, name, None, item.place, tuple(_told(item, added=True)))
+            continue
+        if earlier is not None:
+            yield Change("renamed", thing, name, was.place, item.place, earlier=earlier)
+        values = was.values
+        if thing == MISSION and MAIN in values:
+            main = renamed.get(("tree", str(values[MAIN].key)), values[MAIN].key)
+            values = {**values, MAIN: Value(main, values[MAIN].text)}
+        said = [*details(values, item.values)]
+        if thing == "requirement":
+            counts = attached[0].get(was.name, 0), attached[1].get(name, 0)
+            if (counts[0] == 0) != (counts[1] == 0):
+                said.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
+        if said:
+            yield Change("changed", thing, name, was.place, item.place, tuple(said))
+    for (thing, name), item in before.items():
+        if (thing, name) not in after and (thing, name) not in renamed:
+            yield Change("removed", thing, name, item.place, None, tuple(_told(item, added=False)))
+
+
+def _told(item: Item, added: bool) -> Iterator[Detail]:
+    """What something said that is gone, or says that came."""
+    for aspect, value in item.values.items():
+        if value.text and aspect:
+            yield Detail(aspect, None, value.text) if added else Detail(aspect, value.text, None)
+
+
+def _by_name(items: Iterable[Item]) -> dict[tuple[str, str], Item]:
+    found: dict[tuple[str, str], Item] = {}
+    for item in items:
+        found.setdefault((item.thing, item.name), item)
+    return found
+
+
+def _by_content(items: Iterable[Item]) -> dict[Hashable, list[Item]]:
+    found: dict[Hashable, list[Item]] = {}
+    for item in items:
+        if item.thing in _RENAMED and item.values:
+            content = item.thing, frozenset((aspect, value.key) for aspect, value in item.values.items())
+            found.setdefault(content, []).append(item)
+    return found
+
+
+def _attached(nodes: Iterable[Part]) -> dict[str, int]:
+    counts: dict[str, int] = {}
+    for node in nodes:
+        for name in dict.fromkeys(node.requirements):
+            counts[name] = counts.get(name, 0) + 1
+    return counts
+
+
+def _nodes(number: int) -> str:
+    return "no node" if number == 0 else f"{number} node{'' if number == 1 else 's'}"

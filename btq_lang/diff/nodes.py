@@ -1,0 +1,170 @@
+"""What changed in the trees: from two forests that are matched, the changes that make one of the other.
+
+One invariant: without a change the trees say the same, and with `added`, `removed`, `moved` and `changed` each node is
+told of once for each of them.  A node that was put around others moves none of them: a node has moved when the nearest
+node above it that is in both missions is another one, or when it has changed sides with one of its siblings there.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping
+
+from btq_lang.diff.changes import Change, Detail, details
+from btq_lang.diff.matching import Forest, renamed_aspect
+from btq_lang.diff.said import SUBTREE, TREE, VERBATIM, Part, Values
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Literal
+
+
+def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str]) -> Iterator[Change]:
+    """The changes of trees and nodes: those of what is there now in the order of the new mission, then what is gone."""
+    moved = _moved(old, new)
+    for other, one in enumerate(new.match):
+        if one < 0:
+            if not _is_part_of_one(new, other):
+                yield _one_sided("added", new, other)
+            continue
+        part, before = new.parts[other], old.parts[one]
+        thing: Literal["tree", "node"] = "tree" if part.kind == TREE else "node"
+        if part.kind == TREE and part.name != before.name:
+            yield Change("renamed", "tree", _path(new, other), before.place, part.place, earlier=_path(old, one))
+        if other in moved:
+            yield Change("moved", "node", _path(new, other), before.place, part.place, earlier=_path(old, one))
+        if said := tuple(_said_otherwise(before, part, renamed)):
+            yield Change("changed", thing, _path(new, other), before.place, part.place, said)
+    for one, other in enumerate(old.match):
+        if other < 0 and not _is_part_of_one(old, one):
+            yield _one_sided("removed", old, one)
+
+
+# ---- added and removed ----
+
+
+def _is_part_of_one(forest: Forest, index: int) -> bool:
+    """Whether what it stands in is only in this mission as well: then that is told of."""
+    parent = forest.parents[index]
+    return parent >= 0 and forest.match[parent] < 0
+
+
+def _one_sided(what: Literal["added", "removed"], forest: Forest, index: int) -> Change:
+    part = forest.parts[index]
+    alone, kept = 0, []
+    requirements: dict[str, None] = {}
+    waiting = [index]
+    while waiting:
+        each = waiting.pop()
+        if forest.match[each] >= 0:
+            kept.append(each)
+            continue
+        alone += 1
+        requirements.update(dict.fromkeys(forest.parts[each].requirements))
+        waiting += reversed(forest.children[each])
+    told = tuple(
+        Detail(f"requirement {name}", *((None, "attached") if what == "added" else ("attached", None)))
+        for name in requirements
+    )
+    return Change(
+        what,
+        "tree" if part.kind == TREE else "node",
+        _path(forest, index),
+        part.place if what == "removed" else None,
+        part.place if what == "added" else None,
+        told,
+        below=alone - 1,
+        around=tuple(shown(forest.parts[each]) for each in kept),
+    )
+
+
+# ---- moved ----
+
+
+def _moved(old: Forest, new: Forest) -> frozenset[int]:
+    """The nodes, by their index in the new forest, that stand elsewhere."""
+    above_old, above_new = _nearest(old), _nearest(new)
+    moved: set[int] = set()
+    groups: dict[int, list[int]] = {}
+    for one, other in enumerate(old.match):  # in the order of the old mission
+        if other < 0 or old.parents[one] < 0:
+            continue
+        before, after = above_old[one], above_new[other]
+        if before < 0 or after < 0 or old.match[before] != after:
+            # What a tree holds that was removed or added as a whole has moved, for its tree has no other.
+            moved.add(other)
+        else:
+            groups.setdefault(after, []).append(other)
+    for group in groups.values():
+        moved.update(set(group) - set(_increasing(group)))
+    return frozenset(moved)
+
+
+def _nearest(forest: Forest) -> list[int]:
+    """For each part the nearest above it that is in both missions, -1 of none."""
+    nearest = [-1] * len(forest.parts)
+    for index, parent in enumerate(forest.parents):
+        if parent >= 0:
+            nearest[index] = parent if forest.match[parent] >= 0 else nearest[parent]
+    return nearest
+
+
+def _increasing(numbers: list[int]) -> list[int]:
+    """A longest increasing subsequence: those that have not changed sides, as many as can be."""
+    ends: list[int] = []  # the smallest end of a subsequence of each length
+    places: list[int] = []
+    before: list[int] = []
+    for at, number in enumerate(numbers):
+        length = bisect_left(ends, number)
+        if length == len(ends):
+            ends.append(number)
+            places.append(at)
+        else:
+            ends[length], places[length] = number, at
+        before.append(places[length - 1] if length else -1)
+    found = []
+    at = places[-1] if places else -1
+    while at >= 0:
+        found.append(numbers[at])
+        at = before[at]
+    return found[::-1]
+
+
+# ---- changed ----
+
+
+def _said_otherwise(old: Part, new: Part, renamed: Mapping[tuple[str, str], str]) -> Iterable[Detail]:
+    if renamed.get(("node model", old.kind), old.kind) != new.kind:
+        yield Detail("kind", old.word, new.word)
+    elif old.category is not None and new.category is not None and old.category != new.category:
+        yield Detail("category", old.category, new.category)
+    target = renamed.get(("tree", old.target), old.target) if old.target is not None else None
+    if None not in (target, new.target) and target != new.target:
+        yield Detail("tree", old.target, new.target)
+    if old.kind != TREE and old.name != new.name:
+        yield Detail("name", old.name, new.name)
+    before: Values = {renamed_aspect(aspect, renamed): value for aspect, value in old.values.items()}
+    yield from details(before, new.values)
+
+
+# ---- names ----
+
+
+def shown(part: Part) -> str:
+    """A node as it is called: by its name, else by the tree that it calls or its kind."""
+    if part.kind == VERBATIM:
+        return part.values["element"].text
+    return part.name or part.target or part.word
+
+
+def _path(forest: Forest, index: int) -> str:
+    """The tree, the nodes above that have a name, and the node: as requirements name nodes."""
+    part = forest.parts[index]
+    names = [f"SubTree {part.target}" if part.kind == SUBTREE and part.name is None else shown(part)]
+    above = forest.parents[index]
+    while above >= 0:
+        part = forest.parts[above]
+        if part.name is not None:
+            names.append(part.name)
+        above = forest.parents[above]
+    return "/".join(reversed(names))

@@ -1,0 +1,428 @@
+"""What a mission says, whatever its spelling: its nodes and its named items in a form that can be compared.
+
+One invariant: two spellings of one thing give one form: `->` and `Sequence`, `Timeout (msec = 30 s)` and the `30000`
+of an XML file, a requirement defined at a node and one defined at file level, a classic placeholder and the skill it
+stands for.  Comments, layout and the order of attributes, ports and clauses are no part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.catalog.names import legal_name
+from btq_lang.catalog.nodes import BUILTINS, xml_tag
+from btq_lang.catalog.qualities import EDITIONS, find
+from btq_lang.lexer import tokens
+from btq_lang.placeholders import is_placeholder
+from btq_lang.quantities import parse_quantity
+from btq_lang.record import record
+from btq_lang.symbols import requirements_at
+from btq_lang.syntax import (
+    Apply,
+    Because,
+    Claim,
+    Confidence,
+    Context,
+    Entry,
+    Goal,
+    How,
+    Include,
+    Meta,
+    Model,
+    Models,
+    Node,
+    NodeClause,
+    Odds,
+    OnViolation,
+    Pair,
+    Port,
+    Qualities,
+    QualityDecl,
+    QualityPath,
+    ReqRef,
+    Requirement,
+    Root,
+    Satisfices,
+    Scope,
+    Signal,
+    Tags,
+    Tree,
+    Verbatim,
+    Window,
+    Word,
+    shape,
+    walk,
+)
+from btq_lang.text import Span
+from btq_lang.tokens import COMMENT, QUANTITY
+from btq_lang.units import convert, parse_unit
+from btq_lang.workspace import File, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Protocol, TypeAlias
+
+    class _HasPlace(Protocol):
+        @property
+        def start(self) -> int: ...
+        @property
+        def end(self) -> int: ...
+
+
+SUBTREE: Final = "SubTree"
+TREE: Final = "BehaviorTree"
+VERBATIM: Final = "xml"
+MAIN: Final = "main tree"
+MISSION: Final = "mission"
+
+
+@record
+class Place:
+    """Where something stands: a file, and a span of its text as it is on the disk."""
+
+    path: str
+    span: Span
+
+
+@record
+class Value:
+    """What is said of one aspect of something.
+
+    Attributes:
+        key: equal for two values that mean the same.
+        text: as it is written, in one line.
+    """
+
+    key: object
+    text: str
+
+
+Values: TypeAlias = dict[str, Value]
+
+
+class Part:
+    """A node, or a tree above its nodes.
+
+    Attributes:
+        kind: the XML tag: a built-in's, a custom node's ID, `SubTree`, `BehaviorTree`; `xml` of verbatim XML.
+        target: of a SubTree, the tree it calls.
+        name: the instance name, of a tree its ID.
+        word: the kind as it is written.
+        category: `Action`, `Condition`, … where it is written.
+        values: all else that is said, by aspect: `station`, `quality safety`, `requirement rq1`, `tag heavy`.
+        requirements: the IDs of those that are attached to it.
+        children: its nodes.
+    """
+
+    __slots__ = ("category", "children", "kind", "name", "place", "requirements", "target", "values", "word")
+
+    def __init__(self, kind: str, word: str, place: Place) -> None:
+        self.kind = kind
+        self.word = word
+        self.place: Final = place
+        self.target: str | None = None
+        self.name: str | None = None
+        self.category: str | None = None
+        self.values: Values = {}
+        self.requirements: list[str] = []
+        self.children: list[Part] = []
+
+
+@record
+class Item:
+    """Something with a name beside the trees: a requirement, a signal, a model.
+
+    Attributes:
+        thing: `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`, `mission` or `xml`.
+        name: its ID; what it says where it has none.
+        values: what is said of it, by aspect: `takes`, `on violation`, `port station`.
+    """
+
+    thing: str
+    name: str
+    values: Values
+    place: Place
+
+
+@record
+class Said:
+    """What a mission says: its trees, and all else."""
+
+    trees: tuple[Part, ...]
+    items: tuple[Item, ...]
+
+
+def said(workspace: Workspace, paths: Iterable[str]) -> Said:
+    """What some files of a workspace say together; what is said twice counts once, as in the language.
+
+    Args:
+        paths: the file of the mission is the last, before it those that it includes: their Roots mean nothing.
+    """
+    trees: list[Part] = []
+    items: dict[tuple[str, str], Item] = {}
+    paths = tuple(paths)
+    for path in paths:
+        reader = _Reader(workspace, workspace.files[path])
+        for entry in workspace.files[path].parsed.entries:
+            reader.entry = entry
+            if isinstance(entry.item, Tree):
+                trees.append(reader.tree(entry.item))
+            else:
+                for item in reader.items():
+                    if path == paths[-1] or not isinstance(entry.item, Root):
+                        items.setdefault((item.thing, item.name), item)
+        for item in reader.inside:
+            items.setdefault((item.thing, item.name), item)
+    main = workspace.main_tree(paths[-1]) if paths else None
+    if main is not None:  # whether it is named in the Root or is the only one that can be
+        values = items[MISSION, ""].values if (MISSION, "") in items else {}
+        name = main.symbol.name
+        place = Place(main.path, main.span)
+        items[MISSION, ""] = Item(MISSION, "", {**values, MAIN: Value(name, name)}, place)
+    return Said(tuple(trees), tuple(items.values()))
+
+
+class _Reader:
+    """One file being read."""
+
+    def __init__(self, workspace: Workspace, file: File) -> None:
+        self.entry: Entry = Entry(0, Verbatim(0, 0, None), False)
+        self.inside: list[Item] = []  # requirements that are defined at nodes
+        self._file: Final = file
+        self._edition: Final = EDITIONS[_edition(file) or workspace.project.qualities]
+
+    # ---- trees ----
+
+    def tree(self, tree: Tree) -> Part:
+        top = Part(TREE, TREE, self._place(tree.start, tree.end))
+        top.name = tree.name.text if tree.name is not None else None
+        self._pairs(top, tree.attributes)
+        self._clauses(top, tree.clauses)
+        top.values.update(self._ports(tree.ports))
+        waiting: list[tuple[Part, tuple[Node | Verbatim, ...]]] = [(top, tree.children)]
+        while waiting:
+            above, children = waiting.pop()
+            for child in children:
+                part = self._node(child) if isinstance(child, Node) else self._verbatim(child)
+                above.children.append(part)
+                if isinstance(child, Node) and child.children:
+                    waiting.append((part, child.children))
+        return top
+
+    def _node(self, node: Node) -> Part:
+        word = node.id
+        text = word.text if word is not None else ""
+        part = Part("", node.head.text, self._place(node.start, node.end))
+        part.category = node.category.raw if node.category is not None else None
+        part.name = node.name.text if node.name is not None else None
+        if is_placeholder(node) and part.name is not None:
+            part.kind = part.word = legal_name(part.name)
+            part.name = part.name if part.name != part.kind else None
+        elif part.category == SUBTREE:
+            part.kind, part.target, part.category = SUBTREE, text, None
+        else:
+            part.kind = xml_tag(text, word is not None and word.quoted, len(node.children))
+        self._pairs(part, node.attributes, node.category is not None and node.kind is None)
+        self._clauses(part, node.clauses)
+        return part
+
+    def _verbatim(self, verbatim: Verbatim) -> Part:
+        part = Part(VERBATIM, VERBATIM, self._place(verbatim.start, verbatim.end))
+        part.values["element"] = _value(verbatim.text)
+        return part
+
+    def _pairs(self, part: Part, pairs: tuple[Pair, ...], has_id: bool = False) -> None:
+        builtin = BUILTINS.get(part.kind)
+        for pair in pairs:
+            key = pair.key.text
+            if key == "name" or (has_id and key == "ID") or key in part.values:  # the first value counts
+                continue
+            port = builtin.port(key) if builtin is not None else None
+            part.values[key] = _value(pair.value, port.unit if port is not None else None)
+
+    def _clauses(self, part: Part, clauses: tuple[NodeClause, ...]) -> None:
+        for clause in clauses:
+            if isinstance(clause, Tags):
+                for tag in clause.names:
+                    part.values[f"tag {tag.text}"] = Value(True, "")
+            if isinstance(clause, Satisfices):
+                for quality in clause.qualities:
+                    if not quality.requirements:
+                        part.values[f"quality {self._quality(quality.path)}"] = Value(True, "")
+                    for requirement in quality.requirements:
+                        self._attach(part, requirement, quality.path)
+            else:
+                for use in requirements_at((clause,)):
+                    self._attach(part, use)
+
+    def _attach(self, part: Part, requirement: Requirement | ReqRef, quality: QualityPath | None = None) -> None:
+        arguments: tuple[object, ...] = ()
+        text = ""
+        name = requirement.name.text if requirement.name is not None else ""
+        if isinstance(requirement, ReqRef):
+            arguments = tuple(sorted(((each.name.text, shape(each.value)) for each in requirement.arguments), key=repr))
+            text = ", ".join(f"{each.name.text} = {self._text(each.value)}" for each in requirement.arguments)
+        elif not requirement.is_reference:
+            self.inside.append(self._requirement(requirement, quality))
+        part.values[f"requirement {name}"] = Value(arguments, text)
+        part.requirements.append(name)
+
+    # ---- items ----
+
+    def items(self) -> Iterator[Item]:
+        """What an item that is no tree defines."""
+        item = self.entry.item
+        if isinstance(item, Requirement):
+            yield self._requirement(item)
+        elif isinstance(item, Model):
+            yield self._model(item)
+        elif isinstance(item, Models):
+            for each in item.models:
+                yield self._model(each) if isinstance(each, Model) else self._item("xml", each.text, {}, each)
+        elif isinstance(item, Signal):
+            words = {"unit": item.unit, "from": item.source, "kind": item.behaviour, "fresh within": item.fresh}
+            values = {aspect: _value(word) for aspect, word in words.items() if word is not None}
+            if item.initially is not None:
+                values["initially"] = Value(shape(item.initially), self._text(item.initially))
+            yield self._item("signal", item.name, values, item)
+        elif isinstance(item, Context):
+            condition = Value(shape(item.condition), self._text(item.condition))
+            yield self._item("context", item.name, {"condition": condition}, item)
+        elif isinstance(item, QualityDecl):
+            values = {"title": _value(item.text)} if item.text is not None else {}
+            if item.parent is not None:
+                values["below"] = self._quality_value(item.parent)
+            yield self._item("quality", item.name, values, item)
+        elif isinstance(item, Include):
+            values = {pair.key.text: _value(pair.value) for pair in item.attributes}
+            yield self._item("include", item.path, values, item)
+        elif isinstance(item, Root):
+            values = {_MISSION_WORDS.get(pair.key.text, pair.key.text): _value(pair.value) for pair in item.attributes}
+            if item.name is not None:
+                values[MAIN] = _value(item.name)
+            values.pop("BTCPP_format", None)  # which build and XML files have, and missions do not
+            yield Item(MISSION, "", values, self._place(item.start, item.end))
+        elif isinstance(item, Qualities):
+            yield Item(MISSION, "qualities", {"edition": _value(item.edition)}, self._place(item.start, item.end))
+        elif isinstance(item, Apply):
+            text = self._slice(item.start, item.end)
+            yield Item("apply", text, {"": Value(shape(item), text)}, self._place(item.start, item.end))
+        elif isinstance(item, Verbatim):
+            yield self._item("xml", item.text, {}, item)
+
+    def _requirement(self, requirement: Requirement, quality: QualityPath | None = None) -> Item:
+        values: Values = {}
+        if requirement.text is not None:
+            text = " ".join(requirement.text.text.split())
+            values["title"] = Value(text, f'"{text}"')
+        quality = requirement.quality or quality
+        if quality is not None:
+            values["quality"] = self._quality_value(quality)
+        for parameter in requirement.parameters:
+            text = " : ".join(word.raw for word in (parameter.name, parameter.unit) if word is not None)
+            default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
+            values[f"parameter {parameter.name.text}"] = Value(shape(parameter), text + default)
+        for clause in requirement.clauses:
+            aspect = clause.verb.text if isinstance(clause, Claim) else _ASPECTS[type(clause)]
+            number = 2
+            while aspect in values:
+                aspect = f"{aspect.split(' #')[0]} #{number}"
+                number += 1
+            values[aspect] = Value(shape(clause), self._slice(clause.start, clause.end))
+        return self._item("requirement", requirement.name, values, requirement)
+
+    def _model(self, model: Model) -> Item:
+        values = {"category": _value(model.category), **self._ports(model.ports)}
+        if model.text is not None:
+            values["title"] = _value(model.text)
+        for pair in model.attributes:
+            values[pair.key.text] = _value(pair.value)
+        for part in model.body:
+            if isinstance(part, Meta):
+                for pair in part.attributes:
+                    values[f"metadata {pair.key.text}"] = _value(pair.value)
+            elif isinstance(part, Verbatim):
+                values[f"xml {part.text.text if part.text is not None else ''}"] = Value(True, "")
+        return self._item("node model", model.name, values, model)
+
+    def _ports(self, ports: tuple[Port, ...]) -> Values:
+        return {
+            f"port {port.name.text if port.name is not None else ''}": Value(
+                (
+                    *(port.direction.raw, _saying(port.type), _saying(port.default), _saying(port.text)),
+                    *sorted((pair.key.text, _saying(pair.value)) for pair in port.attributes),
+                ),
+                self._slice(port.start, port.end),
+            )
+            for port in ports
+        }
+
+    def _item(self, thing: str, name: Word | None, values: Values, part: _HasPlace) -> Item:
+        return Item(thing, name.text if name is not None else "", values, self._place(part.start, part.end))
+
+    # ---- words and places ----
+
+    def _quality(self, path: QualityPath) -> str:
+        words = tuple(name.text for name in path.names)
+        match = find(words, self._edition)
+        return match.quality.id if match.quality is not None else ".".join(words)
+
+    def _quality_value(self, path: QualityPath) -> Value:
+        return Value(self._quality(path), ".".join(name.text for name in path.names))
+
+    def _text(self, part: object) -> str:
+        """A part of the tree as it is written, in one line."""
+        places = list(_places(part))
+        return self._slice(min(start for start, _ in places), max(end for _, end in places)) if places else ""
+
+    def _slice(self, start: int, end: int) -> str:
+        text = self._file.text[start + self.entry.start : end + self.entry.start]
+        if "#" in text or "/" in text:
+            text = "".join(token.text if token.kind != COMMENT else " " for token in tokens(text))
+        return " ".join(text.split())
+
+    def _place(self, start: int, end: int) -> Place:
+        span = Span(start, end).shifted(self.entry.start)
+        origin = self._file.origin
+        return Place(self._file.path, origin.places.origin(span) if origin is not None else span)
+
+
+def _places(part: object) -> Iterator[tuple[int, int]]:
+    for each in walk(part):
+        if isinstance(each, Word):
+            yield each.start, each.end
+
+
+def _value(word: Word | None, unit: str | None = None) -> Value:
+    if word is None:
+        return Value(None, "")
+    if word.kind == QUANTITY:
+        quantity, wanted = parse_quantity(word.raw), parse_unit(unit) if unit is not None else None
+        if quantity is not None and wanted is not None and quantity[1].dimension == wanted.dimension:
+            return Value(f"{convert(quantity[0], quantity[1], wanted):.15g}", word.raw)
+        return Value("".join(word.raw.split()), word.raw)
+    return Value(word.text, word.raw if "\n" not in word.raw else " ".join(word.raw.split()))
+
+
+def _saying(word: Word | None) -> str:
+    return word.text if word is not None else ""
+
+
+def _edition(file: File) -> str | None:
+    for entry in file.parsed.entries:
+        if isinstance(entry.item, Qualities) and entry.item.edition is not None and entry.item.edition.text in EDITIONS:
+            return entry.item.edition.text
+    return None
+
+
+_MISSION_WORDS: Final = {"main_tree_to_execute": MAIN}
+_ASPECTS: Final[dict[type, str]] = {
+    Scope: "scope",
+    Odds: "odds",
+    Confidence: "confidence",
+    Window: "over last",
+    OnViolation: "on violation",
+    Goal: "goal",
+    Because: "because",
+    How: "verified by",
+}

@@ -1,0 +1,98 @@
+"""Changes in words: a headline and a line for each thing that is said otherwise, for whoever shows them.
+
+One invariant: what a change says is all in its words; colour and marks add nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.diff.changes import Change, Detail
+from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
+TITLES: Final = {
+    "mission": "Mission",
+    "include": "Includes",
+    "requirement": "Requirements",
+    "apply": "Requirements applied",
+    "quality": "Qualities",
+    "signal": "Signals",
+    "context": "Contexts",
+    "node model": "Node models",
+    "tree": "Trees",
+    "xml": "Verbatim XML",
+}
+_CLAUSES: Final = {"requirement": "satisfies", "quality": "satisfices", "tag": "tags"}
+_IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree", "name")
+_MOST: Final = 3  # names in a row
+
+
+@record
+class Line:
+    """A line below a headline; sign: `+`, `-` or `~`."""
+
+    sign: str
+    text: str
+
+
+def headline(change: Change) -> tuple[str, str, str]:
+    """What it is about, its name, and what happened to it."""
+    if change.what == "renamed":
+        return change.thing, change.earlier or "", f"renamed to {change.name}"
+    words: list[str] = [change.what]
+    if change.below:
+        words.append(f"with {change.below} node{'' if change.below == 1 else 's'} below")
+    if change.around:
+        words.append(f"{'around' if change.what == 'added' else 'from around'} {_row(change.around)}")
+    if change.what == "moved" and change.earlier != change.name:
+        words.append(f"from {change.earlier}")
+    return change.thing, change.name, " ".join(words)
+
+
+def lines(change: Change) -> Iterator[Line]:
+    """What is said otherwise."""
+    for detail in change.details:
+        yield from _lines(change, detail)
+
+
+def summary(changes: Iterable[Change]) -> str:
+    """`2 requirements changed, 1 node added`."""
+    counts: dict[tuple[str, str], int] = {}
+    for change in changes:
+        counts[change.thing, change.what] = counts.get((change.thing, change.what), 0) + 1
+    return ", ".join(f"{number} {_plural(thing, number)} {what}" for (thing, what), number in counts.items())
+
+
+def _lines(change: Change, detail: Detail) -> Iterator[Line]:
+    kind, _, name = detail.aspect.partition(" ")
+    if change.thing in ("node", "tree") and kind in _CLAUSES and name:
+        for sign, text in (("-", detail.old), ("+", detail.new)):
+            if text is not None:
+                yield Line(sign, f"{_CLAUSES[kind]} {name}{f'({text})' if text not in ('', 'attached') else ''}")
+    elif kind == "port" or (change.thing == "requirement" and detail.aspect not in _IN_WORDS):  # they are whole lines
+        for sign, text in (("-", detail.old), ("+", detail.new)):
+            if text is not None:
+                yield Line(sign, text or detail.aspect)
+    elif detail.aspect in _IN_WORDS or (detail.old is not None and detail.new is not None):
+        sign = "-" if detail.new is None else "+" if detail.old is None else "~"
+        said = " -> ".join(text for text in (detail.old, detail.new) if text is not None)
+        yield Line(sign, f"{detail.aspect}: {said}")
+    else:
+        sign, text = ("-", detail.old) if detail.new is None else ("+", detail.new)
+        yield Line(sign, f"{detail.aspect} = {text}" if text not in (None, "") else detail.aspect)
+
+
+def _row(names: tuple[str, ...]) -> str:
+    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
+    return ", ".join(names[:_MOST]) + more
+
+
+def _plural(thing: str, number: int) -> str:
+    if number == 1 or thing in ("xml", "apply"):
+        return thing
+    return "qualities" if thing == "quality" else f"{thing}s"

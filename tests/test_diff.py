@@ -1,0 +1,317 @@
+"""What changed between two missions, in words, as Markdown and as JSON; and the command, with files and with git."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from btq_lang.diff import as_json, as_markdown, as_text
+from btq_lang.diff.comparison import Comparison, Side, compared
+from btq_lang.diff.matching import common
+from btq_lang.workspace import Workspace
+
+OLD = dedent("""\
+    signal battery : % from {level}
+    QualityReq rq1 : time-behaviour "In time"
+        takes at most 30 s
+        on violation fail
+    QualityReq rq2 "With some battery left"
+        leaves battery >= 3 %
+    Action MoveBase
+        input station : string
+    Root Main
+    BehaviorTree Main
+        -> Work
+            MoveBase ToDesk (station = "desk") satisfies rq1
+            Timeout (msec = 2 s)
+                Grip
+            SubTree Deliver
+            Charge
+    BehaviorTree Deliver
+        ?
+            MoveBase (station = "ward") satisfies rq2
+            CallForHelp
+    """)
+NEW = dedent("""\
+    signal battery : Ah from {level}
+    QualityReq rq1 : time-behaviour "In time"  # comments are no change
+        on violation fail
+        takes at most 20 s
+        goal 10 s
+    QualityReq rq2 "With some battery left"
+        leaves battery >= 3 %
+    Action MoveBase
+        input station : string
+        input speed : double = 0.5
+    Root Main
+    BehaviorTree Main
+        Sequence Work
+            Retry (num_attempts = 3)
+                MoveBase ToDesk (station = "desk", speed = 1) satisfies rq1
+            SubTree BringIt
+            Timeout (msec = 2000)
+                R->
+                    Grip
+                    Look
+    BehaviorTree BringIt
+        ?
+            MoveBase (station = "ward")
+            CallForHelp
+            Beep
+    """)
+TEXT = """\
+old.btq -> new.btq
+~ requirement rq1 changed  new.btq:2
+    - takes at most 30 s
+    + takes at most 20 s
+    + goal 10 s
+~ requirement rq2 changed  new.btq:6
+    ~ attached to: 1 node -> no node
+~ signal battery changed  new.btq:1
+    ~ unit: % -> Ah
+~ node model MoveBase changed  new.btq:8
+    + input speed : double = 0.5
++ node Main/Work/Retry added around ToDesk  new.btq:14
+~ node Main/Work/ToDesk changed  new.btq:15
+    + speed = 1
+> node Main/Work/Timeout moved  new.btq:17
++ node Main/Work/R-> added with 1 node below around Grip  new.btq:18
+~ tree Deliver renamed to BringIt  new.btq:21
+~ node BringIt/MoveBase changed  new.btq:23
+    - satisfies rq2
++ node BringIt/Beep added  new.btq:25
+- node Main/Work/Charge removed  old.btq:16
+
+2 requirements changed, 1 signal changed, 1 node model changed, 3 nodes added, 2 nodes changed, 1 node moved, \
+1 tree renamed, 1 node removed
+"""
+
+
+def comparison(old: str, new: str) -> Comparison:
+    sides = (
+        Side(name, Workspace.of({name: text}), (name,), str) for name, text in (("old.btq", old), ("new.btq", new))
+    )
+    return compared(*sides)
+
+
+def in_words(old: str, new: str) -> str:
+    return "".join(f"{line}\n" for line in as_text.render([comparison(old, new)], lambda _, text: text))
+
+
+def test_what_changed_in_words() -> None:
+    assert in_words(OLD, NEW) == TEXT
+
+
+def test_what_did_not_change_is_not_told() -> None:
+    assert in_words(OLD, OLD) == ""
+
+
+def test_spelling_is_no_change() -> None:
+    classic = (
+        'Root Main\n    BehaviorTree ID = Main\n        -> (name = "Work")\n            Retry (num_attempts = 3)\n'
+    )
+    classic += '                ScriptAction (name = "Pick" satisfies QualityReq ID = "rq1" description = "quick")\n'
+    short = 'QualityReq rq1 "quick"\nBehaviorTree Main\n    Sequence Work\n'
+    short += '        RetryUntilSuccessful (num_attempts = "3")\n            Pick satisfies rq1\n'
+    assert in_words(classic, short) == ""
+
+
+def test_a_requirement_that_was_renamed_everywhere_is_one_change() -> None:
+    assert in_words(OLD, OLD.replace("rq1", "reach")).splitlines()[1:-2] == [
+        "~ requirement rq1 renamed to reach  new.btq:2"
+    ]
+
+
+def test_a_part_that_became_a_tree_of_its_own() -> None:
+    other = "BehaviorTree Other\n    Go\n"
+    old = f"BehaviorTree Main\n    ->\n        ?\n            Pick\n            Place\n        Go\n{other}"
+    new = f"BehaviorTree Main\n    ->\n        SubTree Take\n        Go\n{other}"
+    new += "BehaviorTree Take\n    ?\n        Pick\n        Place\n"
+    assert in_words(old, new).splitlines()[1:-2] == [
+        "+ node Main/SubTree Take added  new.btq:3",
+        "+ tree Take added around ?  new.btq:7",
+        "> node Take/? moved from Main/?  new.btq:8",
+    ]
+
+
+def test_markdown_for_a_pull_request() -> None:
+    new = OLD.replace("30 s", "20 s").replace("        Grip", "        Hold")
+    assert list(as_markdown.render([comparison(OLD, new)])) == [
+        "### `old.btq -> new.btq`",
+        "",
+        "1 requirement changed, 1 node changed.",
+        "",
+        "#### Requirements",
+        "",
+        "- requirement `rq1` **changed** (`new.btq:2`)",
+        "  - removed `takes at most 30 s`",
+        "  - added `takes at most 20 s`",
+        "",
+        "#### Trees",
+        "",
+        "- node `Main/Work/Hold` **changed** (`new.btq:14`)",
+        "  - `kind: Grip -> Hold`",
+    ]
+    assert list(as_markdown.render([comparison(OLD, OLD)])) == ["The missions say the same."]
+
+
+@pytest.mark.parametrize(
+    ("text", "span"), [("a", "`a`"), ("a`b", "``a`b``"), ("`", "`` ` ``"), ("<b>*x*", "`<b>*x*`"), ("``", "``` `` ```")]
+)
+def test_what_a_mission_says_is_no_markup(text: str, span: str) -> None:
+    assert as_markdown.code(text) == span
+
+
+def test_json_for_programs() -> None:
+    (document,) = as_json.render([comparison(OLD, OLD.replace("        CallForHelp\n", ""))])
+    found = json.loads(document)
+    assert {key: found[key] for key in ("format", "tool", "summary")} == {
+        "format": 1,
+        "tool": "btq",
+        "summary": {"added": 0, "removed": 1, "moved": 0, "changed": 0, "renamed": 0},
+    }
+    place = {"path": "old.btq", "range": {"start": {"line": 20, "column": 9}, "end": {"line": 20, "column": 20}}}
+    assert found["comparisons"] == [
+        {
+            "old": "old.btq",
+            "new": "new.btq",
+            "changes": [
+                {
+                    "what": "removed",
+                    "thing": "node",
+                    "name": "Deliver/CallForHelp",
+                    "earlier": None,
+                    "old": place,
+                    "new": None,
+                    "details": [],
+                    "below": 0,
+                    "around": [],
+                }
+            ],
+        }
+    ]
+
+
+def test_longest_common_subsequences() -> None:
+    assert common("abcd", "xbyd") == [(1, 1), (3, 3)]
+    assert len(common("abcabba", "cbabac")) == 4
+    assert common("", "a") == []
+    assert [len(common("x" * number, "y" + "x" * number)) for number in (0, 1, 2_000)] == [0, 1, 2_000]
+
+
+# ---- the command ----
+
+
+def btq(*arguments: str, cwd: Path) -> tuple[int, str, str]:
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    run = subprocess.run(
+        [sys.executable, "-m", "btq_lang", "diff", *arguments], cwd=cwd, env=environment, capture_output=True, text=True
+    )
+    return run.returncode, run.stdout, run.stderr
+
+
+def test_two_files(tmp_path: Path) -> None:
+    (tmp_path / "old.btq").write_text(OLD)
+    (tmp_path / "new.btq").write_text(NEW)
+    assert btq("old.btq", "new.btq", cwd=tmp_path) == (1, TEXT, "")
+    assert btq("old.btq", "old.btq", cwd=tmp_path) == (0, "", "")
+    code, out, _ = btq("old.btq", os.devnull, cwd=tmp_path)
+    assert (code, out.splitlines()[0]) == (1, "old.btq (removed)")
+
+
+def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> None:
+    for folder, limit in (("a", 30), ("b", 20)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "main.btq").write_text('include "reqs.btq"\nBehaviorTree Main\n    Go satisfies rq1\n')
+        (tmp_path / folder / "reqs.btq").write_text(f"QualityReq rq1\n    takes at most {limit} s\n")
+    said = "~ requirement rq1 changed  b/reqs.btq:1\n    - takes at most 30 s\n    + takes at most 20 s\n\n"
+    said += "1 requirement changed\n"
+    assert btq("a/main.btq", "b/main.btq", cwd=tmp_path) == (1, f"a/main.btq -> b/main.btq\n{said}", "")
+    assert btq("a", "b", cwd=tmp_path) == (1, f"a/reqs.btq -> b/reqs.btq\n{said}", "")
+
+
+def test_a_mission_and_its_xml(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text("BehaviorTree Main\n    Timeout (msec = 30 s)\n        AlwaysSuccess\n")
+    xml = '<root BTCPP_format="4">\n<BehaviorTree ID="Main">\n<Timeout msec="{}"><AlwaysSuccess/></Timeout>\n'
+    (tmp_path / "same.xml").write_text(xml.format(30000) + "</BehaviorTree></root>")
+    (tmp_path / "other.xml").write_text(xml.format(20000) + "</BehaviorTree></root>")
+    assert btq("main.btq", "same.xml", cwd=tmp_path) == (0, "", "")
+    code, out, _ = btq("main.btq", "other.xml", cwd=tmp_path)
+    assert (code, out.splitlines()[1:3]) == (
+        1,
+        ["~ node Main/Timeout changed  other.xml:3", "    ~ msec: 30 s -> 20000"],
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("a.btq",), "btq diff: two missions can be compared, not 1; revisions of one: btq diff --git HEAD FILE\n"),
+        (("a.btq", "b.btq"), "btq diff: a.btq: cannot be read: No such file or directory\n"),
+    ],
+)
+def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
+    assert btq(*arguments, cwd=tmp_path) == (2, "", message)
+
+
+def test_a_file_with_an_error_is_compared_as_far_as_it_is_understood(tmp_path: Path) -> None:
+    (tmp_path / "a.btq").write_text("BehaviorTree Main\n    Go\n")
+    (tmp_path / "b.btq").write_text("BehaviorTree Main\n    Go\n!!\n")
+    code, out, told = btq("a.btq", "b.btq", cwd=tmp_path)
+    assert (code, out) == (0, "")
+    assert told.startswith("btq: b.btq:3:1: ")
+    assert told.endswith("; what could be understood is compared\n")
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """Two commits of a mission and its requirements, and an edit that is not committed."""
+    if shutil.which("git") is None:
+        pytest.skip("no git on PATH")
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b", "-c", "init.defaultBranch=main")
+    folder = tmp_path / "robot"
+    (folder / "missions").mkdir(parents=True)
+    main, reqs = folder / "missions" / "main.btq", folder / "reqs.btq"
+    subprocess.run([*git, "init", "-q"], cwd=folder, check=True)
+    for limit in (30, 20):
+        reqs.write_text(f"QualityReq rq1\n    takes at most {limit} s\n")
+        main.write_text('include "../reqs.btq"\nBehaviorTree Main\n    Go satisfies rq1\n')
+        subprocess.run([*git, "add", "-A"], cwd=folder, check=True)
+        subprocess.run([*git, "commit", "-q", "-m", f"at most {limit} s"], cwd=folder, check=True)
+    main.write_text('include "../reqs.btq"\nBehaviorTree Main\n    Inverter\n        Go satisfies rq1\n')
+    return folder
+
+
+def test_revisions(repository: Path) -> None:
+    added = "+ node Main/Inverter added around Go  missions/main.btq:3\n\n1 node added\n"
+    title = "HEAD:missions/main.btq -> missions/main.btq\n"
+    assert btq("--git", "HEAD", cwd=repository) == (1, title + added, "")
+    assert btq("--git", "HEAD", "missions/main.btq", cwd=repository) == (1, title + added, "")
+    changed = "    - takes at most 30 s\n    + takes at most 20 s\n\n1 requirement changed\n"
+    assert btq("--git", "HEAD~1..HEAD", cwd=repository) == (
+        1,
+        f"HEAD~1:reqs.btq -> HEAD:reqs.btq\n~ requirement rq1 changed  HEAD:reqs.btq:1\n{changed}",
+        "",
+    )
+    assert btq("--git", "HEAD~1...HEAD", "main.btq", cwd=repository / "missions") == (
+        1,
+        "HEAD~1...HEAD:main.btq -> HEAD:main.btq\n"
+        f"~ requirement rq1 changed  HEAD:{repository.as_posix()}/reqs.btq:1\n{changed}",
+        "",
+    )
+    assert btq("--git", "HEAD..HEAD", cwd=repository) == (0, "", "")
+
+
+def test_revisions_that_there_are_not(repository: Path, tmp_path: Path) -> None:
+    assert btq("--git", "nosuch", cwd=repository) == (2, "", "btq diff: git knows no revision `nosuch`\n")
+    assert btq("--git", "--output=x", cwd=repository)[0] == 2
+    code, _, told = btq("--git", "HEAD", cwd=tmp_path)
+    assert code == 2
+    assert "not a git repository" in told
