@@ -7,21 +7,23 @@ what stands in a file that is written in XML is shown where it stands there.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 from urllib.request import pathname2url, url2pathname
 
 from lsprotocol import types
 
 from btq_lang.diagnostics import Diagnostic, Place, Tag
-from btq_lang.features.actions import Action
-from btq_lang.features.completion import Completion
-from btq_lang.features.outline import Match, Outline
-from btq_lang.features.signature import Signature
-from btq_lang.features.structure import Fold
-from btq_lang.loader import absolute
 from btq_lang.rules import Severity, page_path
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
-from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
+    from btq_lang.features.actions import Action
+    from btq_lang.features.completion import Completion
+    from btq_lang.features.outline import Match, Outline
+    from btq_lang.features.signature import Signature
+    from btq_lang.features.structure import Fold
+    from btq_lang.workspace import Workspace
 
 
 class Converter:
@@ -45,6 +47,8 @@ class Converter:
 
     def path(self, uri: str) -> str:
         """The path of a file; what is no file (an untitled buffer) goes by its URI, as if that stood at the top."""
+        from btq_lang.loader import absolute  # it knows workspaces, which are not needed to start
+
         parts = urlsplit(uri)
         return absolute(url2pathname(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Iterable
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
@@ -18,7 +18,9 @@ from btq_lang import __version__
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.session import Session
-from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace import Workspace
 
 T = TypeVar("T")
 

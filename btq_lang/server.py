@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 
 from btq_lang import __version__
-from btq_lang.commands.arguments import add_server_options
+from btq_lang.commands.options import add_server_options
 from btq_lang.editor import Refused, Server
 from btq_lang.handlers import register
 

@@ -7,15 +7,16 @@ is known here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from btq_lang.checks import check
-from btq_lang.commands.files import Files
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.project import Project
 from btq_lang.record import replace
 from btq_lang.rules import RULES, Severity
-from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
+    from btq_lang.commands.files import Files
+    from btq_lang.workspace import Workspace
 
 
 class Session:
@@ -30,8 +31,8 @@ class Session:
     def __init__(self) -> None:
         self.folders: tuple[str, ...] = ()
         self.settings: dict[str, object] = {}
-        self._files = Files()
-        self.open = self._files.overlay
+        self.open: dict[str, str] = {}
+        self._files: Files | None = None
         self._workspaces: list[Workspace] = []
         self._home: dict[str, int] = {}
         self._checked: dict[str, tuple[Workspace, tuple[Diagnostic, ...]]] = {}
@@ -63,6 +64,11 @@ class Session:
 
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; all files that there are."""
+        from btq_lang.commands.files import Files
+
+        if self._files is None:
+            self._files = Files()
+            self._files.overlay = self.open
         severities = self._severities()
         groups, _ = self._files.groups((*self.folders, *self.open))
         self._workspaces = []
@@ -115,6 +121,8 @@ class Session:
         known = self._checked.get(path)
         if known is not None and known[0] is workspace:
             return known[1]
+        from btq_lang.checks import check
+
         found = check(workspace, path)
         if known is not None and known[1] == found:
             found = known[1]  # the same object: nothing new to tell
@@ -129,9 +137,6 @@ class Session:
         """What the user has set, if it is a yes or a no."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
-
-    def projects(self) -> Iterator[Project]:
-        return (workspace.project for workspace in self._workspaces)
 
 
 def _includes(workspace: Workspace, path: str) -> list[str]:

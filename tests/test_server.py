@@ -479,9 +479,9 @@ def test_lines_end_where_editors_end_them(editor: Editor) -> None:
 
 def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: Path) -> None:
     program = (
-        "import btq_lang.handlers.explaining as explaining\n"
+        "import btq_lang.features as features\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
-        "explaining.hover = broken\n"
+        "features.explain = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
     editor = Editor(tmp_path, command=(sys.executable, "-c", program))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from typing import TYPE_CHECKING, Any
 
-from btq_lang.commands.options import CheckOptions
+from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.render import FORMATS
@@ -200,13 +200,6 @@ def _add_completion(commands: _SubParsersAction[ArgumentParser]) -> None:
 def _add_lsp(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser = _command(commands, "lsp", "serve an editor: the language server, also called btq-lsp")
     add_server_options(parser)
-
-
-def add_server_options(parser: ArgumentParser) -> None:
-    """The options of `btq lsp` and of `btq-lsp`."""
-    parser.add_argument("--stdio", action="store_true", help="over standard input and output: the default")
-    parser.add_argument("--tcp", type=int, metavar="PORT", help="one editor, over a port of this machine")
-    parser.add_argument("--log", choices=("error", "warning", "info", "debug"), default="error", help="default: error")
 
 
 def _add_color(parser: ArgumentParser) -> None:

@@ -1,8 +1,12 @@
-"""What `btq check` does where the command line says nothing."""
+"""The options that are needed before, or without, all the others."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+
+TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
+if TYPE_CHECKING:
+    from argparse import ArgumentParser
 
 
 class CheckOptions:
@@ -23,3 +27,10 @@ class CheckOptions:
 
     def __init__(self, paths: Sequence[str]) -> None:
         self.paths = paths or (".",)
+
+
+def add_server_options(parser: ArgumentParser) -> None:
+    """The options of `btq lsp` and of `btq-lsp`."""
+    parser.add_argument("--stdio", action="store_true", help="over standard input and output: the default")
+    parser.add_argument("--tcp", type=int, metavar="PORT", help="one editor, over a port of this machine")
+    parser.add_argument("--log", choices=("error", "warning", "info", "debug"), default="error", help="default: error")

@@ -2,4 +2,103 @@
 
 One invariant: a feature is a pure function that answers for every text and every offset, and "nothing" is None or ().
 Offsets are Python indices; no editor, no protocol and no line is known here.
+
+What the server asks is imported when it is asked for the first time: an editor waits for a server to start, and all
+features with the checks they show take a third of that time.
 """
+
+from __future__ import annotations
+
+TYPE_CHECKING = False  # type checkers read it as True
+if TYPE_CHECKING:
+    from btq_lang.features.actions import code_actions
+    from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
+    from btq_lang.features.completion import complete
+    from btq_lang.features.documentation import documentation as documented
+    from btq_lang.features.documentation import include_edits
+    from btq_lang.features.hints import code_lenses, inlay_hints
+    from btq_lang.features.hover import hover as explain
+    from btq_lang.features.moves import moved_files
+    from btq_lang.features.navigation import find_references, goto_definition, highlights
+    from btq_lang.features.node_path import node_path as path_of_node
+    from btq_lang.features.on_type import linked_ranges
+    from btq_lang.features.on_type import on_type as typed
+    from btq_lang.features.outline import document_symbols, workspace_symbols
+    from btq_lang.features.rename import Refusal, prepare_rename
+    from btq_lang.features.rename import rename as renamed
+    from btq_lang.features.semantic_tokens import delta, encode
+    from btq_lang.features.semantic_tokens import semantic_tokens as coloured
+    from btq_lang.features.signature import signature_help
+    from btq_lang.features.structure import document_links, folding_ranges, selection_range
+
+__all__ = [
+    "Call",
+    "Refusal",
+    "TreeItem",
+    "called",
+    "callers",
+    "code_actions",
+    "code_lenses",
+    "coloured",
+    "complete",
+    "delta",
+    "document_links",
+    "document_symbols",
+    "documented",
+    "encode",
+    "explain",
+    "find_references",
+    "folding_ranges",
+    "goto_definition",
+    "highlights",
+    "include_edits",
+    "inlay_hints",
+    "linked_ranges",
+    "moved_files",
+    "path_of_node",
+    "prepare_calls",
+    "prepare_rename",
+    "renamed",
+    "selection_range",
+    "signature_help",
+    "typed",
+    "workspace_symbols",
+]
+
+_HOMES = {
+    "actions": ("code_actions",),
+    "calls": ("Call", "TreeItem", "called", "callers", "prepare_calls"),
+    "completion": ("complete",),
+    "documentation": ("documented", "include_edits"),
+    "hints": ("code_lenses", "inlay_hints"),
+    "hover": ("explain",),
+    "moves": ("moved_files",),
+    "navigation": ("find_references", "goto_definition", "highlights"),
+    "node_path": ("path_of_node",),
+    "on_type": ("linked_ranges", "typed"),
+    "outline": ("document_symbols", "workspace_symbols"),
+    "rename": ("Refusal", "prepare_rename", "renamed"),
+    "semantic_tokens": ("coloured", "delta", "encode"),
+    "signature": ("signature_help",),
+    "structure": ("document_links", "folding_ranges", "selection_range"),
+}
+# A module of this package has the function's own name.
+_CALLED = {
+    "coloured": "semantic_tokens",
+    "documented": "documentation",
+    "explain": "hover",
+    "path_of_node": "node_path",
+    "renamed": "rename",
+    "typed": "on_type",
+}
+
+
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
+    home = next((home for home, names in _HOMES.items() if name in names), None)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found: object = getattr(import_module(f"{__name__}.{home}"), _CALLED.get(name, name))
+    globals()[name] = found
+    return found

@@ -15,8 +15,6 @@ from btq_lang.text import Edit, Span
 from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.workspace import Workspace
 
-TRIGGERS = ("\n", ")")
-
 
 def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[Edit, ...]:
     """What to change after a character was typed: the blanks that the line of the offset begins with.

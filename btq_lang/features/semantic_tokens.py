@@ -11,6 +11,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
 from btq_lang.conditions import FUNCTIONS, HEADS
+from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import quality_match
 from btq_lang.mentions import Mention, What
 from btq_lang.record import record
@@ -32,12 +33,6 @@ from btq_lang.tokens import (
     Token,
 )
 from btq_lang.workspace import Workspace
-
-TYPES = (
-    *("keyword", "comment", "string", "number", "operator", "class", "type", "function", "interface", "variable"),
-    *("enumMember", "parameter", "property", "label", "decorator"),
-)
-MODIFIERS = ("definition", "defaultLibrary", "modification", "readonly")
 
 
 @record

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.editor import Server
-from btq_lang.features.actions import code_actions
-from btq_lang.features.moves import moved_files
-from btq_lang.features.on_type import TRIGGERS, linked_ranges, on_type
 
 KINDS = [
     types.CodeActionKind.QuickFix,
@@ -29,26 +27,28 @@ def register(server: Server) -> None:
             return []
         workspace, path = place
         only = [str(getattr(kind, "value", kind)) for kind in params.context.only or ()]
-        found = code_actions(workspace, path, convert.span(*place, params.range), only, session.diagnostics(path))
+        found = features.code_actions(
+            workspace, path, convert.span(*place, params.range), only, session.diagnostics(path)
+        )
         return [convert.action(workspace, path, action, server.versions_for_edits()) for action in found]
 
     @server.feature(types.WORKSPACE_WILL_RENAME_FILES, types.FileOperationRegistrationOptions([_ALL]))
     def will_rename(params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
         moves = {convert.path(file.old_uri): convert.path(file.new_uri) for file in params.files}
-        found = [(workspace, moved_files(workspace, moves)) for workspace in session.workspaces()]
+        found = [(workspace, features.moved_files(workspace, moves)) for workspace in session.workspaces()]
         edits = [convert.workspace_edit(*each, server.versions_for_edits()) for each in found if each[1]]
         return convert.merged(edits) if edits else None
 
-    @server.feature(
-        types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions(TRIGGERS[0], [*TRIGGERS[1:]])
-    )
+    @server.feature(types.TEXT_DOCUMENT_ON_TYPE_FORMATTING, types.DocumentOnTypeFormattingOptions("\n", [")"]))
     def typed(params: types.DocumentOnTypeFormattingParams) -> list[types.TextEdit]:
-        asked = server.ask(params.text_document, params.position, lambda *at: on_type(at[0], at[1], at[2], params.ch))
+        asked = server.ask(
+            params.text_document, params.position, lambda *at: features.typed(at[0], at[1], at[2], params.ch)
+        )
         return convert.edits(*asked) if asked else []
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked(params: types.LinkedEditingRangeParams) -> types.LinkedEditingRanges | None:
-        asked = server.ask(params.text_document, params.position, linked_ranges)
+        asked = server.ask(params.text_document, params.position, features.linked_ranges)
         if asked is None or not asked[2]:
             return None
         return types.LinkedEditingRanges([convert.range(asked[0], asked[1], span) for span in asked[2]])

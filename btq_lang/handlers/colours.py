@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.editor import Server
-from btq_lang.features import semantic_tokens as tokens
+from btq_lang.features.legend import MODIFIERS, TYPES
 
 
 def register(server: Server) -> None:
@@ -17,14 +18,14 @@ def register(server: Server) -> None:
             return []
         span = convert.span(*place, within) if within else None
         workspace, path = place
-        return tokens.encode(tokens.semantic_tokens(*place, span), workspace.files[path].text, convert.encoding)
+        return features.encode(features.coloured(*place, span), workspace.files[path].text, convert.encoding)
 
     def remembered(document: types.TextDocumentIdentifier, data: list[int]) -> str:
         server.count += 1
         server.tokens[convert.path(document.uri)] = str(server.count), data
         return str(server.count)
 
-    legend = types.SemanticTokensLegend(list(tokens.TYPES), list(tokens.MODIFIERS))
+    legend = types.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
     def full(params: types.SemanticTokensParams) -> types.SemanticTokens:
@@ -38,7 +39,7 @@ def register(server: Server) -> None:
         result = remembered(params.text_document, data)
         if known != params.previous_result_id:
             return types.SemanticTokens(data, result)
-        edit = tokens.delta(before, data)
+        edit = features.delta(before, data)
         return types.SemanticTokensDelta([types.SemanticTokensEdit(*edit)] if edit else [], result)
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.editor import Refused, Server
-from btq_lang.features.node_path import node_path
 
 NODE_PATH = "btq.server.nodePath"
 XML = "btq.server.xml"
@@ -20,7 +20,7 @@ def register(server: Server) -> None:
     @server.command(NODE_PATH)
     def path_of_node(place: types.TextDocumentPositionParams) -> str | None:
         """The path of the node at a place."""
-        asked = server.ask(place.text_document, place.position, node_path)
+        asked = server.ask(place.text_document, place.position, features.path_of_node)
         return asked[2] if asked else None
 
     @server.command(XML)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
-from btq_lang.features.completion import complete
-from btq_lang.features.documentation import documentation, include_edits
-from btq_lang.features.hover import hover
-from btq_lang.features.signature import signature_help
 
 
 def register(server: Server) -> None:
@@ -17,7 +14,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> types.Hover | None:
-        asked = server.ask(params.text_document, params.position, hover)
+        asked = server.ask(params.text_document, params.position, features.explain)
         if asked is None or asked[2] is None:
             return None
         return types.Hover(markdown(asked[2].markdown), convert.range(asked[0], asked[1], asked[2].span))
@@ -27,7 +24,7 @@ def register(server: Server) -> None:
         types.SignatureHelpOptions(trigger_characters=["("], retrigger_characters=["=", " ", ","]),
     )
     def signature(params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-        asked = server.ask(params.text_document, params.position, signature_help)
+        asked = server.ask(params.text_document, params.position, features.signature_help)
         return convert.signature(asked[2]) if asked and asked[2] else None
 
     @server.feature(
@@ -35,7 +32,7 @@ def register(server: Server) -> None:
         types.CompletionOptions(trigger_characters=list('({=.<"@:/,['), resolve_provider=True),
     )
     def completion(params: types.CompletionParams) -> types.CompletionList | None:
-        asked = server.ask(params.text_document, params.position, complete)
+        asked = server.ask(params.text_document, params.position, features.complete)
         return convert.completion(*asked, snippets=server.takes_snippets) if asked else None
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
@@ -44,8 +41,8 @@ def register(server: Server) -> None:
         path = str(data.get("path"))
         workspace = session.workspace_of(path)
         if workspace is not None:
-            text = documentation(workspace, path, str(data.get("kind")), str(data.get("name")))
+            text = features.documented(workspace, path, str(data.get("kind")), str(data.get("name")))
             item.documentation = markdown(text) if text else None
-            edits = include_edits(workspace, path, str(data.get("include") or ""))
+            edits = features.include_edits(workspace, path, str(data.get("include") or ""))
             item.additional_text_edits = convert.edits(workspace, path, edits) or None
         return item

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
-from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
-from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.workspace import Workspace
 
 SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's, which opens its own list
 
@@ -17,7 +20,7 @@ SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's, which opens
 def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
-    def item(workspace: Workspace, tree: TreeItem) -> types.CallHierarchyItem:
+    def item(workspace: Workspace, tree: features.TreeItem) -> types.CallHierarchyItem:
         return types.CallHierarchyItem(
             tree.name,
             types.SymbolKind.Class,
@@ -27,19 +30,19 @@ def register(server: Server) -> None:
             data={"path": tree.path, "span": [*tree.span], "name": [*tree.name_span]},
         )
 
-    def tree_of(asked: types.CallHierarchyItem) -> tuple[Workspace, TreeItem] | None:
+    def tree_of(asked: types.CallHierarchyItem) -> tuple[Workspace, features.TreeItem] | None:
         data = asked.data if isinstance(asked.data, dict) else {}
         workspace = session.workspace_of(str(data.get("path")))
         if workspace is None:
             return None
-        return workspace, TreeItem(asked.name, data["path"], Span(*data["span"]), Span(*data["name"]))
+        return workspace, features.TreeItem(asked.name, data["path"], Span(*data["span"]), Span(*data["name"]))
 
-    def places(workspace: Workspace, call: Call) -> list[types.Range]:
+    def places(workspace: Workspace, call: features.Call) -> list[types.Range]:
         return [convert.range(workspace, call.path, span) for span in call.places]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        asked = server.ask(params.text_document, params.position, prepare_calls)
+        asked = server.ask(params.text_document, params.position, features.prepare_calls)
         return [item(asked[0], asked[2])] if asked and asked[2] else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
@@ -47,7 +50,7 @@ def register(server: Server) -> None:
         asked = tree_of(params.item)
         return [
             types.CallHierarchyIncomingCall(item(asked[0], call.tree), places(asked[0], call))
-            for call in (callers(*asked) if asked else ())
+            for call in (features.callers(*asked) if asked else ())
             if asked
         ]
 
@@ -56,7 +59,7 @@ def register(server: Server) -> None:
         asked = tree_of(params.item)
         return [
             types.CallHierarchyOutgoingCall(item(asked[0], call.tree), places(asked[0], call))
-            for call in (called(*asked) if asked else ())
+            for call in (features.called(*asked) if asked else ())
             if asked
         ]
 
@@ -74,7 +77,7 @@ def register(server: Server) -> None:
                 tooltip=markdown(hint.tooltip),
                 padding_left=not hint.label.startswith(":"),
             )
-            for hint in inlay_hints(workspace, path, convert.span(workspace, path, params.range))
+            for hint in features.inlay_hints(workspace, path, convert.span(workspace, path, params.range))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
@@ -84,7 +87,7 @@ def register(server: Server) -> None:
             return []
         workspace, path = place
         found = []
-        for lens in code_lenses(workspace, path):
+        for lens in features.code_lenses(workspace, path):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
             arguments = [convert.uri(path), range_.start, uses]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from lsprotocol import types
 
 from btq_lang.editor import Server
-from btq_lang.formatter import format_range, format_text
 
 
 def register(server: Server) -> None:
@@ -16,6 +15,8 @@ def register(server: Server) -> None:
         place = server.at(params.text_document)
         if place is None:
             return []
+        from btq_lang.formatter import format_text  # imported when it is asked for, as features are
+
         workspace, path = place
         return convert.edits(*place, format_text(workspace.files[path].text).edits)
 
@@ -24,5 +25,7 @@ def register(server: Server) -> None:
         place = server.at(params.text_document)
         if place is None:
             return []
+        from btq_lang.formatter import format_range  # as above
+
         workspace, path = place
         return convert.edits(*place, format_range(workspace.files[path].text, *convert.span(*place, params.range)))

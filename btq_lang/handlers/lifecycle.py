@@ -16,14 +16,13 @@ def register(server: Server) -> None:
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         convert.agree(server.workspace.position_encoding)
-        folders = [folder.uri for folder in params.workspace_folders or ()]
-        if not folders and (root := params.root_uri):
-            folders = [root]
-        session.folders = tuple(map(convert.path, folders))
         _settle(session, params.initialization_options)
 
     @server.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:
+        # Not in `initialize`: the editor waits for that answer, and what looks at files takes long to import.
+        folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
+        session.folders = tuple(map(convert.path, folders))
         capabilities = server.client_capabilities.workspace
         await _register_watchers(server)
         if capabilities is not None and capabilities.configuration:

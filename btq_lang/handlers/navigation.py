@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from lsprotocol import types
 
+from btq_lang import features
 from btq_lang.editor import Refused, Server
-from btq_lang.features.navigation import find_references, goto_definition, highlights
-from btq_lang.features.outline import workspace_symbols
-from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.text import Span
 
 
@@ -15,7 +13,7 @@ def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
     def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        asked = server.ask(params.text_document, params.position, goto_definition)
+        asked = server.ask(params.text_document, params.position, features.goto_definition)
         if asked is None:
             return []
         workspace, path, targets = asked
@@ -38,13 +36,13 @@ def register(server: Server) -> None:
     def references(params: types.ReferenceParams) -> list[types.Location]:
         wanted = params.context.include_declaration
         asked = server.ask(
-            params.text_document, params.position, lambda *at: find_references(at[0], at[1], at[2], wanted)
+            params.text_document, params.position, lambda *at: features.find_references(at[0], at[1], at[2], wanted)
         )
         return [convert.location(asked[0], path, span) for path, span in asked[2]] if asked else []
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        asked = server.ask(params.text_document, params.position, highlights)
+        asked = server.ask(params.text_document, params.position, features.highlights)
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(convert.range(asked[0], asked[1], each.span), kinds[each.writes])
@@ -54,21 +52,21 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        asked = server.ask(params.text_document, params.position, prepare_rename)
+        asked = server.ask(params.text_document, params.position, features.prepare_rename)
         if asked is None:
             return None
-        if isinstance(asked[2], Refusal):
+        if isinstance(asked[2], features.Refusal):
             raise Refused(asked[2].reason)
         return types.PrepareRenamePlaceholder(convert.range(asked[0], asked[1], asked[2].span), asked[2].name)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_all(params: types.RenameParams) -> types.WorkspaceEdit | None:
         asked = server.ask(
-            params.text_document, params.position, lambda *at: rename(at[0], at[1], at[2], params.new_name)
+            params.text_document, params.position, lambda *at: features.renamed(at[0], at[1], at[2], params.new_name)
         )
         if asked is None:
             return None
-        if isinstance(asked[2], Refusal):
+        if isinstance(asked[2], features.Refusal):
             raise Refused(asked[2].reason)
         return convert.workspace_edit(asked[0], asked[2].edits, server.versions_for_edits())
 
@@ -77,5 +75,5 @@ def register(server: Server) -> None:
         return [
             convert.symbol(workspace, match)
             for workspace in session.workspaces()
-            for match in workspace_symbols(workspace, params.query)
+            for match in features.workspace_symbols(workspace, params.query)
         ]

@@ -1,0 +1,9 @@
+"""What a coloured word can be: the words of LSP 3.16, and `label` of 3.18 for instance names."""
+
+from __future__ import annotations
+
+TYPES = (
+    *("keyword", "comment", "string", "number", "operator", "class", "type", "function", "interface", "variable"),
+    *("enumMember", "parameter", "property", "label", "decorator"),
+)
+MODIFIERS = ("definition", "defaultLibrary", "modification", "readonly")
