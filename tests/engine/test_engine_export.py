@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from btq_lang.btcpp.export import export, xml_name
 from btq_lang.btcpp.instances import instances
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
+from btq_lang.cli import main
 from btq_lang.loader import open_workspace
 from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
@@ -52,6 +54,18 @@ def test_an_example_loads_and_ticks(engine: Engine, example: str, tmp_path: Path
 def test_the_published_example_loads_and_ticks(engine: Engine, shared: Path, tmp_path: Path) -> None:
     workspace = open_workspace(str(shared / "original" / "paper_example.qualitybtcpp"))
     assert assert_loads_and_ticks(engine, workspace, tmp_path, ticks=20) == 1
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_side_files_number_nodes_as_the_engine_does(engine: Engine, example: str, tmp_path: Path) -> None:
+    code = main(["build", str(ROOT / "examples" / example), "-o", str(tmp_path)])
+    assert code == 0
+    for side_file in sorted(tmp_path.rglob("*.qreq.json")):
+        said = json.loads(side_file.read_text(encoding="utf-8"))
+        if said["main_tree"] is not None:
+            answer = engine.run_one(side_file.with_name(said["xml"]["file"]))
+            made = [(node.uid, node.path) for node in answer.tree]
+            assert made == [(each["uid"], each["path"]) for each in said["nodes"]]
 
 
 @pytest.mark.parametrize("spelling", ["classic", "short"])
