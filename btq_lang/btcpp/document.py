@@ -98,8 +98,8 @@ class Element:
         end: int = -1,
     ) -> None:
         self.tag = tag
-        self.attributes: Final = list(attributes)
-        self.children: Final = list(children)
+        self.attributes: Final = list(attributes) if attributes else []
+        self.children: Final = list(children) if children else []
         self.start: Final = start
         self.end: Final = end
         self.close = end  # set once more, by the reader, when the end tag comes

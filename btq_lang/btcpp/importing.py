@@ -233,10 +233,15 @@ class _Writer:
         attributes = element.attributes
         tag = element.tag
         index = 0
+        head: list[Piece]
         if tag not in CATEGORIES:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
             word = kind(tag, False, has_code, self.symbols)
             head = [_tag(element, word)]
+            if not attributes:  # a third of all nodes
+                self.marks.append((len(self.out), level * len(_INDENT), head, (), None, ""))
+                self.out.append(f"{_INDENT * level}{word}\n")
+                return
         else:
             head = [_tag(element, tag)]
             if attributes and attributes[0].name == "ID":
@@ -321,22 +326,22 @@ class _Writer:
             attributes: None: there are no brackets; empty ones are for `Root ()` alone.
         """
         indent = _INDENT * level
-        out = indent + " ".join([word for word, _ in head])
+        out = f"{indent}{head[0][0]}" if len(head) == 1 else indent + " ".join([word for word, _ in head])
         behind = "" if text is None else f" {string_of(text)}"
         pairs: list[str] = []
         between = " "
         if attributes:
             pairs = [f"{name(each.name)} = {value(each.raw)}" for each in attributes]
             group = " ".join(pairs)
-            column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
-            columns = self.columns
-            if _fits(f"({group}){behind}", column, columns) or (
-                behind and _fits(f"({group})", column, columns) and not _fits(f"){behind}", len(indent), columns)
-            ):
-                line = f"{out} ({group}){behind}\n"
-            else:
-                between = f"\n{indent}{_INDENT}"
-                line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
+            line = f"{out} ({group}){behind}\n"
+            if len(line) > self.columns or "\n" in line[:-1]:  # it may be too long
+                columns = self.columns
+                column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
+                if not _fits(f"({group}){behind}", column, columns) and (
+                    not behind or not _fits(f"({group})", column, columns) or _fits(f"){behind}", len(indent), columns)
+                ):
+                    between = f"\n{indent}{_INDENT}"
+                    line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
             if self.has_returns:
                 self.lost_returns(attributes)
         elif attributes is not None and head[0][0] == "Root":

@@ -61,8 +61,9 @@ def read(text: str) -> Read:
     """
     collecting = gc.isenabled()
     gc.disable()  # nothing made here is garbage, and collecting it is half of the time
+    refused = not_well_formed(text)
     try:
-        contents = _Reader(text).contents()
+        contents = _Reader(text, refused is None).contents()
     except _Broken as broken:
         return Read(None, (broken.diagnostic,))
     finally:
@@ -75,7 +76,7 @@ def read(text: str) -> Read:
         note = 'a mission begins with <root BTCPP_format="4">'
         return Read(None, (Diagnostic(RULE, Span(0, min(end, 1)), message, notes=(note,)),))
     read_by_all = (content for content in contents if isinstance(content, Comment) or content is roots[0])
-    return Read(Document(read_by_all), not_well_formed(text))
+    return Read(Document(read_by_all), refused or ())
 
 
 RULE: Final = "xml-syntax"
@@ -89,8 +90,9 @@ class _Broken(Exception):
 class _Reader:
     """A place in a text, and the elements that are open there."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, is_strict: bool) -> None:
         self.text: Final = text
+        self.is_strict: Final = is_strict  # no attribute stands twice: that has been looked at
         self.open: Final[list[Element]] = []
 
     def contents(self) -> list[Content]:
@@ -130,9 +132,15 @@ class _Reader:
                 opened.pop().close = at
                 contents = opened[-1].children if opened else top
                 continue
-            element = Element(name, (), (), text.rfind("<", 0, tag.start(1)), at)
+            start = tag.start(1) - 1
+            if text[start] != "<":  # `< name`
+                start = text.rfind("<", 0, start)
+            element = Element(name, (), (), start, at)
             if pairs:
-                self.attributes(element, pairs)
+                start_tag = StartTag(text, start, at)
+                element.attributes.extend([Attribute(key, raw, start_tag) for key, _, raw in _ATTRIBUTES(pairs)])
+                if not self.is_strict and len({each.name for each in element.attributes}) < len(element.attributes):
+                    self.twice(element)
             contents.append(element)
             declared = False
             if not slash:
@@ -143,14 +151,6 @@ class _Reader:
         if opened:
             self.unclosed(opened[-1])
         return top
-
-    def attributes(self, element: Element, pairs: str) -> None:
-        """{ Name "=" Value } of a start tag whose shape is known to be right."""
-        tag = StartTag(self.text, element.start, element.end)
-        found = [Attribute(name, raw, tag) for name, _, raw in _ATTRIBUTES(pairs)]
-        if len(found) > 1 and len({attribute.name for attribute in found}) < len(found):
-            self.twice(element)
-        element.attributes.extend(found)
 
     def behind_text(self, at: int, contents: list[Content]) -> int:
         """Where the next `<` stands, or the end."""

@@ -16,8 +16,11 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-def not_well_formed(text: str) -> tuple[Diagnostic, ...]:
-    """One warning where lxml refuses a text, at the place where it stops; nothing where it reads it."""
+def not_well_formed(text: str) -> tuple[Diagnostic, ...] | None:
+    """A warning where lxml refuses a text, at the place where it stops; None where it reads it.
+
+    Nothing is said where it gave up by limits of its own, which XML does not have.
+    """
     from lxml import etree  # type: ignore[import-untyped]  # its stubs are a package of their own
 
     parser = etree.XMLParser(
@@ -26,11 +29,11 @@ def not_well_formed(text: str) -> tuple[Diagnostic, ...]:
     try:
         etree.fromstring(text.encode("utf-8", "replace"), parser)
     except etree.XMLSyntaxError as error:
-        if error.code in (_TOO_DEEP_FOR_LXML, _TOO_LONG_FOR_LXML):  # limits of its own, which XML does not have
+        if error.code in _LIMITS:
             return ()
         line, column = error.position
         return (_refused(text, error.msg or "it is not well-formed", line, column),)
-    return ()
+    return None
 
 
 def _refused(text: str, message: str, line: int, column: int) -> Diagnostic:
@@ -43,8 +46,7 @@ def _refused(text: str, message: str, line: int, column: int) -> Diagnostic:
 
 
 _POSITION: Final = re.compile(r", line \d+, column \d+.*\Z", re.DOTALL)
-_TOO_DEEP_FOR_LXML: Final = 1  # XML_ERR_INTERNAL_ERROR: how older versions of libxml2 say it
-_TOO_LONG_FOR_LXML: Final = 114  # XML_ERR_RESOURCE_LIMIT
+_LIMITS: Final = (1, 114)  # XML_ERR_INTERNAL_ERROR, with which older versions of libxml2 say XML_ERR_RESOURCE_LIMIT
 
 # What libxml2 says, and what to do about it.
 _MENDING: Final = (
