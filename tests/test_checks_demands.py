@@ -240,6 +240,15 @@ def test_failures_that_reach_the_root(tree: str) -> None:
     assert findings(text, "swallowed-failure") == []
 
 
+def test_what_cannot_be_enforced_fails_nothing() -> None:
+    for clauses in (
+        "A takes at least 5 s|on violation fail",
+        "A runs at least 1 per 5 s|on violation fail",
+        "A takes at most 5 s",
+    ):
+        assert findings(mission("Inverter\n    Action A", f"q {clauses}"), "swallowed-failure") == []
+
+
 def test_one_way_up_is_enough() -> None:
     text = mission(
         "->\n    SubTree Sub\n    ForceSuccess\n        SubTree Sub", "q A takes at most 5 s|on violation fail"
