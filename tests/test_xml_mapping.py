@@ -12,11 +12,11 @@ from btq_lang.btcpp.export import export
 from btq_lang.workspace import Workspace
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "xml-mapping.md").read_text(encoding="utf-8")
-PAIRS = re.findall(r"^```btq\n(.*?)^```\n\n```xml\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+PAIRS = re.findall(r"^```btq(?: classic)?\n(.*?)^```\n\n```xml\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
 
 
 def test_every_example_has_both_sides() -> None:
-    assert len(PAIRS) == len(re.findall(r"^```btq$", PAGE, re.MULTILINE)) == len(re.findall(r"^```xml$", PAGE, re.M))
+    assert len(PAIRS) == len(re.findall(r"^```btq( classic)?$", PAGE, re.MULTILINE)) == len(re.findall(r"^```xml$", PAGE, re.M))
 
 
 @pytest.mark.parametrize(("mission", "xml"), PAIRS, ids=[mission.split("\n")[0] for mission, _ in PAIRS])
