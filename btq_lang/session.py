@@ -41,12 +41,13 @@ class Session:
 
     def edit(self, path: str, text: str) -> tuple[str, ...]:
         """An open file says something else: the files to check again, those first that matter most."""
-        is_new = path not in self.open
         self.open[path] = text
         home = self._home.get(path)
-        if home is None or is_new or self._workspaces[home].files[path].origin is not None:
+        if home is None or self._workspaces[home].files[path].origin is not None:
             return (path, *self.reload())
         before = self._workspaces[home]
+        if before.files[path].text == text:  # opened, and as it is on the disk
+            return (path,)
         for index, workspace in enumerate(self._workspaces):
             if path in workspace.files:
                 self._workspaces[index] = workspace.with_file(path, text)
@@ -59,7 +60,12 @@ class Session:
 
     def close(self, path: str) -> tuple[str, ...]:
         """A file is not open any more: the one on the disk counts again."""
-        self.open.pop(path, None)
+        from btq_lang.loader import read
+
+        text = self.open.pop(path, None)
+        is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
+        if is_of_folder and text is not None and read(path)[0] == text:
+            return (path,)
         return self.reload()
 
     def reload(self) -> tuple[str, ...]:

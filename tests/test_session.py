@@ -104,10 +104,12 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     session = session_of(folder, {})
     skills = f"{folder}/skills.btq"
     linked = [skills, f"{folder}/main.btq", f"{folder}/requirements.btq"]
-    assert session.edit(skills, SKILLS)[0] == skills  # opened: everything is looked at again
+    assert session.edit(skills, SKILLS) == (skills,)  # opened, and as it is on the disk
     assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
     every = [*linked[:2], f"{folder}/other.btq", linked[2]]
     assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == every
+    assert list(session.edit(skills, SKILLS)) == every
+    assert session.close(skills) == (skills,)
 
 
 def test_a_file_that_no_folder_has(tmp_path: Path) -> None:
