@@ -70,6 +70,30 @@ def test_a_step_of_the_action_runs(step: str, code: int, said: str, tmp_path: Pa
     assert said in run.stdout + run.stderr
 
 
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+def test_the_action_writes_what_changed(tmp_path: Path, programs: dict[str, str]) -> None:
+    def git(*words: str) -> None:
+        person = ("-c", "user.name=x", "-c", "user.email=x@example.org", "-c", "commit.gpgsign=false")
+        subprocess.run(["git", *person, *words], cwd=tmp_path, check=True, capture_output=True)
+
+    git("init", "-q", "-b", "main")
+    for text in (CLEAN, CLEAN.replace("Dock", "Charge")):
+        (tmp_path / "main.btq").write_text(text)
+        git("add", "main.btq")
+        git("commit", "-q", "-m", "x")
+    (body,) = (each for each in read("action.yml")["runs"]["steps"] if each.get("id") == "diff")
+    files = {name: str(tmp_path / name) for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
+    values = {**files, "RUNNER_TEMP": str(tmp_path), "BTQ_PATHS": ".", "BTQ_DIFF_FROM": "HEAD~1"}
+    run = subprocess.run(
+        ["bash", "-e", "-c", body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stderr
+    said = (tmp_path / "btq-diff.md").read_text(encoding="utf-8")
+    assert "Charge" in said
+    assert (tmp_path / "GITHUB_STEP_SUMMARY").read_text(encoding="utf-8") == said
+    assert (tmp_path / "GITHUB_OUTPUT").read_text() == f"file={tmp_path}/btq-diff.md\n"
+
+
 def test_every_job_tests_the_versions_that_are_promised() -> None:
     matrix = read(".github/workflows/ci.yml")["jobs"]["python"]["strategy"]["matrix"]
     assert matrix["python"] == ["3.10", "3.11", "3.12", "3.13", "3.14"]

@@ -451,6 +451,13 @@ def test_commands(editor: Editor) -> None:
     document = editor.document("main.btq")["textDocument"]
     xml = editor.request("workspace/executeCommand", command="btq.server.xml", arguments=[document])
     assert '<Sequence name="First">' in xml
+    picture = editor.request("workspace/executeCommand", command="btq.server.picture", arguments=[document])
+    assert picture["nodes"] == {
+        "n0": {"line": 1, "character": 4},
+        "n1": {"line": 2, "character": 8},
+        "n2": {"line": 3, "character": 12},
+    }
+    assert all(f'id="{key}"' in picture["svg"] for key in picture["nodes"])
     refused = editor.ask(
         "workspace/executeCommand", command="btq.server.xml", arguments=[{"uri": editor.uri("nowhere.btq")}]
     )

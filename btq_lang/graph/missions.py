@@ -31,10 +31,24 @@ def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tu
         KeyError: there is no such file.
     """
     found = requirements(workspace, path)
-    mine = [node for node in found.nodes.all if node.path == path]
     notes = _notes(found) if with_qualities else {}
-    keys = {id(node): f"n{number}" for number, node in enumerate(mine)}
-    return tuple(figure(nodes, keys, notes) for nodes in by_tree(mine))
+    mine = _keyed(found, path)
+    keys = {id(node): key for key, node in mine}
+    return tuple(figure(nodes, keys, notes) for nodes in by_tree(node for _, node in mine))
+
+
+def keyed(workspace: Workspace, path: str) -> tuple[tuple[str, SourceNode], ...]:
+    """The nodes of a file, in the order of its text, with the keys that their boxes have in `figures`.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    return _keyed(requirements(workspace, path), path)
+
+
+def _keyed(found: Requirements, path: str) -> tuple[tuple[str, SourceNode], ...]:
+    mine = (node for node in found.nodes.all if node.path == path)
+    return tuple((f"n{number}", node) for number, node in enumerate(mine))
 
 
 def by_tree(nodes: Iterable[SourceNode]) -> Iterator[tuple[SourceNode, ...]]:

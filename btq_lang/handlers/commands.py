@@ -12,6 +12,7 @@ from btq_lang.editor import Refused, Server
 
 NODE_PATH = "btq.server.nodePath"
 XML = "btq.server.xml"
+PICTURE = "btq.server.picture"
 
 
 def register(server: Server) -> None:
@@ -37,3 +38,19 @@ def register(server: Server) -> None:
         for problem in done.problems:
             raise Refused(f"this cannot be written as XML: {problem.message}")
         return write(done.document)
+
+    @server.command(PICTURE)
+    def picture(document: types.TextDocumentIdentifier) -> dict[str, object]:
+        """The trees of a document as SVG, and by the key of each node in it where that stands in the text."""
+        path = convert.path(document.uri)
+        workspace = session.workspace_of(path)
+        if workspace is None:
+            raise Refused("this file is in none of the editor's folders")
+        from btq_lang.graph import draw  # as above
+        from btq_lang.graph.missions import figures, keyed
+
+        places = {
+            key: convert.range(workspace, path, node.node.head.span.shifted(node.entry.start)).start
+            for key, node in keyed(workspace, path)
+        }
+        return {"svg": draw(figures(workspace, path, with_qualities=True)), "nodes": places}

@@ -212,6 +212,25 @@ def test_the_xml_beside_follows_what_is_typed(code: Workbench) -> None:
     code.keys("Control+z")
 
 
+def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Workbench) -> None:
+    code.write("tree.btq", "BehaviorTree Main\n    ->\n        Dock satisfices safety\n        Charge\n")
+    code.open("tree.btq")
+    code.cursor(2, 5)
+    code.command("btq: Show Tree Beside")
+    frame = code.page.frame_locator("iframe.webview.ready").frame_locator("#active-frame")
+    box = frame.locator(".box", has_text="Dock")
+    box.wait_for(state="attached")
+    assert frame.locator(".note.quality", has_text="safety").count() == 1
+    frame.locator(".box.here", has_text="->").wait_for(state="attached")
+    frame.locator(".box", has_text="Charge").click()
+    code.at(4, 9)
+    frame.locator(".box.here", has_text="Charge").wait_for(state="attached")
+    code.keys("End")
+    code.type("Fully")
+    frame.locator(".box.here", has_text="ChargeFully").wait_for(state="attached")
+    code.save()
+
+
 def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
     code.settings(**{**ENVIRONMENT, "btq.buildOnSave": True})
     code.write("built.btq", "BehaviorTree Main\n    Dock\n")

@@ -7,6 +7,7 @@ import { ExecuteCommandRequest, LanguageClient, type Location, type Position, St
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
 import { runTask, Tasks } from "./tasks";
+import { TreeView } from "./treeView";
 import { type Ask, XmlView } from "./xml";
 
 let client: LanguageClient | undefined;
@@ -25,6 +26,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters });
   };
   const xml = new XmlView(context, ask);
+  const tree = new TreeView(context, ask);
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
   const restart = (): Promise<void> => (turn = turn.then(() => start(context, log, status)));
@@ -49,6 +51,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       await vscode.commands.executeCommand("editor.action.showReferences", vscode.Uri.parse(uri), here, found);
     }),
     vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
+    vscode.commands.registerCommand("btq.showTree", () => tree.show()),
+    vscode.commands.registerCommand("btq.saveTree", () => tree.save()),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
     vscode.commands.registerCommand("btq.copyNodePath", async () => {
       const editor = vscode.window.activeTextEditor;
