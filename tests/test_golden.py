@@ -1,6 +1,7 @@
 """The golden files: `golden/x.btq` is written as `golden/x.xml`, and what the export says of it is `golden/x.remarks`.
 
-A file whose name ends in `_verbatim` is written verbatim.  `pytest --update` writes what is written today: read the
+What its requirements add is in it, and how each clause that is to be enforced is held is in the remarks.  A file whose
+name ends in `_verbatim` is written verbatim.  `pytest --update` writes what is written today: read the
 difference before it is committed.
 """
 
@@ -12,6 +13,7 @@ import pytest
 from lxml import etree
 
 from btq_lang.btcpp.document import write
+from btq_lang.btcpp.enforcement import Enforcement, enforced
 from btq_lang.btcpp.export import export
 from btq_lang.text import LineIndex
 from btq_lang.workspace import Workspace
@@ -26,12 +28,21 @@ def test_a_file_is_written_as_its_golden_file(path: Path, update: bool) -> None:
         text = file.read()
     # The files of the folder are one project: some include others.
     workspace = Workspace.of({other.name: other.read_text(encoding="utf-8") for other in SOURCES} | {path.name: text})
-    done = export(workspace, path.name, verbatim=path.stem.endswith("_verbatim"))
+    is_verbatim = path.stem.endswith("_verbatim")
+    done = export(workspace, path.name, verbatim=is_verbatim)
+    enforcement = Enforcement(done, ()) if is_verbatim else enforced(workspace, path.name, done)
+    done = enforcement.export
     lines = LineIndex(text)
     remarks = [
         f"{lines.position(remark.span.start).line + 1}: {kind}: {remark.message}"
         for kind, found in (("repair", done.repairs), ("problem", done.problems))
         for remark in found
+    ]
+    remarks += [
+        f"{each.requirement}: {each.way}: {each.clause}{f': {each.why}' if each.why else ''}"
+        for applied in enforcement.held
+        for each in applied
+        if each.asked
     ]
     xml = write(done.document)
     if not done.problems:

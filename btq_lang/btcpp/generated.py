@@ -8,12 +8,13 @@ from __future__ import annotations
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated_mark, own_description
 from btq_lang.btcpp.version3 import Change
+from btq_lang.btcpp.wrappers import MARK, MOVED, unwrapped
 from btq_lang.text import Span
 
 
 def may_be_generated(text: str) -> bool:
     """Whether XML can hold a mark at all: most does not, and need not be looked through."""
-    return DESCRIPTION_MARK in text or "by btq" in text
+    return DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text
 
 
 def without_generated(document: Document, changes: list[Change]) -> None:
@@ -26,11 +27,29 @@ def without_generated(document: Document, changes: list[Change]) -> None:
     stack = [document.root]
     while stack:
         element = stack.pop()
+        _take_out(element, changes)
         stack += element.elements
         for index, attribute in enumerate(element.attributes):
             if attribute.name == "_description" and DESCRIPTION_MARK in attribute.raw:
                 _cut(element, index, changes)
                 break
+
+
+def _take_out(parent: Element, changes: list[Change]) -> None:
+    """What enforces a requirement, among the children of an element; what is in it comes up."""
+    index = 0
+    while index < len(parent.children):
+        child = parent.children[index]
+        if not isinstance(child, Element) or child.get(MARK) is None:
+            index += 1
+            continue
+        inside = unwrapped(child)
+        if inside is None:  # now it is somebody's
+            child.attributes[:] = [each for each in child.attributes if each.name not in (MARK, MOVED)]
+            continue
+        what = f"<{child.tag}> `{child.get('name')}`, which a build put there, is left out"
+        changes.append(Change(Span(child.start + 1, child.start + 1 + len(child.tag)), what))
+        parent.children[index : index + 1] = inside
 
 
 def _cut(element: Element, index: int, changes: list[Change]) -> None:

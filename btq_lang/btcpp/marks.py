@@ -25,9 +25,13 @@ def generated_mark(source: str) -> str:
     return f"{_BEGIN}{source.replace('--', '- -')}{_END}"
 
 
+# The text of a comment in a file with nodes that enforce requirements.
+GUARDS_NOTE: Final = " Nodes with _btq enforce requirements: at tick rate, so they are no safety function. "
+
+
 def is_generated_mark(comment: str) -> bool:
-    """Whether the text of a comment is the mark of a generated file."""
-    return comment.startswith(_BEGIN) and comment.endswith(_END)
+    """Whether the text of a comment is the mark of a generated file, or the note on what enforces."""
+    return comment == GUARDS_NOTE or (comment.startswith(_BEGIN) and comment.endswith(_END))
 
 
 def is_generated(xml: str) -> bool:

@@ -11,7 +11,9 @@ import posixpath
 from collections.abc import Iterator, Mapping
 
 from btq_lang.btcpp.document import Document, Element
+from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
+from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
 from btq_lang.record import record
 from btq_lang.requirements import requirements
@@ -43,6 +45,7 @@ class Built:
         text: what is in it.
         documents: the mission's and those of all that it includes, included ones first; a bundle is one.
         elements: of every node in them, by `id(node)`.
+        held: how the clauses of what is applied are held, in its order; empty where nothing is enforced.
     """
 
     path: str
@@ -50,6 +53,7 @@ class Built:
     text: str
     documents: tuple[Document, ...]
     elements: Mapping[int, Element]
+    held: tuple[tuple[Held, ...], ...] = ()
 
 
 def side_path(xml: str) -> str:
@@ -86,7 +90,10 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             "main_tree": main,
             "signals": [_plain(signal, place) for signal in found.signals.values()],
             "requirements": [_plain(each, place) for each in found.all.values()],
-            "applied": [_applied(each, running, place) for each in found.applied],
+            "applied": [
+                _applied(each, built.held[index] if built.held else (), running, place)
+                for index, each in enumerate(found.applied)
+            ],
             "traces": [
                 {"requirement": each.requirement, "nodes": running.uids(Target(each.node))} for each in found.traces
             ],
@@ -160,10 +167,12 @@ class _Running:
 
 def _node(instance: Instance, node: SourceNode | None, place: _Places) -> Json:
     found: dict[str, Json] = {"uid": instance.uid, "path": instance.path}
+    if (generated := instance.element.get(MARK)) is not None:
+        found["enforces"] = generated
     return {**found, **place.of(node.place)} if node is not None else found
 
 
-def _applied(applied: Applied, running: _Running, place: _Places) -> Json:
+def _applied(applied: Applied, held: tuple[Held, ...], running: _Running, place: _Places) -> Json:
     subject = applied.subject
     found: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
     if applied.arguments:
@@ -175,6 +184,10 @@ def _applied(applied: Applied, running: _Running, place: _Places) -> Json:
         found["subject"] = _plain(subject, place)
         if applied.node is not None:
             found["nodes"] = running.uids(Target(applied.node))
+    if held:
+        found["clauses"] = [
+            {"clause": each.clause, "held": each.way, **({"why": each.why} if each.why else {})} for each in held
+        ]
     return found
 
 

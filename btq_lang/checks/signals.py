@@ -11,6 +11,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.near import near
 from btq_lang.requirements.model import Signal, SourceNode
+from btq_lang.requirements.reading import signals_in
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Pair, Port, Tree
@@ -80,26 +81,8 @@ def _guards(demanded: Demanded) -> Iterator[tuple[tuple[Signal, ...], Place]]:
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may hold for many nodes
         if key not in known:
-            known[key] = tuple({each.name: each for each in _signals(parts)}.values())
+            known[key] = tuple({each.name: each for each in signals_in(parts)}.values())
         yield known[key], place
-
-
-def _signals(part: object) -> Iterator[Signal]:
-    """The signals in a condition; a context is looked into once."""
-    waiting = [part]
-    contexts: set[int] = set()
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, Signal):
-            yield part
-        elif isinstance(part, tuple):
-            waiting += reversed(part)
-        elif part is not None and type(part).__module__ == Signal.__module__ and not isinstance(part, SourceNode):
-            if id(part) in contexts:
-                continue
-            contexts.add(id(part))
-            fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every record has them
-            waiting += [getattr(part, field) for field in reversed(fields)]
 
 
 def _written(view: View, nodes: tuple[SourceNode, ...]) -> frozenset[str]:

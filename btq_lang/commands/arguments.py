@@ -104,9 +104,13 @@ def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("-o", "--output", metavar="FOLDER", help="where to write; default: beside the missions")
     parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it includes")
     parser.add_argument("--target", choices=TARGETS, help="the engine's version; default: the project's newest")
+    parser.add_argument(
+        "--no-enforce", action="store_true", help="the plain tree: nothing around nodes for requirements"
+    )
     parser.add_argument("--verbatim", action="store_true", help="exactly what the file says: nothing mended or added")
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
     parser.add_argument("--force", action="store_true", help="write over XML that btq did not make")
+    parser.add_argument("--verbose", action="store_true", help="tell of every clause how it is held")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
     _add_color(parser)
 

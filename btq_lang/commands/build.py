@@ -9,17 +9,20 @@ from collections.abc import Iterator
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import Comment, Document, write
+from btq_lang.btcpp.enforcement import Enforcement, Held, enforced
 from btq_lang.btcpp.export import Export, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark, is_generated
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, usage_problem
+from btq_lang.diagnostics import Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.record import record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
+from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
 
@@ -87,7 +90,7 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
     ]
     told = 0
     for _, _, done in made:
-        told += _tell(done.problems, "error", groups)
+        told += _tell(done.export.problems, "error", groups)
     for twice in _same_place([(path, place) for path, place, _ in made]):
         print(f"btq build: {twice}", file=sys.stderr)
         told += 1
@@ -95,11 +98,12 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
         print("nothing was written", file=sys.stderr)
         return 1, watched
     for _, _, done in made:
-        _tell(done.repairs, "repaired", groups)
+        _tell(done.export.repairs, "repaired", groups)
+    _tell_clauses([done for _, _, done in made], groups, options.verbose)
     if STDIN in options.paths:
         for path, _, done in made:
             if path == files.stdin:
-                sys.stdout.write(_text(path, done.document, options))
+                sys.stdout.write(_text(path, done.export.document, options))
         return 0, watched
     exports = {path: done for path, _, done in made}
     outputs: list[Output] = []
@@ -160,6 +164,37 @@ def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> 
     return len(remarks)
 
 
+def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: bool) -> None:
+    """Print how the clauses of requirements are held: one by one those that are to be enforced and are not."""
+    clauses: dict[object, Held] = {}
+    for held in (held for done in made for applied in done.held for held in applied):
+        key = held.requirement, held.clause, held.place.path, held.place.span, id(held.node and held.node.node)
+        if key not in clauses or held.way == "enforced":  # what one file cannot enforce, another may
+            clauses[key] = held
+    for held in clauses.values():
+        if not verbose and (not held.asked or held.way == "enforced"):
+            continue
+        where = f" at {held.node.shown}" if held.node is not None else ""
+        way = "not enforced, monitored" if held.asked and held.way == "monitored" else held.way
+        why = f": {held.why}" if held.why else ""
+        remark = Remark(*_absolute(held.place, groups), f"{held.requirement}, `{held.clause}`{where}{why}")
+        _tell((remark,), way, groups)
+    if clauses:
+        counted = [
+            f"{sum(held.way == way for held in clauses.values())} {way}"
+            for way in ("enforced", "monitored", "reviewed")
+            if any(held.way == way for held in clauses.values())
+        ]
+        print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)
+
+
+def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
+    """The file of a place, and where it is in that."""
+    assert place.path is not None, "a clause stands in a file"
+    file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
+    return place.path, place.span.shifted(file.start_of(place.anchor)) if place.anchor is not None else place.span
+
+
 def _same_place(places: list[tuple[str, str]]) -> Iterator[str]:
     """Two files that would be written to one place: `a.btq` and `a.qualitybtcpp`."""
     known: dict[str, str] = {}
@@ -193,12 +228,16 @@ class _Places:
         return os.path.relpath(place, os.path.dirname(self.of(source))).replace(os.sep, "/")
 
 
-def _exported(group: Group, path: str, places: _Places, options: Namespace) -> Export:
+def _exported(group: Group, path: str, places: _Places, options: Namespace) -> Enforcement:
     workspace = group.workspace
     if options.bundle:
-        return bundle(workspace, path, verbatim=options.verbatim)
-    name = places.seen_from
-    return export(workspace, path, verbatim=options.verbatim, included_as=lambda to: name(path, to, workspace))
+        done = bundle(workspace, path, verbatim=options.verbatim)
+    else:
+        name = places.seen_from
+        done = export(workspace, path, verbatim=options.verbatim, included_as=lambda to: name(path, to, workspace))
+    if options.verbatim or options.no_enforce or done.problems:
+        return Enforcement(done, ())
+    return enforced(workspace, path, done, options.bundle)
 
 
 def _text(path: str, document: Document, options: Namespace) -> str:
@@ -208,10 +247,10 @@ def _text(path: str, document: Document, options: Namespace) -> str:
 
 
 def _outputs(
-    workspace: Workspace, path: str, places: _Places, exports: dict[str, Export], options: Namespace
+    workspace: Workspace, path: str, places: _Places, exports: dict[str, Enforcement], options: Namespace
 ) -> Iterator[Output]:
     """The XML of a mission, and its side file, where it says more than that."""
-    done = exports[path]
+    done = exports[path].export
     place = places.of(path)
     text = _text(path, done.document, options)
     yield Output(place, text, _old_text(place))
@@ -219,9 +258,12 @@ def _outputs(
         return
     parts: tuple[Export, ...] = (done,)
     if not options.bundle:  # XML that it includes is read as this language says it
-        parts = tuple(exports.get(each) or export(workspace, each) for each in workspace.closure(path))
+        parts = tuple(
+            exports[each].export if each in exports else export(workspace, each) for each in workspace.closure(path)
+        )
     elements = {key: element for part in parts for key, element in part.elements.items()}
-    side = side_file(workspace, Built(path, place, text, tuple(part.document for part in parts), elements))
+    documents = tuple(part.document for part in parts)
+    side = side_file(workspace, Built(path, place, text, documents, elements, exports[path].held))
     if side is not None:
         yield Output(side_path(place), side, _old_text(side_path(place)))
 

@@ -1,0 +1,219 @@
+"""Conditions and values as scripts of the engine, spelt so that 4.6, 4.8 and 4.10 take them alike.
+
+One invariant: a script that comes out of here compares what the condition compares, or nothing comes out: what no
+script can say is refused with a reason.  Every part stands in brackets and every number has a point: older engines bind
+`-` otherwise, refuse operators of different kinds beside each other, and give a variable the type of its first value.
+It does not know what the script is for, nor whether its variables exist.
+
+Source: the engines' own grammars, src/script_parser.cpp (4.9 and later) and scripting/operators.hpp (before).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from math import inf
+
+from btq_lang.requirements.model import (
+    Aggregate,
+    All,
+    Any,
+    Arithmetic,
+    Bounded,
+    Compare,
+    Condition,
+    Flag,
+    InContext,
+    Minus,
+    Not,
+    Number,
+    Read,
+    Running,
+    Script,
+    Signal,
+    Table,
+    Text,
+    Value,
+)
+from btq_lang.script import check_script, parse_script, variables
+from btq_lang.units import Unit, from_si
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+    # The variable that a value table is read into, when the node starts; it has the value in this unit, None: in SI.
+    Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
+
+
+class NoScript(Exception):
+    """No script of the engine says this; the text is the reason, to stand behind "because"."""
+
+
+def condition_script(condition: Condition, stored: Stored) -> str:
+    """A condition.
+
+    Raises:
+        NoScript: with the reason.
+    """
+    if isinstance(condition, All | Any):
+        operator = "&&" if isinstance(condition, All) else "||"
+        script = condition_script(condition.conditions[0], stored)
+        for each in condition.conditions[1:]:
+            script = f"({script} {operator} {condition_script(each, stored)})"
+            if len(script) > _LONGEST:  # contexts in contexts grow without bounds
+                raise NoScript("its script would be too long")
+        return script
+    if isinstance(condition, Not):
+        return f"(!{condition_script(condition.condition, stored)})"
+    if isinstance(condition, InContext):
+        return condition_script(condition.condition, stored)
+    if isinstance(condition, Compare):
+        return _comparison(condition, stored)
+    if isinstance(condition, Read):
+        return f"({signal_script(condition.signal)} == true)"
+    if isinstance(condition, Flag):
+        return f"(true == {condition.text})"
+    if isinstance(condition, Script):
+        return _own_script(condition)
+    if isinstance(condition, Running):
+        raise NoScript("no script knows which nodes run")
+    raise NoScript(f"`{condition.name}` has no value")
+
+
+def value_script(value: Bounded, unit: Unit | None, stored: Stored) -> str:
+    """A value in a unit; None: in SI.
+
+    Raises:
+        NoScript: with the reason.
+    """
+    return _number(value, unit, stored)
+
+
+def table_script(table: Table, spelt: Callable[[Bounded], str], stored: Stored) -> str:
+    """The value of the first case that holds.
+
+    Args:
+        spelt: how a value is written.
+
+    Raises:
+        NoScript: with the reason.
+    """
+    script = ""
+    for case in reversed(table.cases):
+        value = spelt(case.value)
+        script = f"({condition_script(case.condition, stored)} ? {value} : {script})" if case.condition else value
+    return script
+
+
+def signal_script(signal: Signal) -> str:
+    """The entry that a signal is read from: in the root blackboard, whatever tree asks.
+
+    Raises:
+        NoScript: scripts cannot name it.
+    """
+    key = (signal.key or "").removeprefix("@")
+    if signal.key is None:
+        raise NoScript(f"`{signal.name}` names no blackboard entry")
+    if not _NAME.fullmatch(key):
+        raise NoScript(f"`{signal.name}` is read from `{key}`, which is no name in a script")
+    return f"@{key}"
+
+
+def first_value_script(signal: Signal) -> str:
+    """What a signal has before its first sample.
+
+    Raises:
+        NoScript: with the reason.
+    """
+    assert signal.initially is not None, "asked only of signals that have one"
+    return _number(signal.initially, signal.unit, _none_stored)
+
+
+def real(value: float) -> str:
+    """A number, as every version reads it."""
+    if not -inf < value < inf:
+        raise NoScript("a number has no end")
+    text = repr(abs(value))
+    if "e" in text:
+        from decimal import Decimal
+
+        text = format(Decimal(text), "f")
+    text = text if "." in text else f"{text}.0"
+    return f"(-{text})" if value < 0 else text
+
+
+def _comparison(compare: Compare, stored: Stored) -> str:
+    """`a < b`, `a < b < c`: in the signals' own unit where they have one and nothing is calculated, else in SI."""
+    signals = [operand.signal for operand in compare.operands if isinstance(operand, Read)]
+    units = {signal.unit for signal in signals}
+    plain = all(isinstance(operand, Read | Value | Table | Flag | Text) for operand in compare.operands)
+    unit = signals[0].unit if plain and len(units) == 1 else None
+    written = [_number(operand, unit, stored) for operand in compare.operands]
+    script = ""
+    for operator, left, right in zip(compare.operators, written, written[1:], strict=False):
+        pair = f"({left} {operator} {right})"
+        script = f"({script} && {pair})" if script else pair
+    return script
+
+
+def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
+    """A value in a unit; None: in SI."""
+    if isinstance(number, Value):
+        return real(from_si(number.si, unit) if unit is not None else number.si)
+    if isinstance(number, Flag):
+        return number.text
+    if isinstance(number, Text):
+        return _text(number.value)
+    if isinstance(number, Read):
+        return _read(number.signal, unit)
+    if isinstance(number, Minus):
+        return f"(-{_number(number.operand, unit, stored)})"
+    if isinstance(number, Arithmetic):
+        left, right = (_number(part, unit, stored) for part in (number.left, number.right))
+        return f"({left} {number.operator} {right})"
+    if isinstance(number, Table):
+        return stored(number, unit)
+    if isinstance(number, Aggregate):
+        raise NoScript(f"no script knows the samples behind `{number.function}({number.signal.name})`")
+    raise NoScript(f"`{number.name}` has no value")
+
+
+def _read(signal: Signal, unit: Unit | None) -> str:
+    key = signal_script(signal)
+    own = signal.unit
+    if signal.sort != "number" or own is None or own == unit:
+        return key
+    if unit is not None:  # of another signal's unit, the same dimension
+        return _scaled(_scaled(key, own.factor, own.offset), 1 / unit.factor, -unit.offset / unit.factor)
+    return _scaled(key, own.factor, own.offset)
+
+
+def _scaled(script: str, factor: float, offset: float) -> str:
+    if factor != 1.0:
+        script = f"({script} * {real(factor)})"
+    return f"({script} + {real(offset)})" if offset else script
+
+
+def _text(text: str) -> str:
+    if "'" in text or not text.isascii():
+        raise NoScript("a text in a script has no quote in it, and in older engines ASCII only")
+    return f"'{text}'"
+
+
+def _own_script(script: Script) -> str:
+    """A script in a classic description: one expression that changes nothing, and means the same everywhere."""
+    parsed = parse_script(script.code)
+    if check_script(parsed, expects_value=True) or len(parsed.statements) != 1:
+        raise NoScript("its script is not one expression that every version of the engine reads alike")
+    if any(each.writes for each in variables(parsed)):
+        raise NoScript("its script changes something")
+    return f"({script.code.strip().rstrip(';').strip()})"
+
+
+def _none_stored(_table: Table, _unit: Unit | None) -> str:
+    raise NoScript("a first value is one value")
+
+
+_LONGEST: Final = 10_000
+_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

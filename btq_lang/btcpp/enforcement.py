@@ -1,0 +1,321 @@
+"""What requirements with `on violation fail` and `halt` add to the XML, and what of each clause the engine enforces.
+
+One invariant: without what is added, marked as `wrappers` marks it, the XML is the export's; and a clause that is not
+enforced has a reason.  An included file is a part of several missions, so what stands around its nodes is what the
+requirements that it sees itself ask for, and it is the mission's own file that gives the variables of all of them their
+first values.  It does not judge whether a clause makes sense: that is for `checks`.
+
+    btq_init   a Sequence around the main tree's root: first values, the mission, and whether it was to be halted
+    btq_stop   a ReactiveSequence in it, where a clause halts: ends the mission at the tick after
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
+from btq_lang.btcpp.document import Comment, Document, Element
+from btq_lang.btcpp.export import Export, is_mission
+from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
+from btq_lang.btcpp.keys import Keys
+from btq_lang.btcpp.marks import GUARDS_NOTE
+from btq_lang.btcpp.wrappers import START, Leaf, Wrapper, may_be_skipped, wrapped
+from btq_lang.diagnostics import Place
+from btq_lang.record import record, replace
+from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.budgets import Budget, Budgets
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Target
+from btq_lang.symbols import Kind
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
+
+    Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
+
+
+@record
+class Held:
+    """How a clause is held.
+
+    Attributes:
+        requirement: its name.
+        clause: as typed.
+        place: of the clause.
+        node: that it holds for; None where that is no node.
+        way: by the engine, by looking at logs, or by people.
+        why: why no more is done about it, or what of it is not enforced; empty where there is nothing to say.
+        asked: it is to be enforced.
+    """
+
+    requirement: str
+    clause: str
+    place: Place
+    node: SourceNode | None
+    way: Way
+    why: str = ""
+    asked: bool = False
+
+
+@record
+class Enforcement:
+    """A file with what its requirements add to it.
+
+    Attributes:
+        held: for each of `requirements(…).applied`, in its order, its clauses.
+    """
+
+    export: Export
+    held: tuple[tuple[Held, ...], ...]
+
+
+@record
+class _Plan:
+    """What is to stand around the nodes of some files.
+
+    Attributes:
+        wrappers: by `id(node)` of the syntax.
+        enforced: what a clause, a node and arguments are known by, for the files that include these.
+        first: the statements that a mission begins with.
+        stops: the entries that halt it.
+    """
+
+    held: tuple[tuple[Held, ...], ...]
+    wrappers: Mapping[int, tuple[Wrapper, ...]]
+    enforced: Mapping[object, Held]
+    first: Mapping[str, str]
+    stops: tuple[str, ...]
+
+
+def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = False) -> Enforcement:
+    """A file's export, changed in place, with what its requirements add.
+
+    Args:
+        bundled: all that the file includes is in the export.
+    """
+    if not _has_requirements(workspace, path):
+        return Enforcement(export, ())
+    found = requirements(workspace, path)
+    closure = workspace.closure(path)
+    files = frozenset(closure) if bundled else frozenset((path,))
+    others = [
+        _plan(workspace, requirements(workspace, each), each, frozenset((each,)), ())
+        for each in closure
+        if each not in files and is_mission(workspace, each)
+    ]
+    plan = _plan(workspace, found, path, files, others)
+    wrappers = dict(plan.wrappers)
+    if _begins(workspace, found, path, files):
+        assert found.mission is not None, "there is a mission that begins"
+        start = _start([plan, *others])
+        if start:
+            key = id(found.mission.node)
+            wrappers[key] = (*start, *wrappers.get(key, ()))
+    document = export.document
+    if wrappers:
+        _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
+        document = Document([Comment(GUARDS_NOTE), *document.contents])
+    return Enforcement(replace(export, document=document), plan.held)
+
+
+def _has_requirements(workspace: Workspace, path: str) -> bool:
+    """Whether it is worth to look at requirements at all: most files have none."""
+    return any(True for _ in workspace.scope(path).names(Kind.REQUIREMENT))
+
+
+def _begins(workspace: Workspace, found: Requirements, path: str, files: frozenset[str]) -> bool:
+    """Whether the mission begins in one of these files."""
+    return found.mission is not None and found.mission.path in files and path not in workspace.included_files
+
+
+# ---- what is done about each clause ----
+
+
+def _plan(
+    workspace: Workspace, found: Requirements, path: str, files: frozenset[str], others: Sequence[_Plan]
+) -> _Plan:
+    """What is to stand around the nodes of some of the files that a file sees.
+
+    Args:
+        files: those that are written.
+        others: what is to stand around the nodes of the other files.
+    """
+    planner = _Planner(workspace, found, path, files, others)
+    held = tuple(
+        tuple([planner.held(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied
+    )
+    wrappers = {key: tuple(each) for key, each in planner.wrappers.items()}
+    return _Plan(held, wrappers, planner.enforced, planner.first, tuple(planner.stops))
+
+
+class _Planner:
+    def __init__(
+        self,
+        workspace: Workspace,
+        found: Requirements,
+        path: str,
+        files: frozenset[str],
+        others: Sequence[_Plan],
+    ) -> None:
+        self.wrappers: Final[dict[int, list[Wrapper]]] = {}
+        self.enforced: Final[dict[object, Held]] = {}
+        self.first: Final[dict[str, str]] = {}
+        self.stops: Final[dict[str, None]] = {}
+        self._workspace: Final = workspace
+        self._found: Final = found
+        self._files: Final = files
+        self._others: Final = others
+        self._shared: Final = path in workspace.included_files
+        self._has_start: Final = self._shared or _begins(workspace, found, path, files)
+        self._keys: Final = Keys()
+        self._budgets: Budgets | None = None
+
+    def held(self, applied: Applied, claim: Claim) -> Held:
+        """What is done about a clause; what it needs is remembered."""
+        requirement = applied.requirement
+        held = Held(requirement.name, claim.text, claim.place, applied.node, "monitored")
+        if requirement.method in ("review", "test", "analysis"):
+            return replace(held, way="reviewed", why=f"verified by {requirement.method}")
+        if requirement.action not in ("fail", "halt"):
+            return held
+        held = replace(held, asked=True)
+        try:
+            node = self._node(applied)
+            identity = (requirement.name, claim.text, id(node.node), applied.arguments)
+            known = self.enforced.get(identity)
+            if known is None and node.path not in self._files:
+                known = next((each for other in self._others if (each := other.enforced.get(identity))), None)
+                if known is None:
+                    raise NotEnforced(_where_else(self._workspace, node))
+            if known is None:
+                known = replace(held, way="enforced", why=self._guard(requirement, claim, node))
+                self.enforced[identity] = known
+        except NotEnforced as reason:
+            return replace(held, why=str(reason))
+        return known
+
+    def _node(self, applied: Applied) -> SourceNode:
+        requirement, subject = applied.requirement, applied.subject
+        if requirement.odds is not None:
+            raise NotEnforced("odds are judged over many runs")
+        if requirement.window is not None:
+            raise NotEnforced("a window is looked at in the logs of many runs")
+        if isinstance(subject, Target) and subject.through:
+            raise NotEnforced("its path names some instances of a node only")
+        if not isinstance(subject, Target | Mission):
+            raise NotEnforced("it is about the time between nodes, and nothing stands around that")
+        if subject.node is None:
+            raise NotEnforced("nobody can say which tree is the mission")
+        return subject.node
+
+    def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
+        """Remember what a clause needs; what of it is not enforced.
+
+        Raises:
+            NotEnforced: the engine cannot do it.
+        """
+        name = self._keys.next(requirement.name)
+        made = guarded(requirement, claim, node, name, self._keys.stop(requirement.name), self._shared)
+        self._can_stand(claim, node, made)
+        first = dict(made.cells)
+        for signal in made.signals:
+            first |= _first_value(signal)
+        if (first or made.stop) and not self._has_start:
+            raise NotEnforced("nobody can say which tree is the mission, and where it begins")
+        if made.stop is not None and not self._shared:
+            assert self._found.mission is not None, "there is a mission that begins"
+            _can_stand_around(self._found.mission, self._budget_of(self._found.mission).skip is not None)
+        self._keys.take(name)
+        self.first.update(first)
+        if made.stop is not None:
+            self.stops[made.stop] = None
+        for each, wrapper in made.wrappers:
+            self.wrappers.setdefault(id(each.node), []).append(wrapper)
+        return made.note
+
+    def _can_stand(self, claim: Claim, node: SourceNode, made: Guarded) -> None:
+        if claim.verb in ("takes", "succeeds") and claim.limit is not None and not self._budget_of(node).waits:
+            raise NotEnforced(f"{node.shown} completes within one tick")
+        for each in dict.fromkeys(each for each, _ in made.wrappers):
+            if each.path not in self._files:
+                raise NotEnforced(_where_else(self._workspace, each))
+            _can_stand_around(each, self._budget_of(each).skip is not None)
+
+    def _budget_of(self, node: SourceNode) -> Budget:
+        if self._budgets is None:
+            self._budgets = Budgets(self._found)
+        return self._budgets.composed(node)
+
+
+def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
+    """Whether the tree stays as it is with something around a node.
+
+    Raises:
+        NotEnforced: it does not.
+    """
+    if is_skipped_inside:
+        raise NotEnforced(f"{node.shown} may be skipped from within, and what stands around it could not be")
+    names = [pair.key.text for pair in node.node.attributes]
+    if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
+        raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
+
+
+def _first_value(signal: Signal) -> dict[str, str]:
+    if signal.initially is None:
+        return {}
+    try:
+        return {signal_script(signal): first_value_script(signal)}
+    except NoScript as reason:
+        raise NotEnforced(str(reason)) from reason
+
+
+def _where_else(workspace: Workspace, node: SourceNode) -> str:
+    if workspace.files[node.path].origin is not None:
+        return f"{node.shown} stands in an XML file, which is not built; with --bundle it is enforced"
+    return f"{node.shown} stands in an included file, which other missions may include; with --bundle it is enforced"
+
+
+# ---- what is put around nodes ----
+
+
+def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
+    """What stands around the mission; nothing where it has nothing to begin with."""
+    first: dict[str, str] = {}
+    stops: dict[str, None] = {}
+    for plan in plans:
+        first.update(plan.first)
+        stops.update(dict.fromkeys(plan.stops))
+    if not first and not stops:
+        return ()
+    statements = [*(f"{key} := {value}" for key, value in first.items()), *(f"{key} := false" for key in stops)]
+    script = Leaf("Script", "btq_first", "; ".join(statements))
+    if not stops:
+        return (Wrapper(START, _ALL, "Sequence", "btq_init", before=(script,)),)
+    code = ""
+    for key in stops:
+        one = f"({key} == false)"
+        code = f"({code} && {one})" if code else one
+    # The flags are set outside the reactive node, where they would be set back at every tick; the condition behind it
+    # catches what breaks in the tree's last tick.
+    behind = (Leaf("ScriptCondition", "btq_end", code),)
+    init = Wrapper(START, _ALL, "Sequence", "btq_init", before=(script,), behind=behind)
+    guard = (Leaf("ScriptCondition", "btq_go_on", code),)
+    return init, Wrapper(START, _ALL, "ReactiveSequence", "btq_stop", before=guard)
+
+
+def _put(document: Document, wrappers: Mapping[int, Sequence[Wrapper]]) -> None:
+    """Put wrappers around elements, by their `id`."""
+    stack = [document.root]
+    while stack:
+        parent = stack.pop()
+        for index, child in enumerate(parent.children):
+            if isinstance(child, Element):
+                stack.append(child)
+                around = wrappers.get(id(child))
+                if around:
+                    parent.children[index] = wrapped(child, around)
+
+
+_ALL: Final = "*"
+_POSTCONDITIONS: Final = ("_onSuccess", "_onFailure", "_post")

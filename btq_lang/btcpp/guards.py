@@ -1,0 +1,375 @@
+"""What the engine is made to do about a clause: the wrappers around nodes, or why there are none.
+
+One invariant: a clause is said to be enforced if and only if wrappers come out for it that a test in `tests/engine` has
+seen at work, or the engine does by itself what it asks.  It does not know elements, nor what other clauses ask for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btq_lang.btcpp.conditions import NoScript, condition_script, real, signal_script, table_script, value_script
+from btq_lang.btcpp.keys import legal
+from btq_lang.btcpp.wrappers import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
+from btq_lang.record import record, replace
+from btq_lang.requirements.model import (
+    Bounded,
+    Claim,
+    Condition,
+    Limit,
+    Mission,
+    Requirement,
+    Signal,
+    SourceNode,
+    Table,
+    Target,
+    Value,
+)
+from btq_lang.requirements.reading import signals_in
+from btq_lang.units import Unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+class NotEnforced(Exception):
+    """No wrapper makes the engine do what a clause asks; the text is the reason, to stand behind "because"."""
+
+
+@record
+class Guarded:
+    """What stands around nodes for a clause.
+
+    Attributes:
+        wrappers: each with its node, in the order from the outside in.
+        cells: the entries of the root blackboard that the mission begins with, each with its first value.
+        signals: what its scripts read.
+        stop: the entry that halts the mission; None: nothing does.
+        note: what of the clause is not enforced.
+    """
+
+    wrappers: tuple[tuple[SourceNode, Wrapper], ...]
+    cells: tuple[tuple[str, str], ...]
+    signals: tuple[Signal, ...]
+    stop: str | None
+    note: str = ""
+
+
+def guarded(requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool) -> Guarded:
+    """What stands around a node for a clause that holds for it.
+
+    Args:
+        name: what the names of its nodes and entries begin with.
+        stop: the entry that halts the mission.
+        shared: the file of the node is a part of several missions.
+
+    Raises:
+        NotEnforced: the engine cannot do it.
+    """
+    draft = _Draft(requirement, claim, node, name, stop, shared)
+    try:
+        _BY_VERB[claim.verb](draft)
+        return draft.done()
+    except NoScript as reason:
+        raise NotEnforced(str(reason)) from reason
+
+
+class _Draft:
+    """The wrappers of a clause, while they are thought of."""
+
+    def __init__(
+        self, requirement: Requirement, claim: Claim, node: SourceNode, name: str, stop: str, shared: bool
+    ) -> None:
+        self.requirement: Final = requirement
+        self.claim: Final = claim
+        self.node: Final = node
+        self.name: Final = name
+        self.halts: Final = requirement.action == "halt"
+        self.stop: Final = stop
+        self.note = ""
+        self._shared: Final = shared
+        self._values: Final[list[str]] = []
+        self._wrappers: Final[list[tuple[SourceNode, Wrapper]]] = []
+        self._cells: Final[dict[str, str]] = {}
+
+    def done(self) -> Guarded:
+        wrappers = self._wrappers
+        if self._values:
+            script = Leaf("Script", f"{self.name}_start", "; ".join(self._values))
+            values = Wrapper(VALUES, self.requirement.name, "Sequence", f"{self.name}_values", before=(script,))
+            wrappers = [(self.node, values), *wrappers]
+        claim = self.claim
+        scopes = tuple(scope.condition for scope in self.requirement.scopes)
+        read = signals_in((claim.condition, claim.limit, claim.signal, scopes))
+        signals = tuple({signal.name: signal for signal in read}.values()) if wrappers else ()
+        return Guarded(
+            tuple(wrappers), tuple(self._cells.items()), signals, self.stop if self.halts else None, self.note
+        )
+
+    def around(
+        self,
+        rank: int,
+        tag: str,
+        what: str,
+        *,
+        attributes: tuple[tuple[str, str], ...] = (),
+        before: tuple[Leaf, ...] = (),
+        behind: tuple[Leaf, ...] = (),
+        node: SourceNode | None = None,
+    ) -> None:
+        """Something stands around the clause's node, or another one."""
+        wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)  # type: ignore[arg-type]  # one of three
+        self._wrappers.append((node or self.node, wrapper))
+
+    def condition(self, what: str, code: str) -> Leaf:
+        """A condition that breaks the clause where it fails."""
+        return Leaf("ScriptCondition", f"{self.name}_{what}", code, f"{self.stop} := true" if self.halts else None)
+
+    def script(self, condition: Condition) -> str:
+        return condition_script(condition, self.stored)
+
+    def at_start(self, what: str, script: str) -> str:
+        """A variable of the tree that has this value from the start of the node on."""
+        key = f"_{self.name}_{what}"
+        number = 1
+        while any(each.startswith(f"{key} :=") for each in self._values):
+            number += 1
+            key = f"_{self.name}_{what}_{number}"
+        self._values.append(f"{key} := {script}")
+        return key
+
+    def stored(self, table: Table, unit: Unit | None) -> str:
+        return self.at_start(
+            "value", table_script(table, lambda value: value_script(value, unit, self.stored), self.stored)
+        )
+
+    def cell(self, what: str, first: str, with_node: SourceNode | None = None) -> str:
+        """A variable that outlives the node: the tree's, if the node `with_node` above it in the tree gives it its
+        first value; else the mission's."""
+        if with_node is not None and _is_above(with_node, self.node):
+            return f"_{self.name}_{what}"
+        tree = f"_{legal(self.node.tree or '')}" if self._shared else ""
+        key = f"@{self.name}{tree}_{what}"
+        self._cells[key] = first
+        return key
+
+    def when(self) -> str | None:
+        """A variable that says whether the clause holds for this activation; None: it always does."""
+        scopes = self._scopes()
+        return self.at_start("when", scopes) if scopes is not None else None
+
+    def in_scope(self, script: str) -> str:
+        """A condition that need not hold outside the scope, asked when the node starts."""
+        scopes = self._scopes()
+        return script if scopes is None else f"((!{scopes}) || {script})"
+
+    def unscoped(self) -> None:
+        """The clause is one that a scope cannot be told of."""
+        if self.requirement.scopes:
+            raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is judged from the log only")
+
+    def _scopes(self) -> str | None:
+        script: str | None = None
+        for scope in self.requirement.scopes:
+            if scope.word == "while":
+                raise NotEnforced(f"whether an activation was within `{scope.text}` is known only when it is over")
+            one = self.script(scope.condition)
+            script = one if script is None else f"({script} && {one})"
+        return script
+
+
+# ---- verbs ----
+
+
+def _takes(draft: _Draft) -> None:
+    """`<Timeout msec="30000">X</Timeout>`: halted at the deadline, FAILURE."""
+    when = draft.when()
+    _limit(draft, _upper(draft), when)
+
+
+def _succeeds(draft: _Draft) -> None:
+    """A failure is one by itself; a Timeout makes one of being late."""
+    if draft.claim.limit is not None:
+        when = draft.when()
+        _limit(draft, _upper(draft), when)
+    elif not draft.halts:
+        draft.note = "its failure is one by itself"
+        return
+    else:
+        when = draft.when()
+    if draft.halts:
+        stop = draft.stop
+        failed = f"{stop} := true" if when is None else f"{stop} := ({stop} || {when})"
+        draft.around(INSIDE, "Sequence", "succeeds", attributes=(("_onFailure", failed),))
+
+
+def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
+    value = bound.value
+    milliseconds = (
+        _milliseconds(value) if not isinstance(value, Table) else table_script(value, _milliseconds, draft.stored)
+    )
+    if isinstance(value, Table) or when is not None:
+        chosen = milliseconds if when is None else f"({when} ? {milliseconds} : 0)"  # 0 is no limit to the engine
+        milliseconds = f"{{{draft.at_start('ms', chosen)}}}"
+    attributes: tuple[tuple[str, str], ...] = (("msec", milliseconds),)
+    if not draft.halts:
+        draft.around(LIMIT, "Timeout", "limit", attributes=attributes)
+        return
+    # A Timeout fails, too, when what is in it fails in time: only what is not done then was late.
+    done = draft.at_start("done", "false")
+    late = f"{draft.stop} := ({draft.stop} || (!{done}))"
+    draft.around(LIMIT, "Timeout", "limit", attributes=(*attributes, ("_onFailure", late)))
+    draft.around(LIMIT, "Sequence", "done", attributes=(("_post", f"{done} := true"),))
+
+
+def _milliseconds(value: Bounded) -> str:
+    if not isinstance(value, Value):
+        raise NotEnforced("a Timeout takes a whole number of milliseconds, and no signal's value")
+    whole = int(value.si * 1000 + 1e-6)
+    if not 0 < whole < 2**32:
+        raise NotEnforced(f"a Timeout cannot be set to `{value.text}`")
+    return str(whole)
+
+
+def _needs(draft: _Draft) -> None:
+    """`<Sequence><ScriptCondition code="φ"/>X</Sequence>`"""
+    code = draft.in_scope(draft.script(_condition(draft)))
+    draft.around(CONDITION, "Sequence", "needs", before=(draft.condition("check", code),))
+
+
+def _keeps(draft: _Draft) -> None:
+    """`<ReactiveSequence><ScriptCondition code="φ"/>X</ReactiveSequence>`: asked at every tick."""
+    code = draft.script(_condition(draft))
+    if draft.claim.verb == "never":
+        code = f"(!{code})"
+    for scope in reversed(draft.requirement.scopes):
+        script = draft.script(scope.condition)
+        code = f"((!{script if scope.word == 'while' else draft.at_start('when', script)}) || {code})"
+    draft.around(GUARD, "ReactiveSequence", draft.claim.verb, before=(draft.condition("guard", code),))
+
+
+def _leaves(draft: _Draft) -> None:
+    """`<Sequence>X<ScriptCondition code="φ"/></Sequence>`"""
+    code = draft.script(_condition(draft))
+    if (when := draft.when()) is not None:
+        code = f"((!{when}) || {code})"
+    draft.around(CHECK, "Sequence", "leaves", behind=(draft.condition("check", code),))
+
+
+def _uses(draft: _Draft) -> None:
+    """What the signal was at the start, and two conditions: while the node runs, and when it has succeeded."""
+    signal = draft.claim.signal
+    assert signal is not None, "the clause names one"
+    if signal.behaviour == "gauge":
+        raise NotEnforced(f"`{signal.name}` is neither a level nor a counter")
+    bound = _upper(draft)
+    unit = replace(signal.unit, offset=0.0) if signal.unit is not None else None
+    key = signal_script(signal)
+    before = draft.at_start("before", f"({key} + 0.0)")
+    used = f"({before} - {key})" if signal.behaviour == "level" else f"({key} - {before})"
+    code = f"({used} {bound.relation} {value_script(bound.value, unit, draft.stored)})"
+    if (when := draft.when()) is not None:
+        code = f"((!{when}) || {code})"
+    draft.around(CHECK, "Sequence", "used", behind=(draft.condition("check", code),))
+    draft.around(GUARD, "ReactiveSequence", "uses", before=(draft.condition("guard", code),))
+
+
+def _tries(draft: _Draft) -> None:
+    """A counter, set back when the node starts that it is counted in."""
+    draft.unscoped()
+    bound = _upper(draft)
+    per = draft.claim.per
+    holder = per.node if isinstance(per, Target) else None
+    if isinstance(per, Target) and per.through:
+        raise NotEnforced("it counts in some instances of a node only")
+    count = draft.cell("count", "0.0", holder)
+    most = value_script(bound.value, None, draft.stored)
+    code = f"(({count} + 1.0) {bound.relation} {most})"
+    draft.around(CONDITION, "Sequence", "tries", before=(draft.condition("check", code),))
+    counter = Leaf("Script", f"{draft.name}_counter", f"{count} := ({count} + 1.0)")
+    draft.around(INSIDE, "Sequence", "counted", before=(counter,))
+    if holder is not None:
+        back = Leaf("Script", f"{draft.name}_zero", f"{count} := {real(0.0)}")
+        draft.around(INSIDE, "Sequence", "per", before=(back,), node=holder)
+
+
+def _follows(draft: _Draft) -> None:
+    """A flag that the event sets and the start of the node takes away."""
+    draft.unscoped()
+    event = draft.claim.event
+    assert event is not None, "the clause names one"
+    subject = event.subject
+    if isinstance(subject, Mission) and event.happening == "starts":
+        draft.cell("seen", "true")
+    elif not isinstance(subject, Target) or event.happening not in _SEEN:
+        raise NotEnforced("the engine runs no script when that happens")
+    elif subject.through:
+        raise NotEnforced("it follows some instances of a node only")
+    first = "true" if isinstance(subject, Mission) else "false"
+    seen = draft.cell("seen", first)
+    draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
+    taken = Leaf("Script", f"{draft.name}_taken", f"{seen} := false")
+    draft.around(INSIDE, "Sequence", "started", before=(taken,))
+    if not isinstance(subject, Target):
+        return
+    attribute = _SEEN[event.happening]
+    note = f"{seen} := true"
+    if attribute is None:
+        draft.around(
+            INSIDE, "Sequence", "event", before=(Leaf("Script", f"{draft.name}_seen", note),), node=subject.node
+        )
+    else:
+        draft.around(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
+
+
+def _only_monitored(draft: _Draft) -> None:
+    raise NotEnforced("no node of the engine makes another one start in time")
+
+
+def _upper(draft: _Draft) -> Limit:
+    """The upper bound of a clause."""
+    limit = draft.claim.limit
+    assert limit is not None, "the clause has a bound"
+    if limit.relation in (">=", ">"):
+        raise NotEnforced("the engine can stop a node, and not make it do more")
+    if limit.upper is None:
+        return limit
+    draft.note = "its lower end is monitored"
+    return Limit("<=", limit.upper)
+
+
+def _condition(draft: _Draft) -> Condition:
+    assert draft.claim.condition is not None, "the clause has one"
+    return draft.claim.condition
+
+
+def _is_above(node: SourceNode, below: SourceNode) -> bool:
+    """Whether a node stands above another one in its tree."""
+    at = below.parent
+    while at is not None and at is not node:
+        at = at.parent
+    return at is node
+
+
+# What an event is noted by: a script of the node; None: a Script before it.
+_SEEN: Final[dict[str, str | None]] = {
+    "starts": None,
+    "succeeds": "_onSuccess",
+    "fails": "_onFailure",
+    "finishes": "_post",
+}
+_BY_VERB: Final[dict[str, Callable[[_Draft], None]]] = {
+    "takes": _takes,
+    "succeeds": _succeeds,
+    "needs": _needs,
+    "keeps": _keeps,
+    "never": _keeps,
+    "leaves": _leaves,
+    "uses": _uses,
+    "tries": _tries,
+    "follows": _follows,
+    "runs": _only_monitored,
+    "starts": _only_monitored,
+    "ends": _only_monitored,
+}

@@ -1,0 +1,62 @@
+"""Names for what a build generates: nodes, and entries of the blackboard.
+
+One invariant: no two clauses share a name, and an entry of the root blackboard has a name that no other file of the
+mission gives.  Names that the user's entries have are not known here: the underscore keeps away from them.
+
+    rq1_limit   a node          @rq1_stop   in the root blackboard         _rq1_done   in that of the tree
+
+An entry of one tree begins with `_`: `_autoremap` leaves such entries alone, so two SubTrees that run at once never
+share one.
+"""
+
+from __future__ import annotations
+
+import re
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+class Keys:
+    """The names that are taken."""
+
+    def __init__(self) -> None:
+        self._taken: Final[set[str]] = set()
+        self._stops: Final[dict[str, str]] = {}
+
+    def next(self, requirement: str) -> str:
+        """What the names of a clause's nodes and entries begin with; `take` makes it the clause's."""
+        plain = legal(requirement)
+        name = plain
+        number = 1
+        while name in self._taken:
+            number += 1
+            name = f"{plain}_{number}"
+        return name
+
+    def take(self, name: str) -> None:
+        """Nobody else gets it from now on."""
+        self._taken.add(name)
+
+    def stop(self, requirement: str) -> str:
+        """The entry that halts the mission for a requirement, wherever it is broken."""
+        known = self._stops.get(requirement)
+        if known is None:
+            plain = legal(requirement)
+            name = f"@{plain}_stop"
+            number = 1
+            while name in self._stops.values():
+                number += 1
+                name = f"@{plain}_{number}_stop"
+            known = self._stops[requirement] = name
+        return known
+
+
+def legal(name: str) -> str:
+    """A name with `_` for all that no script has in its names."""
+    plain = _OTHER.sub("_", name)
+    return f"_{plain}" if plain[:1].isdigit() else plain or "_"
+
+
+_OTHER: Final = re.compile(r"[^A-Za-z0-9_]")

@@ -1,0 +1,154 @@
+"""Elements around the element of a node, and how they are taken out again.
+
+One invariant: `unwrapped` is the inverse of `wrapped`, and knows what it needs from the elements alone: all that is put
+around a node carries the attribute `_btq`, with the requirement that asks for it, and the outermost element says which
+attributes it took from the node and where they stood.  It does not know why something is put around a node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btq_lang.btcpp.document import Attribute, Comment, Content, Element, escape
+from btq_lang.catalog.kinds import CATEGORIES
+from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, Literal, TypeAlias
+
+    Rank: TypeAlias = Literal[0, 1, 2, 3, 4, 5, 6]
+
+MARK: Final = "_btq"
+MOVED: Final = "_btq_moved"
+
+# From the outside in: what stands around the node of several requirements is ordered by this.
+START: Final = 0  # the beginning of the mission
+VALUES: Final = 1  # what is read when the node starts
+CONDITION: Final = 2  # what must hold when it starts
+CHECK: Final = 3  # what must hold when it has succeeded
+GUARD: Final = 4  # what must hold while it runs
+LIMIT: Final = 5
+INSIDE: Final = 6  # what notes that the node itself starts and ends
+
+
+@record
+class Leaf:
+    """A Script or a ScriptCondition beside a node.
+
+    Attributes:
+        failed: what is done when it fails: a script.
+    """
+
+    tag: Literal["Script", "ScriptCondition"]
+    name: str
+    code: str
+    failed: str | None = None
+
+
+@record
+class Wrapper:
+    """An element around a node.
+
+    Attributes:
+        rank: what is outside of what: one of the constants above.
+        requirement: who asks for it.
+        attributes: others than its name, values as they read.
+        before, behind: what stands in it beside the node.
+    """
+
+    rank: int
+    requirement: str
+    tag: Literal["Sequence", "ReactiveSequence", "Timeout"]
+    name: str
+    attributes: tuple[tuple[str, str], ...] = ()
+    before: tuple[Leaf, ...] = ()
+    behind: tuple[Leaf, ...] = ()
+
+
+def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
+    """The outermost of the elements around a node's, which loses its first conditions where it may be skipped.
+
+    Args:
+        wrappers: at least one, in the order of the definitions of the requirements.
+    """
+    ordered = sorted(wrappers, key=lambda wrapper: wrapper.rank)
+    moved = _moved(element)
+    made = element
+    for wrapper in reversed(ordered):
+        made = _around(made, wrapper)
+    if moved:
+        made.attributes.extend(attribute for _, attribute in moved)
+        said = " ".join(f"{attribute.name}:{index}" for index, attribute in moved)
+        made.attributes.append(Attribute(MOVED, said))
+    return made
+
+
+def may_be_skipped(names: Sequence[str]) -> bool:
+    """Whether a node with attributes of these names may be skipped by what they say."""
+    return "_skipIf" in names or "_while" in names
+
+
+def unwrapped(element: Element) -> list[Content] | None:
+    """What stands in a wrapper: the node as it was, with the comments around it, and no node for a Script or a
+    ScriptCondition that was put there; None: somebody has put another node there."""
+    nodes = _nodes(element)
+    if len(nodes) > 1:
+        return None
+    if nodes:
+        _give_back(element, _innermost(nodes[0]))
+    return [child for child in element.children if child in nodes or isinstance(child, Comment)]
+
+
+def _moved(element: Element) -> list[tuple[int, Attribute]]:
+    """The conditions that a node loses, with their places: where it may be skipped, what is around it must be."""
+    names = [attribute.name for attribute in element.attributes]
+    if not may_be_skipped(names):
+        return []
+    moved = [(index, each) for index, each in enumerate(element.attributes) if each.name in _PRECONDITIONS]
+    for index, _ in reversed(moved):
+        del element.attributes[index]
+    return moved
+
+
+def _around(element: Element, wrapper: Wrapper) -> Element:
+    mark = Attribute(MARK, escape(wrapper.requirement))
+    inside = element
+    if wrapper.tag == "ReactiveSequence" and element.tag in CATEGORIES and element.tag != "SubTree":
+        # The engine refuses an explicit form directly in a ReactiveSequence.
+        inside = Element("Sequence", [Attribute("name", f"{wrapper.name}_node"), mark], [element])
+    attributes = [Attribute("name", escape(wrapper.name))]
+    attributes += [Attribute(name, escape(value)) for name, value in wrapper.attributes]
+    before, behind = ([_leaf(leaf, mark) for leaf in leaves] for leaves in (wrapper.before, wrapper.behind))
+    return Element(wrapper.tag, [*attributes, mark], [*before, inside, *behind])
+
+
+def _leaf(leaf: Leaf, mark: Attribute) -> Element:
+    attributes = [Attribute("name", escape(leaf.name)), Attribute("code", escape(leaf.code))]
+    if leaf.failed is not None:
+        attributes.append(Attribute("_onFailure", escape(leaf.failed)))
+    return Element(leaf.tag, [*attributes, mark])
+
+
+def _innermost(element: Element) -> Element:
+    """The node itself, in what is around it."""
+    while element.get(MARK) is not None and len(inside := _nodes(element)) == 1:
+        element = inside[0]
+    return element
+
+
+def _nodes(element: Element) -> list[Element]:
+    """The children that are nodes, or stand around one."""
+    return [child for child in element.elements if child.get(MARK) is None or any(child.elements)]
+
+
+def _give_back(outermost: Element, node: Element) -> None:
+    moved = outermost.get(MOVED) or ""
+    own = {attribute.name: attribute for attribute in outermost.attributes}
+    for said in moved.split():
+        name, _, index = said.partition(":")
+        if name in own and index.isdecimal() and node.get(name) is None:
+            node.attributes.insert(int(index), own[name])
+
+
+_PRECONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")

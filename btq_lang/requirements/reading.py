@@ -1,0 +1,26 @@
+"""Which signals a part of a requirement reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.requirements.model import Signal, SourceNode
+
+
+def signals_in(part: object) -> Iterator[Signal]:
+    """The signals in a condition, a bound or any other part of the model, or in a tuple of such; a context is looked
+    into once."""
+    waiting = [part]
+    contexts: set[int] = set()
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Signal):
+            yield part
+        elif isinstance(part, tuple):
+            waiting += reversed(part)
+        elif part is not None and type(part).__module__ == Signal.__module__ and not isinstance(part, SourceNode):
+            if id(part) in contexts:
+                continue
+            contexts.add(id(part))
+            fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every record has them
+            waiting += [getattr(part, field) for field in reversed(fields)]

@@ -1,0 +1,495 @@
+"""What a build puts around nodes, at work: a node that breaks the bound makes the tree fail, and one that keeps it
+leaves the tree as it is without.
+
+Each case is ticked in four ways: the plain tree and the tree with guards, with parts that break the bound and with
+parts that keep it.  Broken, the plain tree succeeds, so that what fails is the guard and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pytest
+from engine_loader import Answer, Engine, job
+
+from btq_lang.btcpp.document import write
+from btq_lang.btcpp.enforcement import enforced
+from btq_lang.btcpp.export import export
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.workspace import Workspace
+
+Parts = Mapping[str, Sequence[Any]]
+
+MOVE_THEN_REST = """
+Root Main
+BehaviorTree Main
+    ->
+        Move
+        Rest
+"""
+
+# The failure of Move is swallowed: only what halts the mission is seen at its root.
+SWALLOWED = """
+Root Main
+BehaviorTree Main
+    ->
+        Fallback
+            Move
+            Plan_B
+        Rest
+"""
+
+
+def step(status: str, **write: object) -> dict[str, object]:
+    return {"status": status, "write": write}
+
+
+def plain(text: str) -> str:
+    return write(export(Workspace.of({"main.btq": text}), "main.btq").document)
+
+
+def guarded(text: str) -> str:
+    """The XML with what its requirements add; each of their clauses is said to be enforced."""
+    workspace = Workspace.of({"main.btq": text})
+    assert problems(workspace) == []
+    done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
+    assert {(held.way, held.why) for applied in done.held for held in applied} == {("enforced", "")}
+    return write(done.export.document)
+
+
+def problems(workspace: Workspace) -> list[Diagnostic]:
+    return [each for file in workspace.files.values() for each in file.parsed.diagnostics]
+
+
+def run(engine: Engine, xml: str, parts: Parts, **what: Any) -> Answer:
+    return run_all(engine, [xml], parts, **what)[0]
+
+
+def run_all(engine: Engine, xmls: Sequence[str], parts: Parts, **what: Any) -> list[Answer]:
+    """What some trees do with the same parts; a part of which nothing is said takes two ticks."""
+    answers = engine.run(job(xml, parts=parts, ticks=200, **{"tick_ms": 1, "seconds": 20, **what}) for xml in xmls)
+    assert {(answer.stage, answer.crashed, answer.error) for answer in answers} == {("done", 0, "")}
+    return answers
+
+
+def assert_fails(engine: Engine, text: str, parts: Parts, **what: Any) -> Answer:
+    """The tree fails because of its guards, and of nothing else."""
+    before, after = run_all(engine, [plain(text), guarded(text)], parts, **what)
+    assert (before.status, after.status) == ("SUCCESS", "FAILURE")
+    return after
+
+
+def assert_unchanged(engine: Engine, text: str, parts: Parts, names: Sequence[str] = ("Move",), **what: Any) -> None:
+    """The tree ends as it does without its guards, in the same tick, and its nodes go through the same."""
+    before, after = run_all(engine, [plain(text), guarded(text)], parts, **what)
+    assert (after.status, after.ticks) == (before.status, before.ticks)
+    for name in names:
+        assert after.statuses(name) == before.statuses(name)
+
+
+SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
+BATTERY = "signal battery : % from {battery} level initially 80 %\n"
+ENERGY = "signal energy : Wh from {energy} counter initially 0 Wh\n"
+PEOPLE = "signal people : person from {people} initially 0 person\ncontext near : people > 0 person\n"
+
+SLOW: Parts = {"Move": ["RUNNING"] * 60 + ["SUCCESS"]}
+QUICK: Parts = {"Move": ["RUNNING", "SUCCESS"]}
+
+# Clauses of Move, with the signals they need, parts that break them and parts that keep them.
+CASES: dict[str, tuple[str, str, Parts, Parts]] = {
+    "takes": ("", "takes at most 20 ms", SLOW, QUICK),
+    "less": ("", "takes less than 20 ms", SLOW, QUICK),
+    "succeeds": ("", "succeeds within 20 ms", SLOW, QUICK),
+    "takes_table": (
+        PEOPLE,
+        "takes at most 10 min if near else 20 ms",
+        SLOW,
+        QUICK,
+    ),
+    "takes_table_other_case": (
+        PEOPLE.replace("initially 0", "initially 1"),
+        "takes at most 20 ms if near, 1 h if not near else 2 h",
+        SLOW,
+        QUICK,
+    ),
+    "takes_when": (PEOPLE.replace("initially 0", "initially 1"), "takes at most 20 ms\n    when near", SLOW, QUICK),
+    "needs": (
+        BATTERY,
+        "needs battery >= 20 %",
+        {"First": [step("SUCCESS", battery=19.0)]},
+        {"First": [step("SUCCESS", battery=20.0)]},
+    ),
+    "needs_when": (
+        BATTERY + PEOPLE,
+        "needs battery >= 20 %\n    when near",
+        {"First": [step("SUCCESS", battery=19.0, people=1.0)]},
+        {"First": [step("SUCCESS", battery=19.0)]},
+    ),
+    "keeps": (
+        SPEED,
+        "keeps speed <= 900 m/h",
+        {"Move": ["RUNNING", step("RUNNING", speed=0.26), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", speed=0.24), "RUNNING", "SUCCESS"]},
+    ),
+    "keeps_chain": (
+        SPEED,
+        "keeps -1 m/s < speed <= 2 m/s",
+        {"Move": ["RUNNING", step("RUNNING", speed=-1.0), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", speed=2.0), "RUNNING", "SUCCESS"]},
+    ),
+    "keeps_while": (
+        SPEED + PEOPLE,
+        "keeps speed <= 0.25 m/s\n    while near",
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=2.0), "RUNNING", "SUCCESS"]},
+        {"Move": [step("RUNNING", speed=1.0), step("RUNNING", people=0.0), "RUNNING", "SUCCESS"]},
+    ),
+    "keeps_when": (
+        SPEED + PEOPLE.replace("initially 0", "initially 1"),
+        "keeps speed <= 0.25 m/s\n    when near",
+        {"Move": [step("RUNNING", people=0.0), step("RUNNING", speed=1.0), "RUNNING", "SUCCESS"]},
+        {"First": [step("SUCCESS", people=0.0)], "Move": [step("RUNNING", people=1.0, speed=1.0), "SUCCESS"]},
+    ),
+    "keeps_other_units": (
+        "signal heat : degC from {heat} initially 20 degC\nsignal limit : K from {limit} initially 300 K\n",
+        "keeps heat < limit",
+        {"Move": ["RUNNING", step("RUNNING", heat=26.9), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", heat=26.8), "RUNNING", "SUCCESS"]},
+    ),
+    "keeps_sum": (
+        SPEED + "signal wind : km/h from {wind} initially 3.6 km/h\n",
+        "keeps speed - wind * 2 >= -3 m/s",
+        {"Move": ["RUNNING", step("RUNNING", speed=-1.1), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", speed=-0.9), "RUNNING", "SUCCESS"]},
+    ),
+    "never": (
+        'signal door : bool from {door} initially false\nsignal mode : text from {mode} initially "idle"\n',
+        'never door or mode == "lost"',
+        {"Move": ["RUNNING", step("RUNNING", mode="lost"), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", mode="found"), "RUNNING", "SUCCESS"]},
+    ),
+    "never_bool": (
+        "signal door : bool from {door} initially false\n",
+        "never door",
+        {"Move": ["RUNNING", step("RUNNING", door=True), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", door=False), "RUNNING", "SUCCESS"]},
+    ),
+    "leaves": (
+        BATTERY,
+        "leaves battery >= 3 %",
+        {"Move": [step("RUNNING", battery=2.0), "SUCCESS"]},
+        {"Move": [step("RUNNING", battery=2.0), step("SUCCESS", battery=3.0)]},
+    ),
+    "leaves_when": (
+        BATTERY + PEOPLE,
+        "leaves battery >= 3 %\n    when near",
+        {"First": [step("SUCCESS", people=1.0)], "Move": [step("SUCCESS", battery=2.0, people=0.0)]},
+        {"Move": [step("SUCCESS", battery=2.0, people=1.0)]},
+    ),
+    "uses_of_counter": (
+        ENERGY,
+        "uses at most 0.02 kWh of energy",
+        {
+            "First": [step("SUCCESS", energy=100.0)],
+            "Move": ["RUNNING", step("RUNNING", energy=121.0), "RUNNING", "SUCCESS"],
+        },
+        {
+            "First": [step("SUCCESS", energy=100.0)],
+            "Move": ["RUNNING", step("RUNNING", energy=120.0), "RUNNING", "SUCCESS"],
+        },
+    ),
+    "uses_of_level_in_the_last_tick": (
+        BATTERY,
+        "uses less than 5 % of battery",
+        {"Move": ["RUNNING", step("SUCCESS", battery=75.0)]},
+        {"Move": ["RUNNING", step("SUCCESS", battery=75.5)]},
+    ),
+    "uses_when": (
+        BATTERY + PEOPLE,
+        "uses less than 5 % of battery\n    when near",
+        {
+            "First": [step("SUCCESS", people=1.0)],
+            "Move": ["RUNNING", step("RUNNING", battery=70.0), "RUNNING", "SUCCESS"],
+        },
+        {"Move": ["RUNNING", step("RUNNING", battery=70.0), "RUNNING", "SUCCESS"]},
+    ),
+    "needs_table": (
+        BATTERY + PEOPLE,
+        "uses at most 5 % if near else 10 % of battery",
+        {"Move": ["RUNNING", step("RUNNING", battery=69.0), "RUNNING", "SUCCESS"]},
+        {"Move": ["RUNNING", step("RUNNING", battery=71.0), "RUNNING", "SUCCESS"]},
+    ),
+}
+
+
+def mission(case: str, action: str, tree: str) -> str:
+    signals, clause, _, _ = CASES[case]
+    text = f"{signals}QualityReq rq1\n    Move {clause}\n    on violation {action}\n{tree}"
+    return text.replace("    ->\n", "    ->\n        First\n", 1)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_broken_bound_is_a_failure_and_a_kept_one_nothing(engine: Engine, case: str) -> None:
+    _, _, broken, kept = CASES[case]
+    text = mission(case, "fail", MOVE_THEN_REST)
+    answer = assert_fails(engine, text, broken)
+    assert answer.statuses("Rest") == []
+    assert_unchanged(engine, text, kept)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_broken_bound_halts_the_mission_whoever_swallows_failures(engine: Engine, case: str) -> None:
+    _, _, broken, kept = CASES[case]
+    assert run(engine, guarded(mission(case, "fail", SWALLOWED)), broken).status == "SUCCESS"
+    text = mission(case, "halt", SWALLOWED)
+    answer = assert_fails(engine, text, {**broken, "Rest": ["RUNNING"] * 9 + ["SUCCESS"]})
+    assert "SUCCESS" not in answer.statuses("Rest")
+    assert_unchanged(engine, text, kept)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_breaks_in_the_last_tick_makes_the_mission_fail(engine: Engine, case: str) -> None:
+    _, _, broken, _ = CASES[case]
+    assert_fails(engine, mission(case, "halt", SWALLOWED), {**broken, "Rest": ["SUCCESS"], "Plan_B": ["SUCCESS"]})
+
+
+def test_a_node_that_is_late_is_halted(engine: Engine) -> None:
+    answer = run(engine, guarded(mission("takes", "fail", MOVE_THEN_REST)), SLOW)
+    assert answer.statuses("Move") == ["RUNNING", "IDLE"]
+
+
+# ---- halting for the right reason ----
+
+
+def test_a_node_that_fails_in_time_halts_no_mission(engine: Engine) -> None:
+    text = f"QualityReq rq1\n    Move takes at most 10 s\n    on violation halt\n{SWALLOWED}"
+    assert_unchanged(engine, text, {"Move": ["RUNNING", "FAILURE"]})
+
+
+def test_a_tighter_limit_of_another_requirement_is_not_this_one(engine: Engine) -> None:
+    text = "QualityReq rq1\n    Move takes at most 10 s\n    on violation halt\n"
+    text += f"QualityReq rq2\n    Move takes at most 20 ms\n    on violation fail\n{SWALLOWED}"
+    answer = run(engine, guarded(text), SLOW)
+    assert (answer.status, answer.statuses("Move")) == ("SUCCESS", ["RUNNING", "IDLE"])
+
+
+def test_who_must_succeed_and_fails_halts_the_mission(engine: Engine) -> None:
+    for clause in ("succeeds", "succeeds within 10 s"):
+        text = f"QualityReq rq1\n    Move {clause}\n    on violation halt\n{SWALLOWED}"
+        assert_fails(engine, text, {"Move": ["RUNNING", "FAILURE"]})
+        assert_unchanged(engine, text, QUICK)
+
+
+def test_a_bound_on_the_mission(engine: Engine) -> None:
+    for action in ("fail", "halt"):
+        text = f"QualityReq rq1\n    mission takes at most 20 ms\n    on violation {action}\n{SWALLOWED}"
+        assert_fails(engine, text, SLOW)
+        assert_unchanged(engine, text.replace("20 ms", "20 s"), QUICK)
+
+
+# ---- counters and flags ----
+
+
+PICKS = """
+Root Main
+BehaviorTree Main
+    ->
+        -> Shelf
+            Retry (num_attempts = 5)
+                Pick
+        -> Drawer
+            Look
+            Place
+"""
+FOUR_TRIES: Parts = {"Pick": [["RUNNING", "FAILURE"]] * 3 + [["RUNNING", "SUCCESS"]]}
+
+
+@pytest.mark.parametrize("per", ["", " per Shelf", " per Main"])
+@pytest.mark.parametrize("action", ["fail", "halt"])
+def test_tries_are_counted(engine: Engine, per: str, action: str) -> None:
+    text = f"QualityReq rq1\n    Pick tries at most 3{per}\n    on violation {action}\n{PICKS}"
+    answer = assert_fails(engine, text, FOUR_TRIES)
+    assert answer.statuses("Pick").count("RUNNING") == 3
+    assert_unchanged(engine, text.replace("at most 3", "less than 5"), FOUR_TRIES, ["Pick"])
+
+
+def test_tries_are_counted_anew_for_each_activation(engine: Engine) -> None:
+    tree = PICKS.replace("        -> Shelf\n", "        Repeat (num_cycles = 3)\n          -> Shelf\n")
+    text = f"QualityReq rq1\n    Pick tries at most 2 per Shelf\n    on violation fail\n{tree}"
+    parts: Parts = {"Pick": [["FAILURE"], ["SUCCESS"]] * 3}
+    assert_unchanged(engine, text, parts, ["Pick"])
+    assert_fails(engine, text.replace(" per Shelf", ""), parts)
+
+
+@pytest.mark.parametrize("action", ["fail", "halt"])
+@pytest.mark.parametrize(
+    ("event", "broken", "kept"),
+    [
+        ("Look succeeds", {"Look": ["FAILURE"]}, {"Look": ["RUNNING", "SUCCESS"]}),
+        ("Look fails", {"Look": ["SUCCESS"]}, {"Look": ["RUNNING", "FAILURE"]}),
+        ("Look finishes", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
+        ("Look starts", {"Pick": ["SUCCESS"]}, {"Pick": ["FAILURE"]}),
+    ],
+)
+def test_order(engine: Engine, action: str, event: str, broken: Parts, kept: Parts) -> None:
+    tree = """
+Root Main
+BehaviorTree Main
+    ->
+        ?
+            Pick
+            Look
+            AlwaysSuccess
+        Place
+"""
+    text = f"QualityReq rq1\n    Place follows {event}\n    on violation {action}\n{tree}"
+    assert_fails(engine, text, {"Pick": ["FAILURE"], **broken})
+    assert_unchanged(engine, text, {"Pick": ["FAILURE"], **kept}, ["Place"])
+
+
+def test_each_start_needs_an_event_of_its_own(engine: Engine) -> None:
+    tree = "Root Main\nBehaviorTree Main\n    ->\n        Look\n        Place\n        Place again\n"
+    text = f"QualityReq rq1\n    again follows Look succeeds\n    on violation fail\n{tree}"
+    assert_unchanged(engine, text, {}, ["again"])
+    twice = text.replace("        Place again", "        Repeat (num_cycles = 2)\n            Place again")
+    assert_fails(engine, twice, {})
+
+
+def test_the_start_of_the_mission_is_an_event(engine: Engine) -> None:
+    text = f"QualityReq rq1\n    Pick follows mission starts\n    on violation fail\n{PICKS}"
+    assert_unchanged(engine, text, {}, ["Pick"])
+    assert_fails(engine, text, FOUR_TRIES)
+
+
+def test_events_and_counters_cross_trees(engine: Engine) -> None:
+    tree = """
+Root Main
+BehaviorTree Main
+    ->
+        Look
+        SubTree Part one
+        SubTree Part two
+BehaviorTree Part
+    ->
+        Place
+"""
+    order = f"QualityReq rq1\n    Place follows Look succeeds\n    on violation fail\n{tree}"
+    assert_fails(engine, order, {})
+    assert_unchanged(engine, order.replace("        SubTree Part two\n", ""), {}, ["Place"])
+    tries = f"QualityReq rq1\n    Place tries at most 1 per Main\n    on violation fail\n{tree}"
+    assert_fails(engine, tries, {})
+    assert_unchanged(engine, tries.replace("at most 1", "at most 2"), {}, ["Place"])
+
+
+# ---- where things stand ----
+
+
+def test_trees_that_share_entries_and_run_at_once_do_not_share_those_of_guards(engine: Engine) -> None:
+    text = ENERGY + "QualityReq rq1\n    Move uses at most 10 Wh of energy\n    on violation fail\n"
+    text += """
+Root Main
+BehaviorTree Main
+    Parallel
+        -> Early
+            SubTree Part one (_autoremap = true)
+        -> Late
+            Wait
+            SubTree Part two (_autoremap = true)
+BehaviorTree Part
+    ->
+        Move
+"""
+    parts: Parts = {
+        "one/Move::7": ["RUNNING"],
+        "Wait": [step("RUNNING", energy=6.0), step("SUCCESS", energy=6.0)],
+        "Move": ["RUNNING", step("RUNNING", energy=12.0), "RUNNING", "SUCCESS"],
+    }
+    assert_fails(engine, text, parts)  # the first one has used 12 Wh, whatever the second one began with
+
+
+def test_what_may_be_skipped_stays_skipped(engine: Engine) -> None:
+    text = f"""
+{SPEED}QualityReq rq1
+    takes at most 20 ms
+    needs speed <= 1 m/s
+    keeps speed <= 1 m/s
+    leaves speed <= 1 m/s
+    on violation halt
+Root Main
+BehaviorTree Main
+    ?
+        -> Only
+            Action Move (_skipIf = "@off == 1") satisfies rq1
+        Plan_B
+"""
+    for off in (0, 1):
+        assert_unchanged(engine, text, QUICK, ["Plan_B"], blackboard={"off": off})
+    assert run(engine, guarded(text), QUICK, blackboard={"off": 1}).statuses("Plan_B") != []
+
+
+def test_what_runs_only_while_a_condition_holds_is_halted_and_skipped(engine: Engine) -> None:
+    text = f"""
+{SPEED}QualityReq rq1
+    keeps speed <= 1 m/s
+    on violation fail
+Root Main
+BehaviorTree Main
+    ->
+        Move (_while = "go == 1" _failureIf = "go == 7") satisfies rq1
+        Rest
+"""
+    parts: Parts = {"Move": ["RUNNING", step("RUNNING", go=0), "RUNNING", "SUCCESS"]}
+    assert_unchanged(engine, text, parts, ["Move", "Rest"], blackboard={"go": 1})
+    for xml in (plain(text), guarded(text)):
+        assert run(engine, xml, parts, blackboard={"go": 7}).status == "FAILURE"
+
+
+@pytest.mark.parametrize("ready", ["SUCCESS", "FAILURE"])
+def test_children_keep_their_places(engine: Engine, ready: str) -> None:
+    text = f"""
+{SPEED}QualityReq rq1
+    takes at most 10 s
+    needs speed <= 1 m/s
+    keeps speed <= 1 m/s
+    leaves speed <= 1 m/s
+    on violation halt
+apply rq1 to Then, Else
+Root Main
+BehaviorTree Main
+    R->
+        IfThenElse
+            Condition Ready
+            Action Move Then
+            SubTree Part Else
+BehaviorTree Part
+    Rest
+"""
+    parts: Parts = {"Ready": [ready]}
+    assert_unchanged(engine, text, parts, ["Then", "Else"])
+
+
+def test_several_requirements_on_a_node(engine: Engine) -> None:
+    text = f"""
+{SPEED}{BATTERY}QualityReq rq1
+    takes at most 20 ms
+    on violation fail
+QualityReq rq2
+    needs battery >= 50 %
+    keeps speed <= 1 m/s
+    on violation fail
+QualityReq rq3
+    keeps speed <= 2 m/s
+    leaves battery >= 70 %
+    on violation fail
+apply rq1, rq2, rq3 to Move
+Root Main
+BehaviorTree Main
+    ->
+        First
+        Move
+"""
+    assert_unchanged(engine, text, QUICK)
+    assert_fails(engine, text, SLOW)
+    assert_fails(engine, text, {"First": [step("SUCCESS", battery=40.0)], "Move": [step("SUCCESS", battery=80.0)]})
+    assert_fails(engine, text, {"Move": ["RUNNING", step("RUNNING", speed=1.5), "RUNNING", "SUCCESS"]})
+    assert_fails(engine, text, {"Move": ["RUNNING", step("SUCCESS", battery=60.0)]})
