@@ -16,7 +16,11 @@ PAIRS = re.findall(r"^```btq(?: classic)?\n(.*?)^```\n\n```xml\n(.*?)^```$", PAG
 
 
 def test_every_example_has_both_sides() -> None:
-    assert len(PAIRS) == len(re.findall(r"^```btq( classic)?$", PAGE, re.MULTILINE)) == len(re.findall(r"^```xml$", PAGE, re.M))
+    assert (
+        len(PAIRS)
+        == len(re.findall(r"^```btq( classic)?$", PAGE, re.MULTILINE))
+        == len(re.findall(r"^```xml$", PAGE, re.M))
+    )
 
 
 @pytest.mark.parametrize(("mission", "xml"), PAIRS, ids=[mission.split("\n")[0] for mission, _ in PAIRS])

@@ -229,6 +229,9 @@ def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Wo
     code.type("Fully")
     frame.locator(".box.here", has_text="ChargeFully").wait_for(state="attached")
     code.save()
+    # What the server says of words is laid over the grammar's colours, and leaves a symbol the colour of a keyword.
+    keyword, symbol = (code.see(f".view-line span span:text-is('{word}')") for word in ("satisfices", "->"))
+    assert symbol.evaluate("e => getComputedStyle(e).color") == keyword.evaluate("e => getComputedStyle(e).color")
 
 
 def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:

@@ -123,7 +123,9 @@ input { font: inherit; color: var(--vscode-input-foreground); background: var(--
 #trouble { color: var(--vscode-errorForeground); padding: 0 6px; }
 svg { transform-origin: 0 0; }
 .box { cursor: pointer; }
-.box.here .outline, .box:focus-visible .outline { stroke: var(--vscode-focusBorder); stroke-width: 3; }
+/* Over the picture's own rules, which are more particular. */
+svg .ground { fill: transparent !important; }
+.box.here .outline, .box:focus-visible .outline { stroke: var(--vscode-focusBorder) !important; stroke-width: 3 !important; }
 .box:focus { outline: none; }
 .box.other { opacity: 0.25; }
 </style>
