@@ -6,7 +6,16 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
-from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, Subject, defined_elsewhere, edition, everywhere, home_of
+from btq_lang.features.meaning import (
+    ROOT_BLACKBOARD,
+    Found,
+    Subject,
+    defined_elsewhere,
+    edition,
+    everywhere,
+    home_of,
+    quality_of,
+)
 from btq_lang.features.outline import clauses_detail
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.mentions import What
@@ -76,8 +85,9 @@ def requirement(workspace: Workspace, found: Definition, with_uses: bool = True)
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{found.symbol.name}**"]
-    if item.quality is not None:
-        lines[0] += f" · {'.'.join(name.text for name in item.quality.names)}"
+    quality = quality_of(found)
+    if quality is not None:
+        lines[0] += f" · {'.'.join(name.text for name in quality.names)}"
     if item.text is not None:
         lines.append(" ".join(item.text.text.split()))
     if item.clauses:

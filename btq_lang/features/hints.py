@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.features import describe
-from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, subject
+from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, quality_of, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.mentions import What
@@ -45,9 +45,9 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
                 wanted = subject(workspace, Found(path, entry, mention))
                 place = definition(workspace, path, wanted)
                 item = place.symbol.target if place is not None and wanted.home else None
-                if isinstance(item, Requirement) and item.quality is not None:
-                    quality = item.quality.names[-1].text
-                    found.append(Hint(span.end, f": {quality}", requirement_detail(item)))
+                quality = quality_of(place) if place is not None else None
+                if isinstance(item, Requirement) and quality is not None:
+                    found.append(Hint(span.end, f": {quality.names[-1].text}", requirement_detail(item)))
             elif mention.what is What.QUANTITY and mention.node is not None and mention.pair is not None:
                 key = mention.pair.key.text
                 unit = next((port.unit for port in ports_of(workspace, path, mention.node) if port.name == key), None)

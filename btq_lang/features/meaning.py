@@ -15,7 +15,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.mentions import Mention, What
 from btq_lang.record import record
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Node, Qualities, Requirement, Root, Word
+from btq_lang.syntax import Entry, Model, Node, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, NAME
 from btq_lang.workspace import Definition, Workspace
@@ -180,6 +180,18 @@ def _may_name(wanted: Subject, name: str) -> bool:
     if wanted.what is What.QUALITY and wanted.home != STANDARD:
         return fold(name.rpartition(".")[2]) == fold(wanted.name)
     return name == wanted.name or wanted.what in (What.QUALITY, What.INCLUDE)
+
+
+def quality_of(requirement: Definition) -> QualityPath | None:
+    """The quality of a requirement: its own, or in the classic form the one that encloses it."""
+    item, owner = requirement.symbol.target, requirement.entry.item
+    if not isinstance(item, Requirement) or item.quality is not None or not isinstance(owner, Tree):
+        return item.quality if isinstance(item, Requirement) else None
+    for clause in (*owner.clauses, *(clause for node in owner.walk() for clause in node.clauses)):
+        for quality in clause.qualities if isinstance(clause, Satisfices) else ():
+            if any(one is item for one in quality.requirements):
+                return quality.path
+    return None
 
 
 def edition(workspace: Workspace, path: str) -> str:

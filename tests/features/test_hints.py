@@ -20,6 +20,15 @@ def test_the_quality_of_a_requirement_that_is_only_named() -> None:
         """)
 
 
+def test_the_quality_that_encloses_a_classic_requirement() -> None:
+    check_hints("""
+        BehaviorTree Main
+            ->
+                Pick (satisfices Quality = performance (QualityReq ID = "rq1" description = "In time"))
+                Place (satisfies QualityReq ID = "rq1"<hint>: performance</hint>)
+        """)
+
+
 def test_what_is_written_to_the_port() -> None:
     check_hints("""
         BehaviorTree Main
