@@ -1,4 +1,4 @@
-"""docs/xml-mapping.md: each mission becomes the XML that stands below it."""
+"""docs/xml-mapping.md and docs/enforcement.md: each mission becomes the XML that stands below it."""
 
 from __future__ import annotations
 
@@ -8,26 +8,33 @@ from pathlib import Path
 import pytest
 
 from btq_lang.btcpp.document import write
+from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
 from btq_lang.workspace import Workspace
 
-PAGE = (Path(__file__).resolve().parents[1] / "docs" / "xml-mapping.md").read_text(encoding="utf-8")
-PAIRS = re.findall(r"^```btq(?: classic)?\n(.*?)^```\n\n```xml\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PAGES = {name: (DOCS / name).read_text(encoding="utf-8") for name in ("xml-mapping.md", "enforcement.md")}
+PAIR = re.compile(r"^```btq(?: classic)?\n(.*?)^```\n\n```xml\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+PAIRS = [pair for page in PAGES.values() for pair in PAIR.findall(page)]
 
 
-def test_every_example_has_both_sides() -> None:
+@pytest.mark.parametrize("name", PAGES)
+def test_every_example_has_both_sides(name: str) -> None:
+    page = PAGES[name]
     assert (
-        len(PAIRS)
-        == len(re.findall(r"^```btq( classic)?$", PAGE, re.MULTILINE))
-        == len(re.findall(r"^```xml$", PAGE, re.M))
+        len(PAIR.findall(page))
+        == len(re.findall(r"^```btq( classic)?$", page, re.MULTILINE))
+        == len(re.findall(r"^```xml$", page, re.M))
     )
 
 
 @pytest.mark.parametrize(("mission", "xml"), PAIRS, ids=[mission.split("\n")[0] for mission, _ in PAIRS])
 def test_a_mission_becomes_its_xml(mission: str, xml: str) -> None:
-    done = export(Workspace.of({"main.btq": mission}), "main.btq")
+    workspace = Workspace.of({"main.btq": mission})
+    done = export(workspace, "main.btq")
     assert done.problems == ()
-    assert f"\n{stripped(xml)}" in f"\n{stripped(write(done.document))}"
+    xml_now = write(enforced(workspace, "main.btq", done).export.document)
+    assert f"\n{stripped(xml)}" in f"\n{stripped(xml_now)}"
 
 
 def stripped(xml: str) -> str:

@@ -97,26 +97,32 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
     if not _has_requirements(workspace, path):
         return Enforcement(export, ())
     found = requirements(workspace, path)
-    closure = workspace.closure(path)
-    files = frozenset(closure) if bundled else frozenset((path,))
-    others = [
-        _plan(workspace, requirements(workspace, each), each, frozenset((each,)), ())
-        for each in closure
-        if each not in files and is_mission(workspace, each)
-    ]
-    plan = _plan(workspace, found, path, files, others)
+    files = _written(workspace, path, bundled)
+    plan, others = _plans(workspace, found, path, files)
     wrappers = dict(plan.wrappers)
-    if _begins(workspace, found, path, files):
-        assert found.mission is not None, "there is a mission that begins"
-        start = _start([plan, *others])
-        if start:
-            key = id(found.mission.node)
-            wrappers[key] = (*start, *wrappers.get(key, ()))
+    if found.mission is not None and _begins(workspace, found, path, files) and (start := _start([plan, *others])):
+        key = id(found.mission.node)
+        wrappers[key] = (*start, *wrappers.get(key, ()))
     document = export.document
     if wrappers:
         _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
         document = Document([Comment(GUARDS_NOTE), *document.contents])
     return Enforcement(replace(export, document=document), plan.held)
+
+
+def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tuple[Held, ...], ...]:
+    """For each of `requirements(workspace, path).applied`, in its order, how its clauses are held in what is built.
+
+    Args:
+        bundled: as of `enforced`.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    if not _has_requirements(workspace, path):
+        return ()
+    found = requirements(workspace, path)
+    return _plans(workspace, found, path, _written(workspace, path, bundled))[0].held
 
 
 def _has_requirements(workspace: Workspace, path: str) -> bool:
@@ -129,7 +135,24 @@ def _begins(workspace: Workspace, found: Requirements, path: str, files: frozens
     return found.mission is not None and found.mission.path in files and path not in workspace.included_files
 
 
+def _written(workspace: Workspace, path: str, bundled: bool) -> frozenset[str]:
+    """The files that are written together."""
+    return frozenset(workspace.closure(path)) if bundled else frozenset((path,))
+
+
 # ---- what is done about each clause ----
+
+
+def _plans(
+    workspace: Workspace, found: Requirements, path: str, files: frozenset[str]
+) -> tuple[_Plan, tuple[_Plan, ...]]:
+    """What is to stand around the nodes of a file, and those of the files that it includes and that are built too."""
+    others = tuple(
+        _plan(workspace, requirements(workspace, each), each, frozenset((each,)), ())
+        for each in workspace.closure(path)
+        if each not in files and is_mission(workspace, each)
+    )
+    return _plan(workspace, found, path, files, others), others
 
 
 def _plan(

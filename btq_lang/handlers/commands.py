@@ -32,12 +32,13 @@ def register(server: Server) -> None:
         if workspace is None:
             raise Refused("this file is in none of the editor's folders")
         from btq_lang.btcpp.document import write  # not needed by most sessions, and large
+        from btq_lang.btcpp.enforcement import enforced
         from btq_lang.btcpp.export import export
 
         done = export(workspace, path)
         for problem in done.problems:
             raise Refused(f"this cannot be written as XML: {problem.message}")
-        return write(done.document)
+        return write(enforced(workspace, path, done).export.document)
 
     @server.command(PICTURE)
     def picture(document: types.TextDocumentIdentifier) -> dict[str, object]:
