@@ -1,4 +1,4 @@
-"""The command line: `btq check`, `format`, `build`, `import`, `graph`, `explain`, `init`, `completion`.
+"""The command line: `btq check`, `format`, `build`, `import`, `trace`, `graph`, `explain`, `init`, `completion`.
 
 Exit codes, everywhere: 0 clean, 1 findings, 2 usage or I/O.  Nothing is decided here: arguments in, the pure parts
 called, their answer printed.  A command imports what it needs when it runs, for most runs are one `btq check`.

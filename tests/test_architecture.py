@@ -27,7 +27,7 @@ ROWS: tuple[frozenset[str], ...] = (
         {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
         | {"graph"}
     ),
-    frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features"}),
+    frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
     frozenset(
         {
             "loader",
@@ -46,7 +46,10 @@ ROWS: tuple[frozenset[str], ...] = (
 )
 ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
 READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog"})  # the rules' pages and the catalog's data too
-READ_BY_FEATURES = frozenset({"checks", "fixes", "formatter"})  # an editor shows what they find and do
+READS_SIBLINGS = {
+    "features": frozenset({"checks", "fixes", "formatter"}),  # an editor shows what they find and do
+    "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours
+}
 PROTOCOL = frozenset({"pygls", "lsprotocol"})
 SPEAKS_THE_PROTOCOL = frozenset({"server", "editor", "handlers", "convert"})
 
@@ -79,7 +82,7 @@ def test_a_module_imports_only_downwards(module: str, path: Path) -> None:
             assert module == "btcpp", f"{path.name} imports {imported}"
         if parts[0] == "btq_lang" and len(parts) > 1 and parts[1] in ROW_OF and parts[1] != module:
             assert ROW_OF[parts[1]] <= row, f"{path.name} imports {imported}"
-            may_read = module == "features" and parts[1] in READ_BY_FEATURES
+            may_read = parts[1] in READS_SIBLINGS.get(module, ())
             assert row != 4 or ROW_OF[parts[1]] != 4 or may_read, f"{path.name} imports its sibling {imported}"
 
 

@@ -9,13 +9,14 @@ from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.render import FORMATS
+from btq_lang.trace.formats import FORMATS as TRACE_FORMATS
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
 TARGETS = ("4.6", "4.7", "4.8", "4.9", "4.10")
 SEVERITIES = ("error", "warning", "info", "hint")
-_MODULES = {"import": "import_xml"}  # of commands whose own name cannot be a module's
+_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose own name cannot be a module's
 
 
 def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
@@ -24,6 +25,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_format(commands)
     _add_build(commands)
     _add_import(commands)
+    _add_trace(commands)
     _add_graph(commands)
     _add_diff(commands)
     _add_explain(commands)
@@ -129,6 +131,22 @@ def _add_import(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", help="the folder to write into; default: that of each file")
     parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
     parser.add_argument("--force", action="store_true", help="write over .btq files that are there")
+    _add_color(parser)
+
+
+def _add_trace(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "trace",
+        "show which requirements hold for which nodes, how they are held, and what is missing",
+        epilog="exit codes: 0 written; 1 written, but of missions with errors; 2 usage or I/O\n\n"
+        "examples:\n  btq trace                               the project in this folder\n"
+        "  btq trace --format html -o trace.html   a page with the trees\n"
+        "  btq trace --format markdown             for a pull request\n",
+    )
+    _add_paths(parser)
+    parser.add_argument("--format", choices=TRACE_FORMATS, default="table", help="default: table")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
 
 

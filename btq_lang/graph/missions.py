@@ -11,7 +11,7 @@ from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Claim, SourceNode
-from btq_lang.syntax import Node, NodeClause, Satisfices, Tree
+from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices, Tree
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -90,12 +90,12 @@ def figure(
     return Figure(nodes[0].tree or "", tuple(boxes))
 
 
-def concerns(node: SourceNode) -> Iterator[tuple[str, Satisfices]]:
-    """The qualities that a node, or its tree, satisfices, as they are written, and the clause that says so."""
+def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
+    """The qualities that a node, or its tree, satisfices: their names joined by points, and how they are written."""
     for clause in clauses_of(node):
         if isinstance(clause, Satisfices):
             for quality in clause.qualities:
-                yield ".".join(name.text for name in quality.path.names), clause
+                yield ".".join(name.text for name in quality.path.names), quality.path
 
 
 def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:

@@ -80,14 +80,15 @@ def document(figures: Sequence[Figure], direction: str = "down") -> str:
 
 
 def part(drawing: Drawing, label: str) -> str:
-    """A drawing as a part of a page, which has the style sheet.
+    """A drawing as a part of a page, which has the style sheet, and may draw it smaller by three tenths.
 
     Args:
         label: what it shows, for those who hear the page.
     """
     lines = [
         f'<svg class="tree" width="{drawing.width}" height="{drawing.height}"'
-        f' viewBox="0 0 {drawing.width} {drawing.height}" role="group" aria-label="{escape(label)}">',
+        f' viewBox="0 0 {drawing.width} {drawing.height}" style="min-width: {drawing.width * 7 // 10}px"'
+        f' role="group" aria-label="{escape(label)}">',
         *_drawn(drawing),
         "</svg>",
     ]

@@ -1,0 +1,51 @@
+"""The overview of missions that a safety engineer asks for: requirement, quality, nodes, how it is held, and where.
+
+One invariant: everything is said once, in a row with a key, and the same missions give the same overview.
+
+    overview.py    the rows
+    collect.py     a workspace as an overview
+    ways.py        how clauses are held
+    meanings.py    what quality names mean
+    table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
+"""
+
+from __future__ import annotations
+
+from btq_lang.trace.collect import collect
+from btq_lang.trace.formats import FORMATS
+from btq_lang.trace.overview import Overview
+
+__all__ = ["FORMATS", "Overview", "collect", "write"]
+
+
+def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
+    """The overview in one of FORMATS.
+
+    Args:
+        colour: ANSI colours, for `table`.
+        width: the columns of the terminal, for `table`.
+
+    Raises:
+        ValueError: there is no such format.
+    """
+    if form == "table":
+        from btq_lang.trace.table import table
+
+        return table(overview, colour, width)
+    if form == "csv":
+        from btq_lang.trace.csv_rows import csv_text
+
+        return csv_text(overview)
+    if form == "json":
+        from btq_lang.trace.json_document import json_text
+
+        return json_text(overview)
+    if form == "markdown":
+        from btq_lang.trace.markdown import markdown
+
+        return markdown(overview)
+    if form == "html":
+        from btq_lang.trace.page import page
+
+        return page(overview)
+    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")

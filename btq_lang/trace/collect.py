@@ -1,0 +1,409 @@
+"""A workspace as an overview.
+
+One invariant: a node, a requirement and a quality are one row each, in however many missions they are seen, for they
+are written once.  What is wrong with the missions is not said here: an overview has what could be understood.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from btq_lang.catalog.qualities import get, qualities
+from btq_lang.diagnostics import Place
+from btq_lang.graph.figure import Note
+from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
+from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.model import Applied, Event, Mission, Requirement, SourceNode, Span, Target, Total
+from btq_lang.syntax import QualityDecl, Tree
+from btq_lang.text import Span as TextSpan
+from btq_lang.trace.meanings import Meaning, Meanings
+from btq_lang.trace.overview import (
+    At,
+    Clause,
+    NodeRow,
+    Overview,
+    QualityRow,
+    RequirementRow,
+    TreeRow,
+    Use,
+)
+from btq_lang.trace.overview import Total as TotalRow
+from btq_lang.trace.ways import declared_ways
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.catalog.qualities import Edition
+    from btq_lang.trace.overview import Carries
+    from btq_lang.trace.ways import Ways
+
+
+def collect(
+    parts: Sequence[tuple[Workspace, Sequence[str]]],
+    ways: Ways = declared_ways,
+    shown: Callable[[str], str] = str,
+) -> Overview:
+    """The overview of missions.
+
+    Args:
+        parts: workspaces, each with the paths of it that are asked for; a file that another one of them includes is a
+            part of that mission.
+        ways: how clauses are held.
+        shown: a path as people read it.
+    """
+    collector = _Collector(ways, shown)
+    files: list[str] = []
+    for workspace, given in parts:
+        included = {path for each in given for path in workspace.closure(each) if path != each}
+        for path in [each for each in given if each not in included] or given:
+            files.append(shown(path))
+            collector.add(workspace, path)
+    return collector.overview(tuple(files))
+
+
+class _Collector:
+    """What was seen so far: rows by what they stand for."""
+
+    def __init__(self, ways: Ways, shown: Callable[[str], str]) -> None:
+        self._ways = ways
+        self._shown = shown
+        self._edition: Edition | None = None
+        self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
+        self._requirements: dict[tuple[str, int], _Requirement] = {}
+        self._qualities: dict[str, _Quality] = {}
+
+    def add(self, workspace: Workspace, path: str) -> None:
+        """Add a mission: a file and all that it includes."""
+        found = requirements(workspace, path)
+        meanings = Meanings(workspace, path)
+        self._edition = self._edition or meanings.edition
+        place = _places(workspace, self._shown)
+        for source in found.nodes.all:
+            if id(source.node) not in self._nodes:
+                tree = place(_tree_place(source))
+                self._nodes[id(source.node)] = _Node(f"n{len(self._nodes) + 1}", source, place(source.place), tree)
+        self._declared(workspace, path, meanings, place)
+        self._concerns(found, meanings, place)
+        self._definitions(found, meanings, place)
+        own = self._uses(workspace, path, found, place)
+        for source in found.nodes.all:
+            node = self._nodes[id(source.node)]
+            carries: Carries = "own" if id(source) in own else "above" if _is_below(found, source, own) else "none"
+            if node.carries is None or _CARRIES.index(carries) > _CARRIES.index(node.carries):
+                node.carries = carries  # of several missions the one that has least to say
+
+    def overview(self, files: tuple[str, ...]) -> Overview:
+        """All rows, those that belong together linked."""
+        edition = self._edition or "2023"
+        rows = tuple(each.row(self._key(each.meaning, each.quality)) for each in self._requirements.values())
+        measured: dict[str, list[str]] = {}
+        for each, row in zip(self._requirements.values(), rows, strict=True):
+            for id_ in (each.meaning.id or each.quality or "", *each.meaning.above):
+                measured.setdefault(id_, []).append(row.key)
+        quality_rows = tuple(
+            each.row(tuple(measured.get(each.meaning.id or each.name, ()))) for each in self._qualities.values()
+        )
+        nodes = tuple(each.row() for each in self._nodes.values())
+        trees = tuple(sorted(self._trees(), key=lambda tree: tree.at.path not in files))  # included ones last
+        return Overview(
+            edition, files, rows, quality_rows, nodes, trees, _totals(edition, rows, quality_rows, self._requirements)
+        )
+
+    def _declared(self, workspace: Workspace, path: str, meanings: Meanings, place: Callable[[Place], At]) -> None:
+        """Qualities of one's own count, be they used or not."""
+        for each in workspace.scope(path).paths:
+            for entry in workspace.files[each].parsed.entries:
+                if isinstance(entry.item, QualityDecl) and entry.item.name is not None:
+                    at = place(Place(entry.item.name.span, each, entry.item))
+                    self._quality(entry.item.name.text, meanings, at)
+
+    def _concerns(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
+        for source in found.nodes.all:
+            for name, written in concerns(source):
+                at = place(Place(written.span, source.path, source.entry.item))
+                node = self._nodes[id(source.node)]
+                quality = self._quality(name, meanings, at)
+                quality.concerns[node.key] = None
+                node.notes[name] = Note("quality", quality.key, name, text=f"satisfices {name}", link=f"#{quality.key}")
+
+    def _definitions(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
+        for requirement in found.all.values():
+            key = _place_of(requirement)
+            name = requirement.quality
+            meaning = meanings.of(name) if name is not None else _NO_MEANING
+            if key not in self._requirements:
+                number = f"r{len(self._requirements) + 1}"
+                self._requirements[key] = _Requirement(number, requirement, meaning, place(requirement.place))
+            if name is not None:
+                self._quality(name, meanings, place(requirement.place))
+
+    def _quality(self, name: str, meanings: Meanings, at: At) -> _Quality:
+        meaning = meanings.of(name)
+        key = meaning.id or name
+        if key not in self._qualities:
+            self._qualities[key] = _Quality(f"q{len(self._qualities) + 1}", name, meaning, at)
+        return self._qualities[key]
+
+    def _key(self, meaning: Meaning, name: str | None) -> str | None:
+        found = self._qualities.get(meaning.id or name or "")
+        return found.key if found is not None else None
+
+    def _uses(
+        self, workspace: Workspace, path: str, found: Requirements, place: Callable[[Place], At]
+    ) -> dict[int, None]:
+        """Add what requirements hold for; the nodes that carry something themselves, by `id`."""
+        own = {id(source): None for source in found.nodes.all if any(True for _ in concerns(source))}
+        rows = {each.name: self._requirements[_place_of(each)] for each in found.all.values()}
+        for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
+            row = rows[applied.requirement.name]
+            sources = _sources(applied)
+            own.update((id(source), None) for source in sources)
+            nodes = [self._nodes[id(source.node)] for source in sources]
+            use = Use(
+                _subject(applied),
+                tuple(dict.fromkeys(node.key for node in nodes)),
+                applied.how,
+                arguments(applied),
+                place(applied.place),
+                tuple(clauses),
+            )
+            row.uses[use] = None
+            note = _note(row, applied, use)
+            for node in nodes:
+                node.notes.setdefault((row.key, use.arguments, tuple(note.lines)), note)
+        for trace in found.traces:
+            own[id(trace.node)] = None
+            node = self._nodes[id(trace.node.node)]
+            row = rows[trace.requirement]
+            row.uses[Use(_name(trace.node), (node.key,), "link", "", place(trace.node.place), ())] = None
+            if all(note.key != row.key for note in node.notes.values()):
+                node.notes[row.key] = Note("requirement", row.key, trace.requirement, link=f"#{row.key}")
+        return own
+
+    def _trees(self) -> Iterator[TreeRow]:
+        sources = [node.source for node in self._nodes.values()]
+        keys = {id(source): self._nodes[id(source.node)].key for source in sources}
+        notes = {
+            id(source): tuple(dict.fromkeys(self._nodes[id(source.node)].notes.values()))
+            for source in sources
+            if self._nodes[id(source.node)].notes
+        }
+        groups = list(by_tree(sources))
+        links = {group[0].tree or "": f"#{keys[id(group[0])]}" for group in reversed(groups)}
+        for group in groups:
+            rows = [self._nodes[id(source.node)] for source in group]
+            is_bare = all(row.carries != "own" for row in rows)
+            drawn = figure(group, keys, notes, links)
+            yield TreeRow(group[0].tree or "", rows[0].tree, tuple(row.key for row in rows), is_bare, drawn)
+
+
+# ---- rows while they are made ----
+
+
+class _Node:
+    """A node; tree: where its tree is; notes: what its figure shows at it, by what they stand for."""
+
+    def __init__(self, key: str, source: SourceNode, at: At, tree: At) -> None:
+        self.key = key
+        self.source = source
+        self.at = at
+        self.tree = tree
+        self.carries: Carries | None = None
+        self.notes: dict[object, Note] = {}
+
+    def row(self) -> NodeRow:
+        source = self.source
+        is_skill = source.kind is None and source.category != "SubTree" and not source.children
+        carries = self.carries or "none"
+        return NodeRow(self.key, _name(source), source.tree or "", source.category, is_skill, carries, self.at)
+
+
+class _Requirement:
+    """A requirement; uses: what it holds for, in a dict that keeps their order and has each once."""
+
+    def __init__(self, key: str, requirement: Requirement, meaning: Meaning, at: At) -> None:
+        self.key = key
+        self.requirement = requirement
+        self.quality = requirement.quality
+        self.meaning = meaning
+        self.at = at
+        self.uses: dict[Use, None] = {}
+
+    def row(self, quality_key: str | None) -> RequirementRow:
+        each = self.requirement
+        title = " ".join((each.title or "").split())
+        return RequirementRow(
+            self.key, each.name, title, each.quality, quality_key, tuple(_said(each)), self.at, tuple(self.uses)
+        )
+
+
+class _Quality:
+    """A quality; concerns: the keys of the nodes that satisfice it."""
+
+    def __init__(self, key: str, name: str, meaning: Meaning, at: At) -> None:
+        self.key = key
+        self.name = name
+        self.meaning = meaning
+        self.at = at
+        self.concerns: dict[str, None] = {}
+
+    def row(self, measured: tuple[str, ...]) -> QualityRow:
+        meaning = self.meaning
+        concerns = tuple(self.concerns)
+        return QualityRow(
+            self.key,
+            self.name,
+            meaning.id,
+            meaning.characteristic,
+            meaning.definition,
+            self.at,
+            concerns,
+            tuple(dict.fromkeys(measured)),
+        )
+
+
+# ---- what is said of one thing ----
+
+
+def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Place], At]:
+    def at(place: Place) -> At:
+        assert place.path is not None, "places of nodes and requirements have a path"
+        file = workspace.files[place.path]
+        span = place.span.shifted(file.start_of(place.anchor) if place.anchor is not None else 0)
+        if file.origin is not None:
+            span = file.origin.places.origin(span)
+        position = file.source_lines.position(span.start)
+        return At(shown(place.path), position.line + 1, position.column + 1)
+
+    return at
+
+
+def _place_of(requirement: Requirement) -> tuple[str, int]:
+    """Where a requirement is defined: the same for all missions that see it."""
+    return requirement.path, requirement.entry.start + requirement.place.span.start
+
+
+def _tree_place(source: SourceNode) -> Place:
+    tree = source.entry.item
+    assert isinstance(tree, Tree), "nodes stand in trees"
+    name = tree.name.span if tree.name is not None else TextSpan(tree.start, tree.start)
+    return Place(name, source.path, tree)
+
+
+def _is_below(found: Requirements, source: SourceNode, own: dict[int, None]) -> bool:
+    """Whether a node above carries something, on each way that leads to a node through SubTree nodes."""
+    waiting = [source]
+    seen: set[int] = set()
+    is_below = False
+    while waiting:
+        at = waiting.pop()
+        above = at.parent
+        while above is not None and id(above) not in own:
+            above = above.parent
+        if above is not None:
+            is_below = True
+            continue
+        callers = found.nodes.callers(at.tree)
+        if not callers:
+            return False
+        for caller in callers:
+            is_below = is_below or id(caller) in own
+            if id(caller) not in own and id(caller) not in seen:
+                seen.add(id(caller))
+                waiting.append(caller)
+    return is_below
+
+
+def _sources(applied: Applied) -> tuple[SourceNode, ...]:
+    """The nodes that a subject speaks of."""
+    subject = applied.subject
+    if isinstance(subject, Total):
+        return tuple(target.node for target in subject.targets)
+    events: tuple[Event, ...] = (subject.first, subject.last) if isinstance(subject, Span) else ()
+    parts: Iterable[Target | Mission | None] = (each.subject for each in events) if events else (subject,)  # type: ignore[assignment]  # no Span is left
+    return tuple(part.node for part in parts if part is not None and part.node is not None)
+
+
+def _subject(applied: Applied) -> str:
+    subject = applied.subject
+    if isinstance(subject, Target):
+        return "/".join((*subject.through, _name(subject.node)))
+    if isinstance(subject, Mission):
+        return "mission"
+    claim = applied.requirement.claims[0]
+    return claim.text.partition(f" {claim.verb} ")[0]
+
+
+def _name(source: SourceNode) -> str:
+    return source.shown.strip("`")
+
+
+def _note(row: _Requirement, applied: Applied, use: Use) -> Note:
+    """What stands at a node; its state is that of the weakest clause."""
+    name = row.requirement.name
+    found = {clause.way for clause in use.clauses}
+    state = next((way for way in ("reviewed", "monitored", "enforced") if way in found), "")
+    lines = said(applied)
+    if isinstance(applied.subject, Span | Total):
+        lines = (applied.requirement.claims[0].text, *lines[1:])
+    text = "; ".join((f"{name}{use.arguments}", *lines, *([state] if state else [])))
+    return Note("requirement", row.key, name + use.arguments, lines, text, state, f"#{row.key}")
+
+
+def _said(requirement: Requirement) -> Iterator[str]:
+    yield from (claim.text for claim in requirement.claims)
+    yield from (scope.text for scope in requirement.scopes)
+    if requirement.odds is not None:
+        yield requirement.odds.text
+    if requirement.confidence is not None:
+        yield f"confidence {round(requirement.confidence * 100, 9):g} %"
+    if requirement.window is not None:
+        yield requirement.window.text
+    if requirement.action is not None and not requirement.classic:
+        yield f"on violation {requirement.action}"
+    if requirement.goal is not None:
+        yield f"goal {requirement.goal.text}"
+    if requirement.method is not None:
+        yield f"verified by {requirement.method}"
+    yield from (f'because "{" ".join(reason.split())}"' for reason in requirement.reasons)
+
+
+def _totals(
+    edition: Edition,
+    rows: Sequence[RequirementRow],
+    quality_rows: Sequence[QualityRow],
+    found: dict[tuple[str, int], _Requirement],
+) -> tuple[TotalRow, ...]:
+    """One for each characteristic of the product, those in use that are named, and the rest."""
+    characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]
+    meant = [each.meaning.characteristic for each in found.values()]
+    named = (*meant, *(each.characteristic for each in quality_rows if each.concerns))
+    characteristics += [each for each in dict.fromkeys(named) if each is not None and each not in characteristics]
+    totals: list[TotalRow] = []
+    for id_ in (*characteristics, None):
+        mine = [row for row, characteristic in zip(rows, meant, strict=True) if characteristic == id_]
+        clauses: list[Clause] = [clause for row in mine for use in row.uses for clause in use.clauses]
+        concerns = {key for each in quality_rows if each.characteristic == id_ for key in each.concerns}
+        if id_ is None and not mine and not concerns:
+            continue
+        known = get(id_, edition) if id_ is not None else None
+        name = known.name if known is not None else id_ or "of no characteristic"
+        ways = [clause.way for clause in clauses]
+        totals.append(
+            TotalRow(
+                id_ or "",
+                name,
+                len(concerns),
+                len(mine),
+                ways.count("enforced"),
+                ways.count("monitored"),
+                ways.count("reviewed"),
+            )
+        )
+    return tuple(totals)
+
+
+_NO_MEANING: Final = Meaning(None, (), None, "")
+_CARRIES: Final[tuple[Carries, ...]] = ("own", "above", "none")

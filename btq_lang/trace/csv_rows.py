@@ -1,0 +1,92 @@
+"""CSV, a line for each clause at each of its subjects, and one for each gap (RFC 4180, lines end with CR LF).
+
+The columns, which later versions add to but do not change:
+
+    kind            requirement | concern | quality without requirement | requirement without node |
+                    node without quality | tree without quality
+    requirement, title, quality, characteristic
+    holds_for       the subject, or the node that has the concern, or the node or tree of a gap
+    tree            where its first node stands
+    clause, how, why    how: enforced | monitored | reviewed
+    attached_by     subject | satisfies | apply | link
+    source, line    of what attached it, or of the node or tree
+    defined, defined_line   where the requirement or the quality is defined or first named
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+
+from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def csv_text(overview: Overview) -> str:
+    """The overview as CSV, with a heading."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, COLUMNS, restval="")
+    writer.writeheader()
+    writer.writerows(_rows(overview))
+    return out.getvalue()
+
+
+def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
+    trees = {node.key: node.tree for node in overview.nodes}
+    nodes = {node.key: node for node in overview.nodes}
+    characteristics = {quality.key: quality.characteristic or "" for quality in overview.qualities}
+    for each in overview.requirements:
+        row = _requirement(each, characteristics.get(each.quality_key or "", ""))
+        if not each.uses:
+            yield {"kind": "requirement without node", **row, "clause": "; ".join(each.clauses)}
+        for use in each.uses:
+            tree = trees[use.nodes[0]] if use.nodes else ""
+            held = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
+            for clause in use.clauses or (None,):
+                yield {"kind": "requirement", **held, **_clause(clause), **_source(use.at)}
+    for quality in overview.qualities:
+        named = {"quality": quality.id or quality.name, "characteristic": quality.characteristic or ""}
+        named |= {"defined": quality.at.path, "defined_line": str(quality.at.line)}
+        for key in quality.concerns:
+            node = nodes[key]
+            yield {"kind": "concern", **named, "holds_for": node.name, "tree": node.tree, **_source(node.at)}
+        if not quality.requirements:
+            yield {"kind": "quality without requirement", **named}
+    for node in overview.bare_nodes:
+        yield {"kind": "node without quality", "holds_for": node.name, "tree": node.tree, **_source(node.at)}
+    for tree_row in overview.bare_trees:
+        yield {
+            "kind": "tree without quality",
+            "holds_for": tree_row.name,
+            "tree": tree_row.name,
+            **_source(tree_row.at),
+        }
+
+
+def _requirement(each: RequirementRow, characteristic: str) -> dict[str, str | int]:
+    return {
+        "requirement": each.name,
+        "title": each.title,
+        "quality": each.quality or "",
+        "characteristic": characteristic,
+        "defined": each.at.path,
+        "defined_line": each.at.line,
+    }
+
+
+def _clause(clause: Clause | None) -> dict[str, str | int]:
+    return {"clause": clause.text, "how": clause.way, "why": clause.why} if clause is not None else {}
+
+
+def _source(at: At) -> dict[str, str | int]:
+    return {"source": at.path, "line": at.line}
+
+
+COLUMNS: Final = (
+    *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
+    *("attached_by", "source", "line", "defined", "defined_line"),
+)

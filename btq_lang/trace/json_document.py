@@ -1,0 +1,130 @@
+"""JSON, for programs.
+
+The document, format 1; a later btq adds keys but changes none without a new number:
+
+    {"format": 1, "tool": "btq", "version": VERSION, "quality_model": "iso25010-2023", "files": [PATH],
+     "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
+                       "how": TEXT, "clauses": [TEXT], "at": PLACE,
+                       "holds_for": [{"subject": TEXT, "nodes": [KEY], "arguments": TEXT, "at": PLACE,
+                                      "attached_by": "subject" | "satisfies" | "apply" | "link",
+                                      "clauses": [{"text": TEXT, "why": TEXT,
+                                                   "how": "enforced" | "monitored" | "reviewed"}]}]}],
+     "qualities": [{"key": KEY, "name": NAME, "id": NAME | null, "characteristic": NAME | null, "definition": TEXT,
+                    "at": PLACE, "concerns": [KEY], "requirements": [KEY]}],
+     "nodes": [{"key": KEY, "name": TEXT, "tree": NAME, "category": NAME | null, "skill": BOOL,
+                "carries": "own" | "above" | "none", "at": PLACE}],
+     "trees": [{"name": NAME, "at": PLACE, "nodes": [KEY], "without_quality": BOOL}],
+     "totals": [{"characteristic": NAME | null, "name": TEXT, "concerns": N, "requirements": N,
+                 "enforced": N, "monitored": N, "reviewed": N}],
+     "gaps": {"qualities_without_requirements": [KEY], "requirements_without_nodes": [KEY],
+              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
+     "skills": {"own": N, "above": N, "none": N}}
+
+    PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
+
+A `skill` is an action or a condition that is no built-in; it `carries` a quality or a requirement itself, through a
+node above it, or not at all.  Keys are good for this document only.  The text is ASCII.
+"""
+
+from __future__ import annotations
+
+import json
+
+from btq_lang import __version__
+from btq_lang.trace.overview import At, Overview, QualityRow, RequirementRow
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
+
+
+def json_text(overview: Overview) -> str:
+    """The document, indented."""
+    document: dict[str, Json] = {
+        "format": 1,
+        "tool": "btq",
+        "version": __version__,
+        "quality_model": f"iso25010-{overview.edition}",
+        "files": list(overview.files),
+        "requirements": [_requirement(each) for each in overview.requirements],
+        "qualities": [_quality(each) for each in overview.qualities],
+        "nodes": [
+            {
+                "key": each.key,
+                "name": each.name,
+                "tree": each.tree,
+                "category": each.category,
+                "skill": each.is_skill,
+                "carries": each.carries,
+                "at": _at(each.at),
+            }
+            for each in overview.nodes
+        ],
+        "trees": [
+            {"name": each.name, "at": _at(each.at), "nodes": list(each.nodes), "without_quality": each.is_bare}
+            for each in overview.trees
+        ],
+        "totals": [
+            {
+                "characteristic": each.id or None,
+                "name": each.name,
+                "concerns": each.concerns,
+                "requirements": each.requirements,
+                "enforced": each.enforced,
+                "monitored": each.monitored,
+                "reviewed": each.reviewed,
+            }
+            for each in overview.totals
+        ],
+        "gaps": {
+            "qualities_without_requirements": [each.key for each in overview.unmeasured],
+            "requirements_without_nodes": [each.key for each in overview.unattached],
+            "nodes_without_qualities": [each.key for each in overview.bare_nodes],
+            "trees_without_qualities": [each.name for each in overview.bare_trees],
+        },
+        "skills": dict(overview.coverage()),
+    }
+    return json.dumps(document, indent=1) + "\n"
+
+
+def _requirement(each: RequirementRow) -> Json:
+    return {
+        "key": each.key,
+        "id": each.name,
+        "title": each.title,
+        "quality": each.quality,
+        "quality_key": each.quality_key,
+        "how": each.way,
+        "clauses": list(each.clauses),
+        "at": _at(each.at),
+        "holds_for": [
+            {
+                "subject": use.subject,
+                "nodes": list(use.nodes),
+                "arguments": use.arguments,
+                "at": _at(use.at),
+                "attached_by": use.how,
+                "clauses": [{"text": one.text, "how": one.way, "why": one.why} for one in use.clauses],
+            }
+            for use in each.uses
+        ],
+    }
+
+
+def _quality(each: QualityRow) -> Json:
+    return {
+        "key": each.key,
+        "name": each.name,
+        "id": each.id,
+        "characteristic": each.characteristic,
+        "definition": each.definition,
+        "at": _at(each.at),
+        "concerns": list(each.concerns),
+        "requirements": list(each.requirements),
+    }
+
+
+def _at(at: At) -> Json:
+    return {"path": at.path, "line": at.line, "column": at.column}

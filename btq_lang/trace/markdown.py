@@ -1,0 +1,103 @@
+"""Markdown, for pull requests: GitHub's tables, in which a line end is `<br>`.
+
+The format: https://github.github.com/gfm/#tables-extension-
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from btq_lang.trace.overview import Overview, RequirementRow
+from btq_lang.trace.wording import GAPS, attached, shown_quality, summary
+
+
+def markdown(overview: Overview) -> str:
+    """The overview as Markdown: requirements, concerns, gaps, totals."""
+    return "\n".join(_lines(overview)).rstrip("\n") + "\n"
+
+
+def _lines(overview: Overview) -> Iterator[str]:
+    yield "## Requirements and qualities"
+    yield ""
+    yield _escaped(summary(overview))
+    if overview.requirements:
+        yield ""
+        heading = ("Requirement", "Quality", "Holds for", "How", "Defined")
+        yield from _table(heading, (_requirement(each) for each in overview.requirements))
+    nodes = {node.key: node for node in overview.nodes}
+    concerns = [quality for quality in overview.qualities if quality.concerns]
+    if concerns:
+        yield from ("", "### Concerns", "")
+        rows = [
+            (_escaped(shown_quality(each)), "<br>".join(_node(nodes[key].name, nodes[key].at) for key in each.concerns))
+            for each in concerns
+        ]
+        yield from _table(("Quality", "Nodes"), rows)
+    yield from _gaps(overview)
+    yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
+    totals = [
+        (
+            _escaped(each.name),
+            *map(str, (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)),
+        )
+        for each in overview.totals
+    ]
+    yield from _table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
+
+
+def _requirement(each: RequirementRow) -> tuple[str, ...]:
+    said = [f"**{_escaped(each.name)}**", *([_escaped(each.title)] if each.title else [])]
+    said += [_code(clause) for clause in each.clauses]
+    subjects = []
+    for use in each.uses:
+        how = attached(use)
+        subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
+    whys = [clause.why for use in each.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
+    how = "<br>".join((each.way, *(dict.fromkeys(whys))))
+    return (
+        "<br>".join(said),
+        _escaped(each.quality or ""),
+        "<br>".join(subjects) or "nothing",
+        how,
+        _escaped(str(each.at)),
+    )
+
+
+def _gaps(overview: Overview) -> Iterator[str]:
+    found = {
+        "unmeasured": [f"{_escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
+        "unattached": [f"{_escaped(each.name)} ({each.at})" for each in overview.unattached],
+        "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],
+        "bare_nodes": [_node(each.name, each.at) for each in overview.bare_nodes],
+    }
+    if not any(found.values()):
+        return
+    yield from ("", "### Gaps", "")
+    for gap, lines in found.items():
+        if lines:
+            yield f"* {GAPS[gap]}: {', '.join(lines)}"
+
+
+def _table(heading: Sequence[str], rows: Iterable[Sequence[str]], numbers_from: int = 99) -> Iterator[str]:
+    yield f"| {' | '.join(heading)} |"
+    yield "|" + "|".join("---:" if at >= numbers_from else "---" for at in range(len(heading))) + "|"
+    for row in rows:
+        yield f"| {' | '.join(row)} |"
+
+
+def _node(name: str, at: object) -> str:
+    return f"{_code(name)} ({_escaped(str(at))})"
+
+
+def _code(text: str) -> str:
+    """A code span in a table: a bar would end the cell, and backticks need more of them around."""
+    text = " ".join(text.split()).replace("|", "\\|")
+    ticks = "`"
+    while ticks in text:
+        ticks += "`"
+    return f"{ticks} {text} {ticks}" if len(ticks) > 1 else f"`{text}`"
+
+
+def _escaped(text: str) -> str:
+    found = "".join(f"\\{character}" if character in "\\`*_[]|~" else character for character in " ".join(text.split()))
+    return found.replace("&", "&amp;").replace("<", "&lt;").replace("@", "&#64;")

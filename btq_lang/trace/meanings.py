@@ -1,0 +1,82 @@
+"""What quality names mean in a mission: its own declarations first, then the quality model.
+
+One invariant: every name has an answer; a name that nobody knows belongs to no characteristic.
+"""
+
+from __future__ import annotations
+
+from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS, Edition, Quality, find, fold, get, successors
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Qualities, QualityDecl
+from btq_lang.workspace import Workspace
+
+
+@record
+class Meaning:
+    """What a name means.
+
+    Attributes:
+        id: one's own name, or the model's; None: nobody knows it.
+        above: the ids of what it is a part of, the nearest first.
+        characteristic: the ISO's; None: it belongs to none.
+    """
+
+    id: str | None
+    above: tuple[str, ...]
+    characteristic: str | None
+    definition: str
+
+
+class Meanings:
+    """The quality names of a file and what it includes."""
+
+    def __init__(self, workspace: Workspace, path: str) -> None:
+        scope = workspace.scope(path)
+        word = workspace.project.qualities
+        for each in scope.paths:
+            for entry in workspace.files[each].parsed.entries:
+                if isinstance(entry.item, Qualities) and entry.item.edition is not None:
+                    word = entry.item.edition.text
+        self.edition: Edition = EDITIONS.get(word, DEFAULT_EDITION)
+        self._own: dict[str, QualityDecl] = {}
+        for name in scope.names(Kind.QUALITY):
+            definition = scope.find(Kind.QUALITY, name)
+            if definition is not None and isinstance(target := definition.symbol.target, QualityDecl):
+                self._own[fold(name)] = target
+
+    def of(self, name: str) -> Meaning:
+        """What a name means; names joined by points."""
+        own: list[QualityDecl] = []
+        declared = self._own.get(fold(name.rpartition(".")[2]))
+        while declared is not None and declared not in own:
+            own.append(declared)
+            name = ".".join(word.text for word in declared.parent.names) if declared.parent is not None else ""
+            declared = self._own.get(fold(name.rpartition(".")[2]))
+        ids = [each.name.text for each in own if each.name is not None]
+        known = self._in_model(name) if name and declared is None else None
+        model = [known.id, *([known.parent] if known.parent else [])] if known is not None else []
+        if own:
+            text = own[0].text.text if own[0].text is not None else ""
+            return Meaning(ids[0], (*ids[1:], *model), self._characteristic(known), text)
+        if known is None:
+            return Meaning(None, (), None, "")
+        return Meaning(known.id, tuple(model[1:]), self._characteristic(known), known.definition)
+
+    def _in_model(self, name: str) -> Quality | None:
+        match = find(tuple(name.split(".")), self.edition)
+        if match.quality is None and match.kind == "ambiguous":
+            if match.candidates[0].id in successors(fold(name)):  # the old name of a characteristic, as checks read it
+                return match.candidates[0]
+            above = {each.parent for each in match.candidates}
+            common = above.pop() if len(above) == 1 else None  # of all its meanings
+            return get(common, self.edition) if common is not None else None
+        return match.quality
+
+    def _characteristic(self, quality: Quality | None) -> str | None:
+        """The id of the ISO's characteristic that a quality is, is a part of, or is nearest to."""
+        if quality is None:
+            return None
+        if quality.kind == "robotics" and quality.nearest is not None:
+            return quality.nearest.partition(".")[0]
+        return quality.parent or (None if quality.kind == "robotics" else quality.id)

@@ -1,0 +1,238 @@
+"""The overview as one HTML page that needs nothing else: no network, no fonts, no files beside it.
+
+One invariant: without its script it says as much; the script only filters and highlights.  Each mission's trees stand
+beside the table, with qualities and requirements at their nodes; whatever stands for the same thing has the same
+`data-note` and is highlighted together.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from html import escape
+
+from btq_lang.graph.placing import place
+from btq_lang.graph.svg import STYLE, colours, part
+from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow, Use
+from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
+from btq_lang.trace.wording import GAPS, attached, counted, shown_quality, summary
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def page(overview: Overview) -> str:
+    """The whole page."""
+    return "\n".join(_lines(overview)) + "\n"
+
+
+def _lines(overview: Overview) -> Iterator[str]:
+    title = f"Requirements and qualities: {_title(overview)}"
+    yield "<!DOCTYPE html>"
+    yield '<html lang="en">'
+    yield '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
+    yield f"<title>{escape(title)}</title>"
+    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}</style>"
+    yield f'<style media="screen and (prefers-color-scheme: dark)">\n{colours(True)}</style></head>'
+    yield "<body>"
+    yield '<a class="skip" href="#requirements">To the requirements</a>'
+    yield f"<header><h1>{escape(title)}</h1><p>{escape(summary(overview))}</p>"
+    yield from _navigation(overview)
+    yield "</header>"
+    yield '<main><div class="beside">'
+    yield from _tables(overview)
+    yield from _trees(overview)
+    yield "</div></main>"
+    yield '<p class="live" role="status" aria-live="polite"></p>'
+    yield f"<script>\n{SCRIPT}</script>"
+    yield "</body></html>"
+
+
+def _title(overview: Overview) -> str:
+    files = overview.files
+    return ", ".join(files) if len(files) <= _FILES else f"{files[0]} and {counted(len(files) - 1, 'other file')}"
+
+
+def _navigation(overview: Overview) -> Iterator[str]:
+    sections = [("requirements", "Requirements"), ("concerns", "Qualities"), ("gaps", "Gaps"), ("totals", "Totals")]
+    links = "".join(f'<li><a href="#{key}">{name}</a></li>' for key, name in (*sections, ("trees", "Trees")))
+    yield f'<nav aria-label="Sections"><ul>{links}</ul></nav>'
+    yield '<form class="filter" hidden role="search" aria-label="Filter">'
+    yield '<label>Show <input type="search" name="text" placeholder="a name, a node, a clause"></label>'
+    ways = "".join(f"<option>{way}</option>" for way in ("enforced", "monitored", "reviewed", "not attached"))
+    yield f'<label>How <select name="way"><option value="">all</option>{ways}</select></label>'
+    options = "".join(
+        f'<option value="{escape(each.id or "-")}">{escape(each.name)}</option>'
+        for each in overview.totals
+        if each.concerns or each.requirements
+    )
+    yield f'<label>Characteristic <select name="of"><option value="">all</option>{options}</select></label>'
+    yield '<button type="reset">All</button></form>'
+
+
+# ---- tables ----
+
+
+def _tables(overview: Overview) -> Iterator[str]:
+    yield '<div class="tables">'
+    yield from _requirements(overview)
+    yield from _concerns(overview)
+    yield from _gaps(overview)
+    yield from _totals(overview)
+    yield "</div>"
+
+
+def _requirements(overview: Overview) -> Iterator[str]:
+    yield '<section id="requirements" aria-labelledby="h-requirements"><h2 id="h-requirements">Requirements</h2>'
+    if not overview.requirements:
+        yield "<p>There are none.</p></section>"
+        return
+    yield "<table><caption>What is demanded, of which nodes, and how it is held</caption>"
+    yield _head("Requirement", "Holds for", "How")
+    characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
+    for each in overview.requirements:
+        of = characteristics.get(each.quality_key or "") or "-"
+        yield f'<tr class="row" id="{each.key}" data-note="{each.key}" data-way="{each.way}" data-of="{escape(of)}">'
+        yield f'<th scope="row">{_demand(each)}</th>'
+        yield f"<td>{_subjects(each.uses)}</td><td>{_ways(each)}</td></tr>"
+    yield "</tbody></table></section>"
+
+
+def _head(*names: str) -> str:
+    cells = "".join(f'<th scope="col">{name}</th>' for name in names)
+    return f"<thead><tr>{cells}</tr></thead><tbody>"
+
+
+def _demand(each: RequirementRow) -> str:
+    clauses = "".join(f"<li><code>{escape(clause)}</code></li>" for clause in each.clauses)
+    parts = [
+        f'<a class="name" href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}',
+        f"<p>{escape(each.title)}</p>" if each.title else "",
+        f'<ul class="clauses">{clauses}</ul>' if clauses else "",
+        f'<a class="chip" href="#{each.quality_key}">{escape(each.quality)}</a>' if each.quality else "",
+    ]
+    return "".join(parts)
+
+
+def _subjects(uses: Sequence[Use]) -> str:
+    if not uses:
+        return '<span class="missing">nothing</span>'
+    lines = []
+    for use in uses:
+        name = escape(use.subject)
+        shown = f'<a href="#{use.nodes[0]}">{name}</a>' if use.nodes else name
+        given = f' <code class="given">{escape(use.arguments)}</code>' if use.arguments else ""
+        how = f" <small>{attached(use)}</small>" if attached(use) else ""
+        lines.append(f"<li>{shown}{given}{how} {_at(use.at)}</li>")
+    return f"<ul>{''.join(lines)}</ul>"
+
+
+def _ways(each: RequirementRow) -> str:
+    if not any(use.clauses for use in each.uses):
+        return f'<span class="way none">{escape(each.way)}</span>'
+    found: dict[tuple[str, str], None] = {}
+    for use in each.uses:
+        found.update(((clause.way, clause.why), None) for clause in use.clauses)
+    lines = []
+    for way, why in found:
+        code = _CODE.sub(r"<code>\1</code>", escape(why))
+        said = f" <small>{code}</small>" if why else ""
+        lines.append(f'<li><span class="way {way}">{way}</span>{said}</li>')
+    return f"<ul>{''.join(lines)}</ul>"
+
+
+def _concerns(overview: Overview) -> Iterator[str]:
+    yield '<section id="concerns" aria-labelledby="h-concerns"><h2 id="h-concerns">Qualities</h2>'
+    if not overview.qualities:
+        yield "<p>There are none.</p></section>"
+        return
+    yield "<table><caption>Concerns of the early design, and what makes them measurable</caption>"
+    heads = ("Quality", "Concern of", "Requirements")
+    yield _head(*heads)
+    nodes = {node.key: node for node in overview.nodes}
+    names = {each.key: each.name for each in overview.requirements}
+    for each in overview.qualities:
+        text = f"<p>{escape(each.definition)}</p>" if each.definition else ""
+        of = escape(each.characteristic or "-")
+        yield f'<tr class="row" id="{each.key}" data-note="{each.key}" data-way="" data-of="{of}">'
+        name = f'<a class="name" href="#{each.key}">{escape(shown_quality(each))}</a>'
+        yield f'<th scope="row">{name} {_at(each.at)}{text}</th>'
+        yield f"<td>{_node_list([nodes[key] for key in each.concerns])}</td>"
+        links = ", ".join(f'<a href="#{key}">{escape(names[key])}</a>' for key in each.requirements)
+        yield f"<td>{links or _NONE}</td></tr>"
+    yield "</tbody></table></section>"
+
+
+def _node_list(nodes: Sequence[NodeRow]) -> str:
+    lines = "".join(f'<li><a href="#{node.key}">{escape(node.name)}</a> {_at(node.at)}</li>' for node in nodes)
+    return f"<ul>{lines}</ul>" if lines else ""
+
+
+def _gaps(overview: Overview) -> Iterator[str]:
+    yield '<section id="gaps" aria-labelledby="h-gaps"><h2 id="h-gaps">Gaps</h2>'
+    found = {
+        "unmeasured": [
+            f'<a href="#{each.key}">{escape(shown_quality(each))}</a> {_at(each.at)}' for each in overview.unmeasured
+        ],
+        "unattached": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.unattached],
+        "bare_trees": [
+            f'<a href="#{each.nodes[0]}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_trees
+        ],
+        "bare_nodes": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_nodes],
+    }
+    if not any(found.values()):
+        yield "<p>Every quality has a requirement, and every tree and skill a quality.</p>"
+    for gap, lines in found.items():
+        if lines:
+            yield f"<h3>{GAPS[gap]} ({len(lines)})</h3>"
+            yield f"<ul class='gaps'>{''.join(f'<li>{line}</li>' for line in lines)}</ul>"
+    yield "</section>"
+
+
+def _totals(overview: Overview) -> Iterator[str]:
+    yield '<section id="totals" aria-labelledby="h-totals"><h2 id="h-totals">Totals</h2>'
+    yield f"<table class='numbers'><caption>By characteristic of ISO/IEC 25010:{overview.edition}</caption>"
+    heads = ("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
+    yield _head(*heads)
+    for each in overview.totals:
+        numbers = (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)
+        cells = "".join(f"<td>{number or '–'}</td>" for number in numbers)
+        kind = "" if any(numbers) else ' class="empty"'
+        yield f'<tr{kind}><th scope="row">{escape(each.name)}</th>{cells}</tr>'
+    yield "</tbody></table></section>"
+
+
+# ---- trees ----
+
+
+def _trees(overview: Overview) -> Iterator[str]:
+    yield '<section class="trees" id="trees" aria-labelledby="h-trees"><h2 id="h-trees">Trees</h2>'
+    yield '<p class="legend"><span class="key enforced">enforced</span> <span class="key monitored">monitored</span>'
+    yield '<span class="key reviewed">reviewed</span> <span class="key quality">concern</span></p>'
+    for tree in overview.trees:
+        yield from _figure(tree)
+    yield "</section>"
+
+
+def _figure(tree: TreeRow) -> Iterator[str]:
+    drawing = place(tree.figure)
+    if drawing.width > _BROAD:
+        turned = place(tree.figure, "right")
+        drawing = turned if turned.width < drawing.width else drawing
+    bare = ' <span class="missing">without any quality</span>' if tree.is_bare else ""
+    yield f"<figure><figcaption><h3>{escape(tree.name)}</h3> {_at(tree.at)}{bare}</figcaption>"
+    yield f'<div class="scroll" tabindex="0" role="region" aria-label="Tree {escape(tree.name)}">'
+    yield part(drawing, f"The tree {tree.name}: {counted(len(tree.nodes), 'node')}")
+    yield "</div></figure>"
+
+
+def _at(at: At) -> str:
+    name = at.path.rpartition("/")[2]
+    return f'<small class="at" title="{escape(at.path)}:{at.line}:{at.column}">{escape(name)}:{at.line}</small>'
+
+
+_CODE: Final = re.compile("`([^`]*)`")
+_NONE: Final = '<span class="missing">none</span>'
+_FILES: Final = 3  # named in the title
+_BROAD: Final = 720  # pixels: a broader tree grows to the right

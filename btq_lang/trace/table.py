@@ -1,0 +1,181 @@
+"""Tables for a terminal, as wide as it is: cells are broken into lines where they have to be.
+
+One invariant: no line is wider than the terminal, down to 60 columns, and nothing that is printed steers it.
+"""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Iterator, Sequence
+
+from btq_lang.render.cells import cut, laid_out, printable
+from btq_lang.render.colour import Paint, painter
+from btq_lang.trace.overview import At, Overview, RequirementRow
+from btq_lang.trace.wording import GAPS, attached, shown_quality, summary
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def table(overview: Overview, colour: bool = False, width: int = 120) -> str:
+    """The overview for people at a terminal: requirements, concerns, gaps, totals, and a sentence."""
+    return "\n".join(_lines(overview, painter(colour), max(width, _LEAST))) + "\n"
+
+
+def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
+    folder = _folder(overview)
+    if folder:
+        yield from (f"in {cut(printable(folder), 0, width - 4)}", "")
+    if overview.requirements:
+        rows = [_requirement(each, folder) for each in overview.requirements]
+        yield from _table(("Requirement", "Holds for", "How"), rows, paint, width)
+        yield ""
+    nodes = {node.key: node for node in overview.nodes}
+    concerns = [
+        ((shown_quality(each),), [f"{nodes[key].name}, {_at(nodes[key].at, folder)}" for key in each.concerns])
+        for each in overview.qualities
+        if each.concerns
+    ]
+    if concerns:
+        yield from _table(("Concern", "Nodes"), concerns, paint, width)
+        yield ""
+    gaps = {
+        "unmeasured": [f"{shown_quality(each)}, {_at(each.at, folder)}" for each in overview.unmeasured],
+        "unattached": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unattached],
+        "bare_trees": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_trees],
+        "bare_nodes": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_nodes],
+    }
+    for gap, lines in gaps.items():
+        if lines:
+            yield paint("warning", GAPS[gap])
+            yield from (f"  {cut(printable(line), 0, width - 3)}" for line in lines)
+            yield ""
+    heading = (f"ISO/IEC 25010:{overview.edition}", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed")
+    totals = [
+        (
+            (each.name,),
+            *((_number(n),) for n in (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)),
+        )
+        for each in overview.totals
+    ]
+    yield from _table(heading, totals, paint, width, numbers_from=1)
+    yield ""
+    yield from _broken(summary(overview), width)
+
+
+def _number(number: int) -> str:
+    return str(number) if number else "-"
+
+
+def _folder(overview: Overview) -> str:
+    """The folder of all places, which is then said once."""
+    places = [row.at for row in overview.requirements]
+    places += [node.at for node in overview.nodes]
+    places += [quality.at for quality in overview.qualities]
+    folders = [at.path.rpartition("/")[0] for at in places]
+    return os.path.commonpath(folders).replace(os.sep, "/") if folders and all(map(_is_relative, folders)) else ""
+
+
+def _is_relative(folder: str) -> bool:
+    """Whether a folder is one that can be left out: below the current one."""
+    return bool(folder) and not folder.startswith(("/", "..")) and ":" not in folder
+
+
+def _at(at: At, folder: str) -> str:
+    return str(at).removeprefix(f"{folder}/")
+
+
+def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
+    subjects = []
+    for use in each.uses:
+        how = attached(use)
+        subjects.append(f"{use.subject}{use.arguments}, {_at(use.at, folder)}" + (f", {how}" if how else ""))
+    said = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
+    said += [f"for {each.quality}"] if each.quality else []
+    said[1:] = [f"  {line}" for line in said[1:]]
+    ways = each.way.split(", ")
+    whys = [clause.why for use in each.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
+    return said, subjects or ("nothing",), (*ways, *dict.fromkeys(whys))
+
+
+def _table(
+    heading: Sequence[str], rows: Sequence[Sequence[Sequence[str]]], paint: Paint, width: int, numbers_from: int = 99
+) -> Iterator[str]:
+    """A table; each cell is lines, the first of the first cell is what the row is about."""
+    cells = [[[printable(line) for line in cell] for cell in row] for row in rows]
+    widths = [
+        max(_cells(title), *(_cells(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
+    ]
+    widths = _narrowed(widths, width - _BETWEEN * (len(widths) - 1))
+    yield _row(
+        [_shortened(title, room) for title, room in zip(heading, widths, strict=True)],
+        widths,
+        numbers_from,
+        paint,
+        "message",
+    )
+    yield paint("gutter", _row(["-" * room for room in widths], widths, numbers_from, paint))
+    for row in cells:
+        broken = [
+            [part for line in cell for part in _broken(line, room)] for cell, room in zip(row, widths, strict=True)
+        ]
+        for at in range(max(map(len, broken))):
+            line = [cell[at] if at < len(cell) else "" for cell in broken]
+            yield _row(line, widths, numbers_from, paint, "message" if at == 0 else "")
+
+
+def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: Paint, style: str = "") -> str:
+    """A line; style: of its first cell."""
+    parts = []
+    for at, (cell, room) in enumerate(zip(cells, widths, strict=True)):
+        blanks = " " * (room - _cells(cell))
+        shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and at == 0) else cell
+        parts.append(blanks + shown if at >= numbers_from else shown + blanks)
+    return (" " * _BETWEEN).join(parts).rstrip()
+
+
+def _narrowed(widths: list[int], room: int) -> list[int]:
+    """The widest columns give way until all fit."""
+    widths = list(widths)
+    while sum(widths) > room and max(widths) > _NARROWEST:
+        widths[widths.index(max(widths))] -= 1
+    return widths
+
+
+def _broken(text: str, room: int) -> list[str]:
+    """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere."""
+    lines: list[str] = []
+    for word in text.split(" "):
+        if lines and _cells(lines[-1]) + 1 + _cells(word) <= room:
+            lines[-1] += f" {word}"
+            continue
+        while _cells(word) > room:
+            at = _fitting(word, room)
+            lines.append(word[:at])
+            word = word[at:]
+        lines.append(word)
+    return lines
+
+
+def _fitting(word: str, room: int) -> int:
+    """How many characters of a word stand on a line."""
+    fits = 1
+    while fits < len(word) and _cells(word[: fits + 1]) <= room:
+        fits += 1
+    at = max(word.rfind(mark, 0, fits) for mark in ".-/")
+    return at + 1 if at > 0 else fits
+
+
+def _shortened(text: str, room: int) -> str:
+    return text if _cells(text) <= room else cut(text, 0, room - 1)
+
+
+def _cells(text: str) -> int:
+    return laid_out(text)[1][-1]
+
+
+_LEAST: Final = 60
+_BETWEEN: Final = 2  # blanks between columns
+_NARROWEST: Final = 8
+_WAYS: Final = {"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"}

@@ -1,0 +1,37 @@
+"""How each clause is held, as far as the requirement itself says it: by people where it names a method of theirs.
+
+What the generated tree enforces is not known here: whoever knows it hands `collect` a function that says it.
+"""
+
+from __future__ import annotations
+
+from btq_lang.graph.missions import said
+from btq_lang.requirements import Requirements
+from btq_lang.requirements.model import Applied
+from btq_lang.trace.overview import Clause
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import TypeAlias
+
+    # For each of `applied` of a mission's requirements, in its order, its clauses.
+    Ways: TypeAlias = Callable[[Workspace, str, Requirements], Sequence[Sequence[Clause]]]
+
+
+def declared_ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
+    """Each claim monitored, or reviewed where the requirement is verified by people."""
+    return [_clauses(applied) for applied in found.applied]
+
+
+def _clauses(applied: Applied) -> tuple[Clause, ...]:
+    requirement = applied.requirement
+    if not requirement.claims:
+        return tuple(Clause(text, "reviewed", "it is not measurable") for text in said(applied)[:1])
+    if requirement.method in ("review", "analysis", "test"):
+        why = f"verified by {requirement.method}"
+        return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
+    asked = requirement.action in ("fail", "halt")
+    why = f"nothing enforces `on violation {requirement.action}`" if asked else ""
+    return tuple(Clause(claim.text, "monitored", why) for claim in requirement.claims)

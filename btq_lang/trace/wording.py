@@ -1,0 +1,49 @@
+"""Sentences of an overview that several writers print."""
+
+from __future__ import annotations
+
+from btq_lang.trace.overview import Overview, QualityRow, Use
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def summary(overview: Overview) -> str:
+    """How many there are of everything, in a sentence."""
+    ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
+    held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
+    said = f"{counted(len(overview.requirements), 'requirement')}"
+    said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
+    said += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
+    skills = overview.coverage()
+    if not sum(skills.values()):
+        return f"{said}."
+    of = f"{said}; of {counted(sum(skills.values()), 'skill')} {skills['own']}"
+    of += " carries" if skills["own"] == 1 else " carry"
+    return f"{of} a quality or a requirement, {skills['above']} through a node above, {skills['none']} none."
+
+
+def counted(number: int, one: str, several: str = "") -> str:
+    """`1 node`, `2 nodes`."""
+    return f"{number} {one if number == 1 else several or one + 's'}"
+
+
+def shown_quality(quality: QualityRow) -> str:
+    """A quality's name; where the model calls it otherwise, that as well."""
+    known = quality.id
+    return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
+
+
+def attached(use: Use) -> str:
+    """How a subject came by its requirement, where that is no `satisfies`."""
+    return _ATTACHED[use.how]
+
+
+GAPS: Final = {
+    "unmeasured": "Qualities without a requirement",
+    "unattached": "Requirements without a node",
+    "bare_trees": "Trees without any quality",
+    "bare_nodes": "Skills without any quality",
+}
+_ATTACHED: Final = {"subject": "", "satisfies": "", "apply": "by apply", "link": "a link only"}
