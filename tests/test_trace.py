@@ -451,11 +451,68 @@ def test_the_command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypa
     monkeypatch.chdir(tmp_path)
     (tmp_path / "0.btq").write_text(MISSION, encoding="utf-8")
     assert main(["trace", "--format", "json"]) == 0
-    assert capfd.readouterr() == (write(overview_of(MISSION), "json"), "")
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert [row["how"] for row in json.loads(out)["requirements"]] == [
+        *("enforced", "monitored", "monitored", "not attached", "not attached"),
+    ]
+    requirements = json.loads(write(overview_of(MISSION), "json"))["requirements"]
+    assert [row["holds_for"][0]["nodes"] for row in requirements[:3]] == [
+        row["holds_for"][0]["nodes"] for row in json.loads(out)["requirements"][:3]
+    ]
     assert main(["trace", "0.btq", "--format", "html", "-o", "docs/trace.html"]) == 0
-    assert (tmp_path / "docs" / "trace.html").read_text(encoding="utf-8") == write(overview_of(MISSION), "html")
+    assert (tmp_path / "docs" / "trace.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>\n")
     assert main(["trace", "0.btq"]) == 0
-    assert capfd.readouterr() == (write(overview_of(MISSION), "table"), "")
+    assert capfd.readouterr().out.startswith("Requirement ")
+
+
+SHARED = """\
+Action Drive
+BehaviorTree Shared
+    Drive
+"""
+INCLUDING = """\
+include "shared.btq"
+QualityReq rq1 : safety
+    takes at most 30 s
+    on violation fail
+apply rq1 to every Drive
+Root Main
+BehaviorTree Main
+    ->
+        SubTree Shared
+        Drive
+"""
+
+
+def held(folder: Path, capfd: pytest.CaptureFixture[str], *more: str) -> list[tuple[str, str]]:
+    assert main(["trace", str(folder), "--format", "json", *more]) in (0, 1)
+    (requirement,) = json.loads(capfd.readouterr().out)["requirements"]
+    return [(use["clauses"][0]["how"], use["clauses"][0]["why"]) for use in requirement["holds_for"]]
+
+
+def test_what_the_build_enforces(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """With --bundle an included file is one mission's alone, so more can be guarded; with errors nothing is built."""
+    (tmp_path / "shared.btq").write_text(SHARED)
+    (tmp_path / "main.btq").write_text(INCLUDING)
+    (shared, shared_why), own = held(tmp_path, capfd)
+    assert (shared, own) == ("monitored", ("enforced", ""))
+    assert "--bundle" in shared_why
+    assert held(tmp_path, capfd, "--bundle") == [("enforced", ""), ("enforced", "")]
+    (tmp_path / "main.btq").write_text(INCLUDING + "        Drive satisfies rq9\n")
+    assert {how for how, _ in held(tmp_path, capfd)} == {"monitored"}
+
+
+def test_it_says_of_each_node_where_they_are_not_held_alike(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "shared.btq").write_text(SHARED)
+    (tmp_path / "main.btq").write_text(INCLUDING)
+    for form, monitored, enforced in (
+        ("markdown", "main.btq:5), by apply, monitored", "main.btq:5), by apply, enforced"),
+        ("html", "<small>by apply, monitored</small>", "<small>by apply, enforced</small>"),
+    ):
+        assert main(["trace", str(tmp_path), "--format", form]) == 0
+        out = capfd.readouterr().out
+        assert (out.count(monitored), out.count(enforced)) == (1, 1)
 
 
 def test_of_missions_with_errors_it_shows_what_it_understands(

@@ -145,6 +145,7 @@ def _add_trace(commands: _SubParsersAction[ArgumentParser]) -> None:
         "  btq trace --format markdown             for a pull request\n",
     )
     _add_paths(parser)
+    parser.add_argument("--bundle", action="store_true", help="what is enforced where missions are built with --bundle")
     parser.add_argument("--format", choices=TRACE_FORMATS, default="table", help="default: table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)

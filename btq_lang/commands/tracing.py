@@ -5,14 +5,22 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
 
+from btq_lang.btcpp.bundle import bundle
+from btq_lang.btcpp.enforcement import enforced
+from btq_lang.btcpp.export import export, is_mission
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, Group, usage_problem
 from btq_lang.commands.output import write_output
 from btq_lang.loader import shown
 from btq_lang.render.colour import wants_colour
+from btq_lang.requirements import Requirements
 from btq_lang.rules import Severity
 from btq_lang.trace import collect, write
+from btq_lang.trace.overview import Clause
+from btq_lang.trace.ways import declared_ways
+from btq_lang.workspace import Workspace
 
 
 def run(options: Namespace) -> int:
@@ -25,23 +33,50 @@ def run(options: Namespace) -> int:
         print(f"btq: {each}", file=sys.stderr)
     if problems:
         return 2
-    overview = collect([(group.workspace, group.given) for group in groups], shown=shown)
+    errors = {path: number for group in groups for path, number in _errors(group)}
+    broken = frozenset(path for path, number in errors.items() if number)
+
+    def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
+        is_built = is_mission(workspace, path) and broken.isdisjoint(workspace.closure(path))
+        return built_ways(workspace, path, found, options.bundle) if is_built else declared_ways(workspace, path, found)
+
+    overview = collect([(group.workspace, group.given) for group in groups], ways, shown)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
     text = write(overview, options.format, colour=colour, width=_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code
-    errors = sum(_errors(group) for group in groups)
-    if errors:
-        what = "an error" if errors == 1 else f"{errors} errors"
+    if number := sum(errors.values()):
+        what = "an error" if number == 1 else f"{number} errors"
         print(f"btq trace: the missions have {what}, so something may be missing: see btq check", file=sys.stderr)
-    return int(errors > 0)
+    return int(bool(broken))
 
 
-def _errors(group: Group) -> int:
+def built_ways(
+    workspace: Workspace, path: str, found: Requirements, bundled: bool = False
+) -> Sequence[Sequence[Clause]]:
+    """How clauses are held by what `btq build` makes of a mission; where it makes nothing, as they are declared."""
+    declared = declared_ways(workspace, path, found)
+    done = bundle(workspace, path) if bundled else export(workspace, path)
+    if done.problems:
+        return declared
+    held = enforced(workspace, path, done, bundled).held
+    if not held:
+        return declared
+    # A requirement without measurable clauses has none that is held.
+    return [
+        tuple(Clause(each.clause, each.way, each.why) for each in clauses) or said
+        for clauses, said in zip(held, declared, strict=True)
+    ]
+
+
+def _errors(group: Group) -> list[tuple[str, int]]:
+    """How many errors each file has, those that are included too."""
     paths = dict.fromkeys(path for each in group.given for path in group.workspace.closure(each))
-    found = (each for path in paths for each in check(group.workspace, path))
-    return sum(each.effective_severity is Severity.ERROR for each in found)
+    return [
+        (path, sum(each.effective_severity is Severity.ERROR for each in check(group.workspace, path)))
+        for path in paths
+    ]
 
 
 def _width() -> int:

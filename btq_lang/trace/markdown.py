@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from btq_lang.trace.overview import Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, attached, shown_quality, summary
+from btq_lang.trace.wording import GAPS, shown_quality, summary, told
 
 
 def markdown(overview: Overview) -> str:
@@ -50,7 +50,7 @@ def _requirement(each: RequirementRow) -> tuple[str, ...]:
     said += [_code(clause) for clause in each.clauses]
     subjects = []
     for use in each.uses:
-        how = attached(use)
+        how = told(each, use)
         subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
     whys = [clause.why for use in each.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
     how = "<br>".join((each.way, *(dict.fromkeys(whys))))

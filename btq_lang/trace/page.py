@@ -13,9 +13,9 @@ from html import escape
 
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
-from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow, Use
+from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
-from btq_lang.trace.wording import GAPS, attached, counted, shown_quality, summary
+from btq_lang.trace.wording import GAPS, counted, shown_quality, summary, told
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def _requirements(overview: Overview) -> Iterator[str]:
         of = characteristics.get(each.quality_key or "") or "-"
         yield f'<tr class="row" id="{each.key}" data-note="{each.key}" data-way="{each.way}" data-of="{escape(of)}">'
         yield f'<th scope="row">{_demand(each)}</th>'
-        yield f"<td>{_subjects(each.uses)}</td><td>{_ways(each)}</td></tr>"
+        yield f"<td>{_subjects(each)}</td><td>{_ways(each)}</td></tr>"
     yield "</tbody></table></section>"
 
 
@@ -115,15 +115,15 @@ def _demand(each: RequirementRow) -> str:
     return "".join(parts)
 
 
-def _subjects(uses: Sequence[Use]) -> str:
-    if not uses:
+def _subjects(each: RequirementRow) -> str:
+    if not each.uses:
         return '<span class="missing">nothing</span>'
     lines = []
-    for use in uses:
+    for use in each.uses:
         name = escape(use.subject)
         shown = f'<a href="#{use.nodes[0]}">{name}</a>' if use.nodes else name
         given = f' <code class="given">{escape(use.arguments)}</code>' if use.arguments else ""
-        how = f" <small>{attached(use)}</small>" if attached(use) else ""
+        how = f" <small>{escape(said)}</small>" if (said := told(each, use)) else ""
         lines.append(f"<li>{shown}{given}{how} {_at(use.at)}</li>")
     return f"<ul>{''.join(lines)}</ul>"
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from btq_lang.render.cells import cut, laid_out, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.trace.overview import At, Overview, RequirementRow
-from btq_lang.trace.wording import GAPS, attached, shown_quality, summary
+from btq_lang.trace.wording import GAPS, shown_quality, summary, told
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _at(at: At, folder: str) -> str:
 def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
     subjects = []
     for use in each.uses:
-        how = attached(use)
+        how = told(each, use)
         subjects.append(f"{use.subject}{use.arguments}, {_at(use.at, folder)}" + (f", {how}" if how else ""))
     said = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
     said += [f"for {each.quality}"] if each.quality else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.trace.overview import Overview, QualityRow, Use
+from btq_lang.trace.overview import Overview, QualityRow, RequirementRow, Use
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -35,9 +35,13 @@ def shown_quality(quality: QualityRow) -> str:
     return quality.name if known is None or known.endswith(quality.name) else f"{quality.name} ({known})"
 
 
-def attached(use: Use) -> str:
-    """How a subject came by its requirement, where that is no `satisfies`."""
-    return _ATTACHED[use.how]
+def told(requirement: RequirementRow, use: Use) -> str:
+    """What is to be said of a subject: how it came by its requirement, where that is no `satisfies`, and how it is
+    held, where that is not the same for all."""
+    parts = [_ATTACHED[use.how]]
+    if "," in requirement.way:
+        parts.append(", ".join(dict.fromkeys(clause.way for clause in use.clauses)))
+    return ", ".join(filter(None, parts))
 
 
 GAPS: Final = {
