@@ -43,6 +43,7 @@ def code(window: Workbench, request: pytest.FixtureRequest, artifacts: Path) -> 
     yield window
     window.shot(artifacts / f"vscode-{request.node.name}.png")
     window.close_all()
+    window.clean()
 
 
 def test_an_example_is_clean_and_a_mistake_is_underlined(code: Workbench) -> None:
@@ -194,11 +195,10 @@ def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
 
 
 def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench) -> None:
-    wrong = code.write("closed.btq", WRONG)
+    code.write("closed.btq", WRONG)
     code.command("btq: Check All Missions")
     code.see(".terminal-wrapper.active .xterm-accessibility-tree, .terminal-wrapper.active .xterm-screen")
     assert "btq unknown-node" in " ".join(code.problems_of("closed.btq", 1))
-    wrong.unlink()
 
 
 def test_the_xml_beside_follows_what_is_typed(code: Workbench) -> None:
@@ -265,6 +265,25 @@ def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
     ]
     code.command("Notifications: Clear All Notifications")
     code.settings(**ENVIRONMENT)
+
+
+def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
+    (code.folder / "robot").mkdir()
+    code.command("Welcome: Open Walkthrough...")
+    code.choose("A checked mission in five minutes")
+    code.see(".getting-started-step:has-text('Python 3.10 or newer') .codicon.complete")
+    code.see(".getting-started-step:has-text('Begin a project')").click()
+    code.see(".getting-started-step .monaco-button:has-text('New Project')").click()
+    code.choose_empty(code.folder / "robot")
+    code.see(".tab.active:has-text('mission.btq')")
+    assert {path.name for path in (code.folder / "robot").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
+    code.focus()
+    code.command("Welcome: Open Walkthrough...")
+    code.choose("A checked mission in five minutes")
+    code.see(".getting-started-step:has-text('Check the whole project')").click()
+    code.see(".getting-started-step .monaco-button:has-text('Check All Missions')").click()
+    code.see(".getting-started-step:has-text('Check the whole project') .codicon.complete")
+    code.focus_nothing()
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])

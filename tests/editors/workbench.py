@@ -36,6 +36,7 @@ class Workbench:
     def __init__(self, page: Page, origin: str, folder: Path, machine_settings: Path) -> None:
         self.page, self.origin, self.folder = page, origin, folder
         self._machine_settings = machine_settings
+        self._written: list[Path] = []
 
     # ---- what a person does ----
 
@@ -44,7 +45,14 @@ class Workbench:
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8", newline="")
+        self._written.append(path)
         return path
+
+    def clean(self) -> None:
+        """No file of a test is left to the next one."""
+        for path in self._written:
+            path.unlink(missing_ok=True)
+        self._written.clear()
 
     def open(self, name: str) -> None:
         """Open a file by its path, in an editor alone."""
@@ -67,12 +75,33 @@ class Workbench:
     def focus(self) -> None:
         self.page.locator(".editor-instance .view-lines .view-line").first.click()
 
+    def focus_nothing(self) -> None:
+        """Out of a page in an editor, which would keep the keys for itself."""
+        self.page.locator(".part.statusbar").click(position={"x": 400, "y": 10})
+
     def command(self, title: str) -> None:
         """Run a command of the palette."""
         self.keys("F1")
         self._quick_input().fill(f">{title}")
         self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(title)})")
         self.keys("Enter")
+
+    def choose(self, label: str) -> None:
+        """Take an entry of the list that is open."""
+        self._quick_input().fill(label)
+        self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(label)})")
+        self.keys("Enter")
+
+    def choose_empty(self, folder: Path) -> None:
+        """Answer the dialog that asks for a folder with one that is empty."""
+        box = self._quick_input()
+        rows = self.page.locator(".quick-input-list .monaco-list-row")
+        # It writes the folder that it begins with when that is read, over whatever was typed before.
+        self.until(lambda: box.input_value() != "" and rows.count() > 0, lambda: "the dialog shows nothing")
+        box.fill(f"{folder}/")
+        self.until(lambda: rows.all_inner_texts() == [".."], lambda: f"not empty: {rows.all_inner_texts()}")
+        self.page.locator(".quick-input-action a, .quick-input-action .monaco-button").first.click()
+        self.gone(".quick-input-widget")
 
     def cursor(self, line: int, column: int) -> None:
         self.keys("Control+g")
