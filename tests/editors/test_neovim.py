@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT
+from installed import ROOT
 
 PLUGIN = ROOT / "editors" / "nvim"
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce  # größer\n            Dock\n"

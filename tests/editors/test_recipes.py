@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, there
+from installed import ROOT, there
 
 RECIPES = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
 WRONG = "BehaviorTree   Main\n    ->\n        Sequnce\n            Dock\n"

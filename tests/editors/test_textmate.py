@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, there
+from installed import ROOT, there
 
 SNAPSHOTS = Path(__file__).parent / "snapshots"
 EXTENSION = ROOT / "editors" / "vscode"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, STORE, there
+from installed import ROOT, STORE, there
 from workbench import Workbench, workbench
 
 pytest.importorskip("playwright", reason="the browser's driver is not installed: tests/editors/install.sh")
