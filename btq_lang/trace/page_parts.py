@@ -60,6 +60,7 @@ small { color: var(--soft); }
 .way.none, .missing { color: var(--missing); }
 .numbers td { text-align: right; font-variant-numeric: tabular-nums; }
 .numbers thead th:not(:first-child) { text-align: right; }
+@media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; } }
 .empty { color: var(--soft); }
 .legend { margin: .25rem 0; font-size: .85rem; }
 .key { padding: 0 .5rem; margin-right: .35rem; border: 1.5px dashed #a8650f; border-radius: 3px; }
@@ -106,7 +107,8 @@ SCRIPT: Final = """\
     mark("chosen", now);
     document.body.classList.toggle("choosing", now.length > 0);
     const found = now.length ? withKeys(now) : [];
-    live.textContent = now.length ? `${found.filter((part) => part.matches(".box")).length} nodes highlighted` : "";
+    const nodes = found.filter((part) => part.matches(".box")).length;
+    live.textContent = now.length ? `${nodes} ${nodes === 1 ? "node" : "nodes"} highlighted` : "";
     return found;
   };
   const show = (part) => part && part.scrollIntoView({ block: "nearest", inline: "nearest" });
