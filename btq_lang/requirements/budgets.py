@@ -8,6 +8,7 @@ holds for some activations only (a scope, some instances) is none here.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from math import inf
 
 from btq_lang.record import record, replace
@@ -59,22 +60,50 @@ class Budgets:
         self._composed: dict[int, Budget] = {}
         self._held: dict[int, Budget] = {}
         self._successes: dict[int, Success | None] = {}
-        for node in self._in_order():
-            self._composed[id(node)] = composed = self._compose(node)
-            self._held[id(node)] = _with_attributes(node, self._with_claims(node, composed))
-            self._successes[id(node)] = self._succeeding(node)
 
     def of(self, node: SourceNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
+        self._work_out(node)
         return self._held[id(node)]
 
     def composed(self, node: SourceNode) -> Budget:
         """How long a node takes, if all below it are as demanded: what its own bounds are held against."""
+        self._work_out(node)
         return self._composed[id(node)]
 
     def success(self, node: SourceNode) -> Success | None:
         """How likely a node succeeds, and within which time, if all below it are as demanded; None: nobody says."""
+        for root in self._run_by(node):
+            self._work_out(root)
+            return self._part(root)
+        self._work_out(node)
         return self._composed_success(node)
+
+    def _work_out(self, top: SourceNode) -> None:
+        """Compose a node, and before it what it rests on: most nodes of a file nobody asks for."""
+        waiting = [top]
+        while waiting:
+            node = waiting[-1]
+            missing = [child for child in (*node.children, *self._run_before(node)) if id(child) not in self._held]
+            if missing:
+                waiting += missing
+                continue
+            waiting.pop()
+            if id(node) not in self._held:
+                self._composed[id(node)] = composed = self._compose(node)
+                self._held[id(node)] = _with_attributes(node, self._with_claims(node, composed))
+                self._successes[id(node)] = self._succeeding(node)
+
+    def _run_before(self, node: SourceNode) -> Iterator[SourceNode]:
+        """The root that a SubTree node runs, unless that would be running in a circle."""
+        for root in self._run_by(node):
+            if self._positions[id(root)] < self._positions[id(node)]:
+                yield root
+
+    @cached_property
+    def _positions(self) -> dict[int, int]:
+        """Of all nodes, so that a circle is cut at the same place, whichever of its nodes is asked for first."""
+        return {id(node): position for position, node in enumerate(self._in_order())}
 
     def _in_order(self) -> Iterator[SourceNode]:
         """Children before their parents, and trees before the SubTree nodes that run them, where there is no circle."""
@@ -101,13 +130,9 @@ class Budgets:
 
     def _compose(self, node: SourceNode) -> Budget:
         if node.category == "SubTree":
-            (root,) = self._run_by(node) or (None,)
-            held = self._held.get(id(root)) if root is not None else None
-            if root is None or held is None:
-                return unknown(
-                    node, "is a tree that runs itself" if root is not None else "is a tree that nobody knows"
-                )
-            return _as_part(root, held)
+            for root in self._run_before(node):
+                return _as_part(root, self._held[id(root)])
+            return unknown(node, "is a tree that runs itself" if self._run_by(node) else "is a tree that nobody knows")
         if node.kind is None and not node.node.children:
             if node.category == "Condition":
                 return Budget(ZERO, ZERO, None, False)
@@ -152,8 +177,7 @@ class Budgets:
 
     def _composed_success(self, node: SourceNode) -> Success | None:
         if node.category == "SubTree":
-            below = self._run_by(node)
-            return self._part(below[0]) if below else None
+            return next(map(self._part, self._run_before(node)), None)
         budget = self._composed[id(node)]
         if not node.children:
             sure = budget.success is not None and budget.failure is None and budget.success.high < inf
