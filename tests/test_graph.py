@@ -203,6 +203,12 @@ def workspace_texts(workspace: Workspace) -> list[tuple[str, str]]:
     return [(path, file.text) for path, file in workspace.files.items()]
 
 
+def test_of_a_quality_with_a_long_name_the_last_part_is_drawn() -> None:
+    text = "BehaviorTree Main\n    A satisfices performance-efficiency.resource-utilization, security.integrity\n"
+    drawing = place(figures(Workspace.of({"a.btq": text}), "a.btq", with_qualities=True)[0])
+    assert [note.lines for note in drawing.boxes[0].notes] == [("resource-utilization",), ("security.integrity",)]
+
+
 def test_dot() -> None:
     found = figures(Workspace.of({"a.btq": MISSION}), "a.btq", with_qualities=True)
     assert draw(found, "dot", "right").splitlines()[:12] == [
@@ -245,6 +251,16 @@ def test_mermaid() -> None:
         "  classDef quality stroke:#2f7d4f,stroke-dasharray:6 3;\n"
         "  classDef requirement stroke:#a8650f;\n"
     )
+
+
+def test_the_picture_in_the_readme_is_fresh(update: bool) -> None:
+    workspace = open_workspace(str(ROOT / "examples" / "laboratory"))
+    (path,) = workspace.files
+    drawn = draw(figures(workspace, path, with_qualities=True))
+    target = ROOT / "docs" / "laboratory.svg"
+    if update:
+        target.write_text(drawn, encoding="utf-8")
+    assert target.read_text(encoding="utf-8") == drawn
 
 
 @pytest.mark.parametrize(("form", "direction"), [("png", "down"), ("svg", "up")])

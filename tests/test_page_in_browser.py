@@ -19,6 +19,7 @@ from typing import Any
 import pytest
 from missions import mission
 
+from btq_lang.commands.tracing import built_ways
 from btq_lang.graph import DIRECTIONS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.loader import open_workspace
@@ -58,7 +59,7 @@ def overview_of(example: str) -> Overview:
     if example == "200 nodes":
         return collect([(Workspace.of({"big.btq": mission(200, 3, "short")}), ("big.btq",))])
     workspace = open_workspace(str(ROOT / "examples" / example))
-    return collect([(workspace, tuple(workspace.files))], shown=lambda path: os.path.relpath(path, ROOT))
+    return collect([(workspace, tuple(workspace.files))], built_ways, lambda path: os.path.relpath(path, ROOT))
 
 
 @pytest.fixture

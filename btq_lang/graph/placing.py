@@ -177,8 +177,12 @@ def _box_size(box: Box, lines: tuple[str, ...]) -> tuple[int, int]:
 
 
 def _note_lines(note: Note) -> tuple[str, ...]:
+    """The title and the clauses; of a quality whose name is too wide the last part, which says the most."""
+    title = note.title
+    if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
+        title = title.rpartition(".")[2]
     lines = [part for line in note.lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST)]
-    return (shortened(note.title, SMALL, _NOTE_ROOM), *lines)
+    return (shortened(title, SMALL, _NOTE_ROOM), *lines)
 
 
 def _note_width(lines: tuple[str, ...]) -> int:
