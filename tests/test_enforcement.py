@@ -225,6 +225,15 @@ def test_a_node_that_is_skipped_from_within_stays_so() -> None:
     ]
 
 
+def test_what_is_never_reset_stays_so() -> None:
+    text = f"QualityReq r\n    takes at most 5 s\n{FAIL}apply r to Asked, Then\nRoot Main\nBehaviorTree Main\n"
+    text += "    IfThenElse\n        Move Asked\n        Move Then\n"
+    assert states(Workspace.of({"main.btq": text}), "main.btq") == [
+        "r: monitored: `Move Asked` is the condition of `IfThenElse`, which would ask it in another way",
+        "r: enforced",
+    ]
+
+
 def test_a_path_through_subtrees_names_some_instances_only() -> None:
     text = "QualityReq r\n    one/Move takes at most 5 s\n    on violation fail\nRoot Main\nBehaviorTree Main\n    ->\n"
     text += "        SubTree Part one\n        SubTree Part two\nBehaviorTree Part\n    ->\n        Move\n"

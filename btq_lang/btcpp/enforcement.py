@@ -282,6 +282,13 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
     names = [pair.key.text for pair in node.node.attributes]
     if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
         raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
+    if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") and node.index == 0:
+        # Nobody resets it: when it is asked again, an action says what it said before, and `_failureIf` is not looked
+        # at.  With something around it, it would be reset.
+        if node.category not in _ASKED_ANEW or any(name in names for name in ("_failureIf", "_successIf")):
+            raise NotEnforced(
+                f"{node.shown} is the condition of {node.parent.shown}, which would ask it in another way"
+            )
 
 
 def _first_value(signal: Signal) -> dict[str, str]:
@@ -341,4 +348,5 @@ def _put(document: Document, wrappers: Mapping[int, Sequence[Wrapper]]) -> None:
 
 
 _ALL: Final = "*"
+_ASKED_ANEW: Final = frozenset(("Condition", "Control", "Decorator"))
 _POSTCONDITIONS: Final = ("_onSuccess", "_onFailure", "_post")
