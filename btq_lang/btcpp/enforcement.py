@@ -282,13 +282,12 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
     names = [pair.key.text for pair in node.node.attributes]
     if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
         raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
-    if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") and node.index == 0:
-        # Nobody resets it: when it is asked again, an action says what it said before, and `_failureIf` is not looked
-        # at.  With something around it, it would be reset.
-        if node.category not in _ASKED_ANEW or any(name in names for name in ("_failureIf", "_successIf")):
-            raise NotEnforced(
-                f"{node.shown} is the condition of {node.parent.shown}, which would ask it in another way"
-            )
+    # Nobody resets the condition of these: when it is asked again, an action says what it said before, and `_failureIf`
+    # is not looked at.  With something around it, it would be reset.
+    asks = node.parent if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") else None
+    is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
+    if asks is not None and node.index == 0 and not is_asked_anew:
+        raise NotEnforced(f"{node.shown} is the condition of {asks.shown}, which would ask it in another way")
 
 
 def _first_value(signal: Signal) -> dict[str, str]:
