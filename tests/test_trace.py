@@ -6,10 +6,12 @@ import csv
 import io
 import json
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from test_requirements import WORKED
 
 from btq_lang.cli import main
 from btq_lang.graph.svg import _COLOURS
@@ -236,9 +238,9 @@ def test_csv() -> None:
         ("requirement", "trip", "Drive", ""),
         ("requirement without node", "tidy", "", ""),
         ("requirement without node", "forgotten", "", ""),
-        ("concern", "interaction-capability", "-> Rest", ""),
+        ("concern", "interaction-capability", "'-> Rest", ""),
         ("quality without requirement", "interaction-capability", "", ""),
-        ("concern", "performance-efficiency", "-> Rest", ""),
+        ("concern", "performance-efficiency", "'-> Rest", ""),
         ("node without quality", "", "Wait", ""),
         ("node without quality", "", "Wait", ""),
         ("tree without quality", "", "Pause", ""),
@@ -261,6 +263,12 @@ def test_csv() -> None:
         "defined": "0.btq",
         "defined_line": "4",
     }
+
+
+def test_a_spreadsheet_finds_no_formula() -> None:
+    text = 'QualityReq r "=1+1"\n    takes at most 1 s\nBehaviorTree A\n    Action "@x" satisfies r\n'
+    (row,) = csv.DictReader(io.StringIO(write(overview_of(text), "csv"), newline=""))
+    assert (row["title"], row["holds_for"]) == ("'=1+1", "'@x")
 
 
 def test_json() -> None:
@@ -434,6 +442,15 @@ def test_texts_of_the_page_can_be_read(at: int) -> None:
 
 
 @pytest.mark.parametrize("form", FORMATS)
+def test_deep_trees(form: str) -> None:
+    """Of thousands of levels, the innermost with a requirement."""
+    depth = 3_000
+    lines = [f"{' ' * level}{'Inverter' if level < depth else 'Drive satisfies safe'}" for level in range(1, depth + 1)]
+    text = "\n".join(["QualityReq safe : safety", " takes at most 1 s", "BehaviorTree Main", *lines, ""])
+    assert "safe" in write(overview_of(text), form)
+
+
+@pytest.mark.parametrize("form", FORMATS)
 @pytest.mark.parametrize("text", ["", "BehaviorTree\n", MISSION[:600], MISSION.replace("takes", "tooks")])
 def test_every_file_has_an_overview(text: str, form: str) -> None:
     assert write(overview_of(text), form).endswith("\n")
@@ -513,6 +530,48 @@ def test_it_says_of_each_node_where_they_are_not_held_alike(tmp_path: Path, capf
         assert main(["trace", str(tmp_path), "--format", form]) == 0
         out = capfd.readouterr().out
         assert (out.count(monitored), out.count(enforced)) == (1, 1)
+
+
+CASES = [*(f"examples/{name}" for name in ("laboratory", "hospital", "navigation", "pick-and-place")), "worked"]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_overview_the_side_file_and_the_xml_say_the_same(
+    case: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    source = tmp_path / "source"
+    if case == "worked":
+        source.mkdir()
+        text = WORKED.replace("from {energy_used} counter", "from {energy_used} counter initially 0 Wh")
+        text = text.replace("from {base_speed}\n", "from {base_speed} initially 0 m/s\n")
+        text = text.replace("from {people_count}\n", "from {people_count} initially 0 person\n")
+        (source / "mission.btq").write_text(text, encoding="utf-8")
+    else:
+        shutil.copytree(ROOT / case, source)
+    assert main(["trace", str(source), "--format", "json"]) == 0
+    overview = json.loads(capfd.readouterr().out)
+    assert main(["build", str(source), "-o", str(tmp_path / "built")]) == 0
+    sides = [json.loads(path.read_text(encoding="utf-8")) for path in sorted((tmp_path / "built").rglob("*.qreq.json"))]
+    missions = {Path(path).stem for path in overview["files"]}
+    said = {
+        (each["id"], clause["text"], clause["how"], clause["why"])
+        for each in overview["requirements"]
+        for use in each["holds_for"]
+        for clause in use["clauses"]
+        if each["clauses"] not in ([], ["verified by review"])  # what cannot be measured is in the overview alone
+    }
+    built = {
+        (applied["requirement"], clause["clause"], clause["held"], clause.get("why", ""))
+        for side in sides
+        if Path(side["mission"]["file"]).stem in missions
+        for applied in side["applied"]
+        for clause in applied.get("clauses", ())
+    }
+    assert said == built
+    xml = "".join(path.read_text(encoding="utf-8") for path in (tmp_path / "built").rglob("*.xml"))
+    enforced = {name for name, _, how, _ in said if how == "enforced"}
+    assert enforced == set(re.findall(r' _btq="([^"*]+)"', xml))  # `*`: what the mission begins with
+    assert enforced
 
 
 def test_of_missions_with_errors_it_shows_what_it_understands(

@@ -12,6 +12,7 @@ from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics import Place
 from btq_lang.graph.figure import Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
+from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Event, Mission, Requirement, SourceNode, Span, Target, Total
 from btq_lang.syntax import QualityDecl, Tree
@@ -337,7 +338,10 @@ def _subject(applied: Applied) -> str:
 
 
 def _name(source: SourceNode) -> str:
-    return source.shown.strip("`")
+    """Its kind and its instance name; of a placeholder, which stands for a skill, the skill's."""
+    if is_placeholder(source.node) and source.node.name is not None:
+        return source.node.name.text
+    return source.shown.removeprefix("`").removesuffix("`")
 
 
 def _note(row: _Requirement, applied: Applied, use: Use) -> Note:

@@ -11,6 +11,9 @@ The columns, which later versions add to but do not change:
     attached_by     subject | satisfies | apply | link
     source, line    of what attached it, or of the node or tree
     defined, defined_line   where the requirement or the quality is defined or first named
+
+A text that a spreadsheet would take for a formula (`-> Work`, `=1+1`) has an apostrophe before it, as OWASP advises
+("CSV Injection"); programs that want texts as they are read the JSON.
 """
 
 from __future__ import annotations
@@ -31,8 +34,12 @@ def csv_text(overview: Overview) -> str:
     out = io.StringIO()
     writer = csv.DictWriter(out, COLUMNS, restval="")
     writer.writeheader()
-    writer.writerows(_rows(overview))
+    writer.writerows({key: _plain(value) for key, value in row.items()} for row in _rows(overview))
     return out.getvalue()
+
+
+def _plain(value: str | int) -> str | int:
+    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
 
 
 def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
@@ -86,6 +93,7 @@ def _source(at: At) -> dict[str, str | int]:
     return {"source": at.path, "line": at.line}
 
 
+_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r")
 COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
     *("attached_by", "source", "line", "defined", "defined_line"),

@@ -83,7 +83,7 @@ def _is_relative(folder: str) -> bool:
 
 
 def _at(at: At, folder: str) -> str:
-    return str(at).removeprefix(f"{folder}/")
+    return str(at).removeprefix(f"{folder}/") if folder else str(at)
 
 
 def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]:
