@@ -15,7 +15,7 @@ import urllib.parse
 import urllib.request
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -174,6 +174,21 @@ class Workbench:
         self.keys("Control+Space")
         self.see(".suggest-widget.visible .monaco-list-row")
         return [row.split("\n")[0] for row in self.page.locator(".suggest-widget .monaco-list-row").all_inner_texts()]
+
+    def fixes(self) -> None:
+        """Open the list of fixes at the cursor.
+
+        It closes again when the findings of the file are told anew just then: one asks once more, as a person would.
+        """
+        from playwright.sync_api import TimeoutError as Timeout
+
+        rows = self.page.locator(".action-widget .monaco-list-row")
+        for _ in range(10):
+            self.keys("Control+.")
+            with suppress(Timeout):
+                rows.first.wait_for(timeout=_WAIT / 10)
+                return
+        raise AssertionError("no fixes are offered")
 
     def text(self) -> list[str]:
         """The lines of the active editor that are on the screen."""

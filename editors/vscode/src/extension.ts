@@ -39,6 +39,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
     vscode.commands.registerCommand("btq.newProject", () => newProject(context)),
     vscode.commands.registerCommand("btq.check", async () => {
+      // The walkthrough waits for it to become true, and does not see what was true before.
+      await vscode.commands.executeCommand("setContext", "btq.checkedClean", false);
       const found = await runTask("check", await line());
       await vscode.commands.executeCommand("setContext", "btq.checkedClean", found === 0);
     }),

@@ -31,24 +31,19 @@ export class Tasks implements vscode.TaskProvider {
 export async function runTask(command: Command, commandLine: string[]): Promise<number | undefined> {
   const task = taskOf({ type: "btq", command }, commandLine);
   if (!task) return undefined;
-  let execution: vscode.TaskExecution | undefined;
-  const early = new Map<vscode.TaskExecution, number | undefined>();
   return new Promise((resolve, reject) => {
-    // Listening begins before the start: a short command may be over before it is said to run.
-    const listener = vscode.tasks.onDidEndTaskProcess((ended) => {
-      early.set(ended.execution, ended.exitCode);
-      finish();
+    // Listening begins before the start, and looks for the task and not for its execution: a short command may be over
+    // before it is said to run, and is then told of with another object.
+    const listener = vscode.tasks.onDidEndTaskProcess(({ execution, exitCode }) => {
+      const ended = execution.task.definition;
+      if (ended.type !== "btq" || ended.command !== command) return;
+      listener.dispose();
+      resolve(exitCode);
     });
-    const finish = (): void => {
-      if (execution && early.has(execution)) {
-        listener.dispose();
-        resolve(early.get(execution));
-      }
-    };
-    vscode.tasks.executeTask(task).then((running) => {
-      execution = running;
-      finish();
-    }, reject);
+    vscode.tasks.executeTask(task).then(undefined, (error: unknown) => {
+      listener.dispose();
+      reject(error instanceof Error ? error : new Error(String(error)));
+    });
   });
 }
 
