@@ -45,7 +45,7 @@ class Held:
         place: of the clause.
         node: that it holds for; None where that is no node.
         way: by the engine, by looking at logs, or by people.
-        why: why no more is done about it, or what of it is not enforced; empty where there is nothing to say.
+        why: why no more is done about it, or what is to be known of what is done; mostly empty.
         asked: it is to be enforced.
     """
 
@@ -233,7 +233,7 @@ class _Planner:
         return subject.node
 
     def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
-        """Remember what a clause needs; what of it is not enforced.
+        """Remember what a clause needs; what there is to say of it.
 
         Raises:
             NotEnforced: the engine cannot do it.
@@ -255,7 +255,14 @@ class _Planner:
             self.stops[made.stop] = None
         for each, wrapper in made.wrappers:
             self.wrappers.setdefault(id(each.node), []).append(wrapper)
-        return made.note
+        unset = [signal.name for signal in made.signals if signal.initially is None]
+        notes = [made.note] if made.note else []
+        if unset:
+            names = ", ".join(f"`{name}`" for name in unset)
+            notes.append(
+                f"the mission ends where {names} {'is' if len(unset) == 1 else 'are'} read before a first sample"
+            )
+        return "; ".join(notes)
 
     def _can_stand(self, claim: Claim, node: SourceNode, made: Guarded) -> None:
         if claim.verb in ("takes", "succeeds") and claim.limit is not None and not self._budget_of(node).waits:

@@ -23,16 +23,16 @@ class Keys:
 
     def __init__(self) -> None:
         self._taken: Final[set[str]] = set()
+        self._numbers: Final[dict[str, int]] = {}  # all smaller ones are taken
         self._stops: Final[dict[str, str]] = {}
 
     def next(self, requirement: str) -> str:
         """What the names of a clause's nodes and entries begin with; `take` makes it the clause's."""
         plain = legal(requirement)
-        name = plain
-        number = 1
-        while name in self._taken:
+        number = self._numbers.get(plain, 1)
+        while (name := plain if number == 1 else f"{plain}_{number}") in self._taken:
             number += 1
-            name = f"{plain}_{number}"
+        self._numbers[plain] = number
         return name
 
     def take(self, name: str) -> None:

@@ -165,14 +165,15 @@ def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> 
 
 
 def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: bool) -> None:
-    """Print how the clauses of requirements are held: one by one those that are to be enforced and are not."""
+    """Print how the clauses of requirements are held: those that are to be enforced one by one, where they are not, or
+    where there is something to say of it."""
     clauses: dict[object, Held] = {}
     for held in (held for done in made for applied in done.held for held in applied):
         key = held.requirement, held.clause, held.place.path, held.place.span, id(held.node and held.node.node)
         if key not in clauses or held.way == "enforced":  # what one file cannot enforce, another may
             clauses[key] = held
     for held in clauses.values():
-        if not verbose and (not held.asked or held.way == "enforced"):
+        if not verbose and (not held.asked or (held.way == "enforced" and not held.why)):
             continue
         where = f" at {held.node.shown}" if held.node is not None else ""
         way = "not enforced, monitored" if held.asked and held.way == "monitored" else held.way

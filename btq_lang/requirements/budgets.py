@@ -81,7 +81,7 @@ class Budgets:
 
     def _work_out(self, top: SourceNode) -> None:
         """Compose a node, and before it what it rests on: most nodes of a file nobody asks for."""
-        waiting = [top]
+        waiting = [top] if id(top) not in self._held else []
         while waiting:
             node = waiting[-1]
             missing = [child for child in (*node.children, *self._run_before(node)) if id(child) not in self._held]

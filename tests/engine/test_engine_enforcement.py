@@ -8,11 +8,13 @@ parts that keep it.  Broken, the plain tree succeeds, so that what fails is the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
 from engine_loader import Answer, Engine, job
 
+from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
@@ -493,3 +495,59 @@ BehaviorTree Main
     assert_fails(engine, text, {"First": [step("SUCCESS", battery=40.0)], "Move": [step("SUCCESS", battery=80.0)]})
     assert_fails(engine, text, {"Move": ["RUNNING", step("RUNNING", speed=1.5), "RUNNING", "SUCCESS"]})
     assert_fails(engine, text, {"Move": ["RUNNING", step("SUCCESS", battery=60.0)]})
+
+
+# ---- signals without a first value ----
+
+
+def test_a_signal_that_somebody_writes_first_needs_no_first_value(engine: Engine) -> None:
+    text = "signal speed : m/s from {speed}\nQualityReq rq1\n    Move keeps speed <= 1 m/s\n    on violation fail\n"
+    text += "Root Main\nBehaviorTree Main\n    ->\n        First\n        Move\n"
+    workspace = Workspace.of({"main.btq": text})
+    done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
+    assert done.held[0][0].why == "the mission ends where `speed` is read before a first sample"
+    xml = write(done.export.document)
+    written: Parts = {"First": [step("SUCCESS", speed=0.5)]}
+    assert run(engine, xml, written).status == "SUCCESS"
+    answer = engine.run_one(xml, ticks=9)
+    assert answer.stage == "tick"
+    assert "Variable not found: @speed" in answer.error
+
+
+# ---- several files ----
+
+
+PARTS = {
+    "shared.btq": "signal speed : m/s from {speed} initially 0 m/s\nQualityReq safe\n    keeps speed <= 1 m/s\n"
+    "    on violation halt\n",
+    "skills.btq": 'include "shared.btq"\nBehaviorTree Drive\n    Move satisfies safe\n',
+    "main.btq": 'include "skills.btq"\nRoot Main\nBehaviorTree Main\n    ->\n        Fallback\n'
+    "            SubTree Drive (speed = {speed})\n            Plan_B\n        Rest\n",
+}
+
+
+@pytest.mark.parametrize("bundled", [False, True], ids=["files", "bundle"])
+def test_an_included_file_halts_the_mission(engine: Engine, bundled: bool, tmp_path: Path) -> None:
+    workspace = Workspace.of(PARTS)
+    for path in ("main.btq",) if bundled else PARTS:
+        done = bundle(workspace, path) if bundled else export(workspace, path)
+        xml = write(enforced(workspace, path, done, bundled).export.document)
+        (tmp_path / path).with_suffix(".xml").write_text(xml, encoding="utf-8")
+    slow: Parts = {"Move": ["RUNNING", step("RUNNING", speed=0.9), "RUNNING", "SUCCESS"]}
+    fast: Parts = {"Move": ["RUNNING", step("RUNNING", speed=1.1), "RUNNING", "SUCCESS"], "Rest": ["RUNNING"] * 5}
+    broken, kept = engine.run(job(tmp_path / "main.xml", parts=parts, ticks=50) for parts in (fast, slow))
+    assert (broken.stage, broken.status) == ("done", "FAILURE")
+    assert "SUCCESS" not in broken.statuses("Rest")
+    assert (kept.stage, kept.status) == ("done", "SUCCESS")
+
+
+# ---- classic files ----
+
+
+def test_a_script_in_a_description_is_enforced(engine: Engine) -> None:
+    tree = 'Root Main\nBehaviorTree Main\n    ->\n        First\n        Move (satisfies QualityReq ID = "rq1"'
+    for word, kept, broken in (("SuccessIf", 30, 10), ("FailureIf", 10, 30)):
+        text = f'{tree} description = "{word} battery > 20")\n        Rest\n'
+        parts: Parts = {"Move": ["RUNNING", step("RUNNING", battery=broken), "RUNNING", "SUCCESS"]}
+        assert_fails(engine, text, parts, blackboard={"battery": kept})
+        assert_unchanged(engine, text, QUICK, blackboard={"battery": kept})
