@@ -230,14 +230,14 @@ def test_dot() -> None:
 
 
 def test_mermaid() -> None:
-    text = 'BehaviorTree Main\n    ->\n        Condition "a \\"b\\" #1"\n        SubTree Rest\n'
+    text = 'BehaviorTree Main\n    ->\n        Condition "a \\"b\\" #1\\\\n"\n        SubTree Rest\n'
     text += "BehaviorTree Rest\n    A satisfices safety\n"
     assert draw(figures(Workspace.of({"a.btq": text}), "a.btq", with_qualities=True), "mermaid") == (
         "flowchart TB\n"
         '  subgraph tree0["Main"]\n'
         "    direction TB\n"
         '    t0n0["-#gt;"]\n'
-        '    t0n1(["a #quot;b#quot; #35;1"])\n'
+        '    t0n1(["a #quot;b#quot; #35;1#92;n"])\n'
         "    t0n0 --- t0n1\n"
         '    t0n2[["Rest"]]\n'
         "    t0n0 --- t0n2\n"

@@ -189,7 +189,8 @@ def test_rows_can_be_filtered(seen: Callable[..., dict[str, Any]]) -> None:
     };
     const all = left().length;
     const found = { all, text: set("text", "DRAWER"), none: set("text", "no such thing") };
-    set("text", "");
+    const gaps = () => [...document.querySelectorAll(".gaps li")].filter((gap) => gap.offsetParent).length;
+    found.gaps = [gaps()]; set("text", ""); found.gaps.push(gaps());
     found.way = set("way", "reviewed"); set("way", "");
     found.of = set("of", "reliability"); set("of", "");
     found.shown = left().length === all;
@@ -200,6 +201,7 @@ def test_rows_can_be_filtered(seen: Callable[..., dict[str, Any]]) -> None:
     assert found["all"] == len(overview.requirements) + len(overview.qualities)
     assert found["text"] == [names["locked"]]
     assert found["none"] == []
+    assert found["gaps"] == [0, len(overview.bare_nodes) + len(overview.bare_trees)]
     assert found["way"] == [names["wiped"]]
     assert found["of"][0] == names["dependable"]
     assert found["shown"] is True

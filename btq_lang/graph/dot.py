@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btq_lang.graph.figure import Figure, Note
+from btq_lang.graph.placing import note_lines
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def _lines(figure: Figure) -> Iterator[str]:
             yield f"{_quoted(figure.boxes[box.parent].key)} -> {_quoted(box.key)};"
         for number, note in enumerate(box.notes):
             key = f"{box.key}.{number}"
-            yield _node(key, _text((note.title, *note.lines)), _note_shape(note), note.text)
+            yield _node(key, _text(note_lines(note)), _note_shape(note), note.text)
             yield f"{_quoted(box.key)} -> {_quoted(key)} [style=dashed];"
 
 

@@ -1,7 +1,7 @@
 """Mermaid, which code hosts draw in Markdown files, issues and pull requests.
 
 The format: https://mermaid.js.org/syntax/flowchart.html.  Texts stand in quotes, with entity codes for what Mermaid
-would read itself: quotes, brackets of HTML, `#`, and the backtick that begins Markdown.
+would read itself: quotes, brackets of HTML, `#`, the backtick that begins Markdown, and the backslash of `\\n`.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btq_lang.graph.figure import Figure
+from btq_lang.graph.placing import note_lines
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def _lines(figure: Figure, prefix: str) -> Iterator[str]:
         for at, note in enumerate(box.notes):
             key = f"{name}q{at}"
             opening, closing = ("([", "])") if note.kind == "quality" else ("[", "]")
-            yield f"{key}{opening}{_text((note.title, *note.lines))}{closing}:::{note.kind}"
+            yield f"{key}{opening}{_text(note_lines(note))}{closing}:::{note.kind}"
             yield f"{name} -.- {key}"
 
 
@@ -50,7 +51,7 @@ def _escaped(text: str) -> str:
     return "".join(_CODES.get(character, character) for character in text.replace("\n", " "))
 
 
-_CODES: Final = {'"': "#quot;", "#": "#35;", "<": "#lt;", ">": "#gt;", "&": "#amp;", "`": "#96;"}
+_CODES: Final = {'"': "#quot;", "#": "#35;", "<": "#lt;", ">": "#gt;", "&": "#amp;", "`": "#96;", "\\": "#92;"}
 _BRACKETS: Final = {
     "control": ("[", "]"),
     "action": ("[", "]"),

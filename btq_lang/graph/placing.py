@@ -94,6 +94,15 @@ def place(figure: Figure, direction: str = "down") -> Drawing:
     return Drawing(figure.title, right + 2 * MARGIN, bottom + 2 * MARGIN, tuple(placed))
 
 
+def note_lines(note: Note) -> tuple[str, ...]:
+    """The title and the clauses; of a quality whose name is too wide the last part, which says the most."""
+    title = note.title
+    if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
+        title = title.rpartition(".")[2]
+    lines = [part for line in note.lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST)]
+    return (shortened(title, SMALL, _NOTE_ROOM), *lines)
+
+
 class _Part:
     """A box with its notes, before it has a place.
 
@@ -107,7 +116,7 @@ class _Part:
         self._down = down
         self._lines = (shortened(box.title, TITLE, _ROOM), *(shortened(line, SMALL, _ROOM) for line in box.lines))
         self._w, self._h = _box_size(box, self._lines)
-        self._notes = [_note_lines(note) for note in box.notes]
+        self._notes = [note_lines(note) for note in box.notes]
         self._note_w = max((_note_width(lines) for lines in self._notes), default=0)
         heights = [len(lines) * LEADING + _NOTE_PAD for lines in self._notes]
         notes_h = sum(heights) + _NOTE_GAP * (len(heights) - 1) if heights else 0
@@ -174,15 +183,6 @@ def _box_size(box: Box, lines: tuple[str, ...]) -> tuple[int, int]:
     if box.outline == "condition":
         w, h = w + w // 6, h + 6 * len(lines)
     return max(w + w % 2, _LEAST), h + h % 2
-
-
-def _note_lines(note: Note) -> tuple[str, ...]:
-    """The title and the clauses; of a quality whose name is too wide the last part, which says the most."""
-    title = note.title
-    if note.kind == "quality" and width(title, SMALL, bold=True) > _NOTE_ROOM:
-        title = title.rpartition(".")[2]
-    lines = [part for line in note.lines for part in wrapped(line, SMALL, _NOTE_ROOM, _NOTE_MOST)]
-    return (shortened(title, SMALL, _NOTE_ROOM), *lines)
 
 
 def _note_width(lines: tuple[str, ...]) -> int:

@@ -68,7 +68,7 @@ def _navigation(overview: Overview) -> Iterator[str]:
         if each.concerns or each.requirements
     )
     yield f'<label>Characteristic <select name="of"><option value="">all</option>{options}</select></label>'
-    yield '<button type="reset">All</button></form>'
+    yield '<button type="reset">Show all</button></form>'
 
 
 # ---- tables ----

@@ -135,7 +135,7 @@ SCRIPT: Final = """\
   }
   document.addEventListener("keydown", (event) => { if (event.key === "Escape" && chosen) choose(chosen.split(" ")); });
   const form = document.querySelector(".filter");
-  const rows = all("tr.row");
+  const rows = all("tr.row"), gaps = all(".gaps li");
   const filter = () => {
     const text = form.elements.text.value.trim().toLowerCase();
     const way = form.elements.way.value, of = form.elements.of.value;
@@ -143,6 +143,7 @@ SCRIPT: Final = """\
       row.hidden = !((!text || row.textContent.toLowerCase().includes(text))
         && (!way || row.dataset.way.includes(way)) && (!of || row.dataset.of === of));
     }
+    for (const gap of gaps) gap.hidden = !gap.textContent.toLowerCase().includes(text);
     live.textContent = `${rows.filter((row) => !row.hidden).length} rows`;
   };
   form.hidden = false;
