@@ -315,3 +315,26 @@ def test_what_a_file_attaches_is_told_where_it_attaches_it() -> None:
         """,
         "main.btq:2:7 warning dead-bound «quick» `60 s` is never reached: a Timeout halts `A` after 30 s",
     )
+
+
+@pytest.mark.parametrize(
+    ("call", "port", "is_another"),
+    [
+        ("SubTree Part", "{heat}", True),
+        ("SubTree Part (heat = {temperature})", "{heat}", True),
+        ("SubTree Part (other = {heat})", "{heat}", False),  # the SubTree node may write it
+        ("SubTree Part", "{@heat}", False),
+        ("SubTree Part (heat = {heat})", "{heat}", False),
+        ("SubTree Part (heat = {=})", "{=}", False),
+        ("SubTree Part (_autoremap = true)", "{heat}", False),
+        ("SubTree Part (_autoremap = false)", "{heat}", True),
+    ],
+)
+def test_an_entry_of_a_tree_is_not_that_of_the_root(call: str, port: str, is_another: bool) -> None:
+    text = (
+        "signal hot : bool from {heat} initially false\nQualityReq r\n    Rest keeps not hot\n    on violation fail\n"
+        f"Root Main\nBehaviorTree Main\n    ->\n        {call}\n        Rest\n"
+        f"BehaviorTree Part\n    Look (heat = {port})\nAction Look\n    output heat : bool\n"
+    )
+    expected = "1 warning «hot» `hot` is read from the root's `heat`, and the tree `Part` writes its own"
+    assert findings(text, "signal-never-written") == ([expected] if is_another else [])

@@ -10,6 +10,7 @@ from btq_lang.checks.demanded import Demanded, Found, is_enforced
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.near import near
+from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import Signal, SourceNode
 from btq_lang.requirements.reading import signals_in
 from btq_lang.rules import Severity
@@ -21,17 +22,25 @@ _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
 
 def signal_never_written(demanded: Demanded) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
-    same name, or where a guard reads it; the robot's program may write it, so then it is a hint."""
+    same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
+    root blackboard, so what a tree writes into its own is another entry."""
     found, view = demanded.requirements, demanded.view
     here = [signal for signal in found.signals.values() if signal.place.path == view.path and signal.key is not None]
     if not here or not found.nodes.all or not view.scope.complete or not view.is_read:
         return
     if view.path in view.workspace.included_files:
         return  # who writes it may be in the files that include this one
-    written = _written(view, found.nodes.all)
+    writes = tuple(_writes(view, found.nodes.all))
+    written = frozenset(key.removeprefix("@") for _, key in writes)
     guarding = {signal.name for signals, _ in _guards(demanded) for signal in signals}
     for signal in here:
         key = (signal.key or "").removeprefix("@")
+        if key in written and signal.name in guarding and (writer := _isolated(found, writes, key)) is not None:
+            message = f"`{signal.name}` is read from the root's `{key}`, and the tree `{writer.tree}` writes its own"
+            notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
+            related = (Related(writer.place, "written here"),)
+            yield signal.place, Diagnostic("signal-never-written", signal.place.span, message, related, notes)
+            continue
         likely = near(key, written) if key not in written else ()
         if key in written or not (likely or signal.name in guarding):
             continue
@@ -85,22 +94,52 @@ def _guards(demanded: Demanded) -> Iterator[tuple[tuple[Signal, ...], Place]]:
         yield known[key], place
 
 
-def _written(view: View, nodes: tuple[SourceNode, ...]) -> frozenset[str]:
-    """The entries that something may write."""
-    found: set[str] = set()
+def _isolated(found: Requirements, writes: tuple[tuple[SourceNode, str], ...], key: str) -> SourceNode | None:
+    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root."""
+    if found.mission is None:
+        return None
+    # Which name the root's entry has in which tree.
+    names = {(found.mission.tree, key)}
+    waiting = [found.mission.tree]
+    while waiting:
+        tree = waiting.pop()
+        for node in found.nodes.all:
+            if node.category != "SubTree" or node.tree != tree or node.node.id is None:
+                continue
+            for name in _passed_on(node, {name for of, name in names if of == tree}):
+                if (node.node.id.text, name) not in names:
+                    names.add((node.node.id.text, name))
+                    waiting.append(node.node.id.text)
+    writers = [node for node, written in writes if written.removeprefix("@") == key]
+    if any(written == f"@{key}" or (node.tree, written) in names for node, written in writes):
+        return None
+    return writers[0]
+
+
+def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:
+    """The names by which a tree that runs another one makes its entries known to that."""
+    given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
+    for port, text in given.items():
+        if is_pointer(text) and (port if text[1:-1].strip() == "=" else text[1:-1].strip()) in names:
+            yield port
+    if given.get("_autoremap", "false").lower() not in ("false", "0"):
+        yield from (name for name in names if name not in given and not name.startswith("_"))
+
+
+def _writes(view: View, nodes: tuple[SourceNode, ...]) -> Iterator[tuple[SourceNode, str]]:
+    """The entries that something may write, those of the root blackboard with their `@`."""
     for node in nodes:
         for pair in node.node.attributes:
             if pair.value is None:
                 continue
             text = pair.value.text
             if _is_script(node, pair):
-                found.update(_assigned(text))
+                yield from ((node, name) for name in _assigned(text))
             elif node.tag == "SetBlackboard" and pair.key.text == "output_key":
-                found.add(text.strip("{}").removeprefix("@"))
+                yield node, text.strip("{}")
             elif is_pointer(text) and _may_write(view, node, pair.key.text):
-                key = text[1:-1].strip().removeprefix("@")
-                found.add(pair.key.text if key == "=" else key)
-    return frozenset(found)
+                key = text[1:-1].strip()
+                yield node, pair.key.text if key == "=" else key
 
 
 def _is_script(node: SourceNode, pair: Pair) -> bool:
@@ -114,7 +153,7 @@ def _assigned(script: str) -> Iterator[str]:
 
     for variable in variables(parse_script(script)):
         if variable.writes:
-            yield variable.name.removeprefix("@")
+            yield variable.name
 
 
 def _may_write(view: View, node: SourceNode, port: str) -> bool:
