@@ -10,6 +10,7 @@ grammar needs behind a number (`in`, `per`, `to`, `count` …), save `min`.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from math import inf, pi
 
 from btq_lang.near import near
@@ -42,6 +43,7 @@ class Unit:
     offset: float = 0.0
 
 
+@lru_cache(1024)
 def parse_unit(text: str) -> Unit | None:
     """Read a unit: a symbol of the table or a compound of them (`m/s^2`, `W*h`, `1/s`, `%/h`), or `1`, or None.
 

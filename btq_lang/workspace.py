@@ -260,6 +260,11 @@ class Workspace:
     def __hash__(self) -> int:
         return hash(tuple(self.files))
 
+    @cached_property
+    def origins(self) -> Mapping[str, Origin]:
+        """What the files that are written in another language stand for, by path."""
+        return {path: file.origin for path, file in self.files.items() if file.origin is not None}
+
     # ---- includes and scopes ----
 
     def included(self, path: str, include: str) -> str | None:

@@ -23,7 +23,9 @@ from btq_lang.commands.tracing import built_ways
 from btq_lang.graph import DIRECTIONS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.loader import open_workspace
-from btq_lang.trace import Overview, collect, write
+from btq_lang.trace import write
+from btq_lang.trace.collect import collect
+from btq_lang.trace.overview import Overview
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[1]

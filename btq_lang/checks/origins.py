@@ -16,7 +16,7 @@ from btq_lang.workspace import Workspace
 
 def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics of a file, with those of its XML as such, if it is XML."""
-    foreign = {other: file.origin for other, file in workspace.files.items() if file.origin is not None}
+    foreign = workspace.origins
     if not foreign:
         return list(found)
     origin = foreign.get(path)

@@ -17,7 +17,8 @@ from btq_lang.loader import shown
 from btq_lang.render.colour import wants_colour
 from btq_lang.requirements import Requirements
 from btq_lang.rules import Severity
-from btq_lang.trace import collect, write
+from btq_lang.trace import write
+from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Clause
 from btq_lang.trace.ways import declared_ways
 from btq_lang.workspace import Workspace

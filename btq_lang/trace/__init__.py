@@ -11,11 +11,13 @@ One invariant: everything is said once, in a row with a key, and the same missio
 
 from __future__ import annotations
 
-from btq_lang.trace.collect import collect
 from btq_lang.trace.formats import FORMATS
-from btq_lang.trace.overview import Overview
 
-__all__ = ["FORMATS", "Overview", "collect", "write"]
+TYPE_CHECKING = False  # every command line that is parsed asks for the formats, and few want an overview
+if TYPE_CHECKING:
+    from btq_lang.trace.overview import Overview
+
+__all__ = ["FORMATS", "write"]
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
