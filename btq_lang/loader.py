@@ -188,8 +188,9 @@ def collect(paths: Iterable[str], project: Project) -> tuple[tuple[str, ...], tu
 def read(path: str) -> tuple[str | None, LoadProblem | None]:
     """The text of a file without its byte order mark, and what is wrong with it.
 
-    Bytes that are no UTF-8 become U+FFFD, and the problem says where the first one is; without a text there is always a
-    problem.  Line ends stay as they are.
+    Bytes that are no UTF-8 become U+FFFD, and the problem says where the first one is; UTF-16 is a problem and is read
+    as what it is, for nothing in it would be worth telling else.  Without a text there is always a problem.  Line ends
+    stay as they are.
     """
     try:
         with open(path, "rb") as file:
@@ -201,11 +202,10 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8").removeprefix(_BOM)
-        found = f"this is no UTF-8: byte 0x{data[error.start]:02x}"
-        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            found = "this is UTF-16, not UTF-8"
+        is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+        found = "this is UTF-16, not UTF-8" if is_utf16 else f"this is no UTF-8: byte 0x{data[error.start]:02x}"
         problem = LoadProblem(path, found, LineIndex(before).position(len(before)))
-        text = data.decode("utf-8", "replace")
+        text = data.decode("utf-16" if is_utf16 else "utf-8", "replace")
     return text.removeprefix(_BOM), problem
 
 

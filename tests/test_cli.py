@@ -309,7 +309,29 @@ def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path:
     done = btq("check", "--fix")
     assert done.returncode == 2
     assert done.stderr == "btq: main.btq:3:19: this is no UTF-8: byte 0xe9\n"
+    for form, said in (("github", "::error file=main.btq,line=3,col=19,"), ("junit", "<error "), ("json", "io-error")):
+        assert said in btq("check", "--output-format", form).stdout
     assert file.read_bytes() == b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n"
+
+
+def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> None:
+    file = tmp_path / "main.btq"
+    file.write_text("BehaviorTree Main\n    SequenceStar\n        Dock\n")
+    before = btq("check", "--output-format", "concise", "main.btq").stdout
+    code = (
+        "from btq_lang.commands import check\n"
+        "from btq_lang.cli import main\n"
+        "def refuse(path, text):\n"
+        "    raise PermissionError(13, 'Permission denied', path)\n"
+        "check.write_whole = refuse\n"
+        "raise SystemExit(main(['check', '--fix', '--output-format', 'concise', 'main.btq']))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "NO_COLOR": "1"}
+    )
+    assert (done.returncode, done.stderr) == (2, "btq: main.btq: cannot be written: Permission denied\n")
+    assert "SequenceStar" in before
+    assert done.stdout == before
 
 
 def test_the_project_file_counts(btq: Run, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from btq_lang import __version__
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.render import Finding, Report, render, sarif
+from btq_lang.render import Finding, Report, Trouble, render, sarif
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import Span
 
@@ -40,6 +40,12 @@ REPORT = Report(
     ("my lab.btq", "clean.btq"),
 )
 EMPTY = Report((), {}, ("clean.btq",))
+TROUBLED = Report(
+    (Finding("latin.btq", "x", Diagnostic("syntax-error", Span(0, 0), "empty")),),
+    {},
+    ("latin.btq",),
+    (Trouble("latin.btq", "this is no UTF-8", 2, 18), Trouble("a&b,c.btq", "cannot be read")),
+)
 
 
 def rendered(form: str, report: Report = REPORT) -> str:
@@ -291,6 +297,85 @@ my lab.btq:1:1: warning[unused-tree] unused</failure>
         "failures": "0",
         "errors": "0",
     }
+
+
+def test_json_of_a_file_that_could_not_be_read() -> None:
+    document = json.loads(rendered("json", TROUBLED))
+    assert [(each["rule"], each["path"], each["range"]["start"]) for each in document["diagnostics"]] == [
+        ("io-error", "latin.btq", {"line": 2, "column": 18}),
+        ("io-error", "a&b,c.btq", {"line": 1, "column": 1}),
+        ("syntax-error", "latin.btq", {"line": 1, "column": 1}),
+    ]
+    assert (document["summary"]["error"], document["diagnostics"][0]["severity"]) == (3, "error")
+    assert document["diagnostics"][0].keys() == document["diagnostics"][2].keys()
+
+
+def test_sarif_of_a_file_that_could_not_be_read() -> None:
+    run = json.loads(rendered("sarif", TROUBLED))["runs"][0]
+    assert run["invocations"] == [
+        {
+            "executionSuccessful": False,
+            "toolExecutionNotifications": [
+                {
+                    "level": "error",
+                    "message": {"text": "this is no UTF-8"},
+                    "locations": [
+                        {
+                            "physicalLocation": {
+                                "artifactLocation": {"uri": "latin.btq", "uriBaseId": "%SRCROOT%"},
+                                "region": {"startLine": 2, "startColumn": 18},
+                            }
+                        }
+                    ],
+                },
+                {
+                    "level": "error",
+                    "message": {"text": "cannot be read"},
+                    "locations": [
+                        {
+                            "physicalLocation": {
+                                "artifactLocation": {"uri": "a%26b%2Cc.btq", "uriBaseId": "%SRCROOT%"},
+                            }
+                        }
+                    ],
+                },
+            ],
+        }
+    ]
+    assert len(run["results"]) == 1
+
+
+def test_github_of_a_file_that_could_not_be_read() -> None:
+    assert rendered("github", TROUBLED).splitlines()[:2] == [
+        "::error file=latin.btq,line=2,col=18,title=io-error::latin.btq:2:18: this is no UTF-8",
+        "::error file=a&b%2Cc.btq,title=io-error::a&b,c.btq: cannot be read",
+    ]
+
+
+def test_junit_of_a_file_that_could_not_be_read() -> None:
+    assert (
+        rendered("junit", TROUBLED)
+        == """\
+<?xml version="1.0" encoding="UTF-8"?>
+<testsuites name="btq check" tests="2" failures="0" errors="2">
+  <testsuite name="btq check" tests="2" failures="0" errors="2">
+    <testcase classname="btq" name="latin.btq" file="latin.btq" time="0">
+      <error type="io-error" message="this is no UTF-8">latin.btq:2:18: this is no UTF-8</error>
+      <system-out>latin.btq:1:1: error[syntax-error] empty</system-out>
+    </testcase>
+    <testcase classname="btq" name="a&amp;b,c.btq" file="a&amp;b,c.btq" time="0">
+      <error type="io-error" message="cannot be read">a&amp;b,c.btq: cannot be read</error>
+    </testcase>
+  </testsuite>
+</testsuites>
+"""
+    )
+
+
+def test_where_not_all_could_be_read_nothing_is_called_clean() -> None:
+    report = Report((), {}, ("latin.btq",), TROUBLED.troubles)
+    assert rendered("concise", report) == "Found nothing, but not every file could be read or written\n"
+    assert rendered("full", Report((), {}, (), TROUBLED.troubles)) == "No files were checked\n"
 
 
 def test_a_severity_of_the_project_counts() -> None:

@@ -14,7 +14,7 @@ from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace
-from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 from btq_lang.workspace import Workspace
@@ -72,7 +72,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
             text = group.workspace.files[path].source
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
+    checked = tuple(path for group in groups for path in group.given)
+    report = with_paths(Report(tuple(findings), texts, checked, tuple(map(_trouble, problems))), shown)
     _print(report, options, mended)
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
@@ -80,6 +81,11 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     if problems:
         return 2, watched
     return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
+
+
+def _trouble(problem: LoadProblem) -> Trouble:
+    at = problem.position
+    return Trouble(problem.path, problem.message, at.line + 1 if at else None, at.column + 1 if at else None)
 
 
 def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
@@ -130,6 +136,8 @@ def _fix(
                     write_whole(path, text)
                 except OSError as error:
                     trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
+                    unchanged = group.workspace.files[path]  # what is found in it still stands on the disk
+                    workspace = Workspace({**workspace.files, path: unchanged}, workspace.project)
         done.append(replace(group, workspace=workspace))
     return tuple(done), mended, tuple(trouble)
 

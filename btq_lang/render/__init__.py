@@ -25,6 +25,24 @@ class Finding:
 
 
 @record
+class Trouble:
+    """A file that could not be read or written, or not well, so that what is found in it is not all there is.
+
+    Attributes:
+        line: counted from 1, as `column` is; None where the whole file is meant.
+    """
+
+    path: str
+    message: str
+    line: int | None = None
+    column: int | None = None
+
+    def __str__(self) -> str:
+        place = f":{self.line}:{self.column}" if self.line is not None else ""
+        return f"{self.path}{place}: {self.message}"
+
+
+@record
 class Report:
     """What one run found.
 
@@ -32,11 +50,13 @@ class Report:
         findings: in the order in which they are to appear.
         texts: the other files that related places and fixes may name; a file that is missing here is shown by its name.
         checked: the files that were asked for, those without findings too.
+        troubles: what is in the formats for programs; for people the command prints it by itself.
     """
 
     findings: tuple[Finding, ...]
     texts: Mapping[str, str]
     checked: tuple[str, ...] = ()
+    troubles: tuple[Trouble, ...] = ()
 
 
 def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
@@ -103,4 +123,5 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
         tuple(Finding(shown(old.path), old.text, diagnostic(old.diagnostic)) for old in report.findings),
         {shown(path): text for path, text in report.texts.items()},
         tuple(map(shown, report.checked)),
+        tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),
     )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.render import Finding, Report
+from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.cells import printable
 from btq_lang.render.location import location
 from btq_lang.rules import Severity
@@ -24,8 +24,15 @@ _COMMANDS = {
 
 
 def render(report: Report) -> Iterator[str]:
-    """A line for each finding."""
-    return (_command(report, finding) for finding in report.findings)
+    """A line for each file that could not be read or written, and for each finding."""
+    yield from map(_trouble, report.troubles)
+    for finding in report.findings:
+        yield _command(report, finding)
+
+
+def _trouble(trouble: Trouble) -> str:
+    place = f",line={trouble.line},col={trouble.column}" if trouble.line is not None else ""
+    return f"::error file={_property(trouble.path)}{place},title=io-error::{_data([str(trouble)])}\n"
 
 
 def _command(report: Report, finding: Finding) -> str:

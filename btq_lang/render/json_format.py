@@ -12,6 +12,9 @@ The document, format 1; a later btq adds keys but changes none without a new num
 
     RANGE = {"start": {"line": N, "column": N}, "end": {"line": N, "column": N}}
 
+A file that could not be read or written, or that is no UTF-8, has an entry of its own: `rule` is "io-error", which is
+the name of no rule, and `severity` "error"; the summary counts it.
+
 Lines and columns count from 1, columns in Unicode code points, and the end is exclusive.  A fix is `safe` where `btq
 check --fix` applies it.  The text is ASCII, so that every terminal and locale carries it.
 """
@@ -23,25 +26,46 @@ from collections.abc import Iterator
 
 from btq_lang import __version__
 from btq_lang.diagnostics import Place
-from btq_lang.render import Finding, Report
+from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.location import location
 from btq_lang.render.summary import count, is_fixable
+from btq_lang.rules import Severity
 
 
 def render(report: Report) -> Iterator[str]:
     """The document, in one piece."""
+    counts = count(report.findings)
+    counts[Severity.ERROR] += len(report.troubles)
     document = {
         "format": 1,
         "tool": "btq",
         "version": __version__,
-        "diagnostics": [_diagnostic(report, finding) for finding in report.findings],
+        "diagnostics": [
+            *map(_trouble, report.troubles),
+            *(_diagnostic(report, finding) for finding in report.findings),
+        ],
         "summary": {
-            **{severity.value: number for severity, number in count(report.findings).items()},
+            **{severity.value: number for severity, number in counts.items()},
             "fixable": sum(map(is_fixable, report.findings)),
             "files": len(report.checked),
         },
     }
     yield json.dumps(document, indent=2) + "\n"
+
+
+def _trouble(trouble: Trouble) -> dict[str, object]:
+    at = {"line": trouble.line or 1, "column": trouble.column or 1}
+    return {
+        "rule": "io-error",
+        "severity": Severity.ERROR.value,
+        "message": trouble.message,
+        "path": trouble.path,
+        "range": {"start": at, "end": at},
+        "related": [],
+        "notes": [],
+        "tags": [],
+        "fixes": [],
+    }
 
 
 def _diagnostic(report: Report, finding: Finding) -> dict[str, object]:

@@ -1,15 +1,15 @@
 """`junit`: the XML that CI servers read as test results: a test case for each file that was checked.
 
 Errors and warnings of a file make its one `<failure>`, a line each, for GitLab and Jenkins read no second one; what is
-milder stands in its `<system-out>`.  Invariant: the XML is well formed for every text.  Format: the JUnit schema of
-Jenkins' xUnit plugin (junit-10.xsd).
+milder stands in its `<system-out>`.  A file that could not be read or written has an `<error>`.  Invariant: the XML is
+well formed for every text.  Format: the JUnit schema of Jenkins' xUnit plugin (junit-10.xsd).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btq_lang.render import Finding, Report
+from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.cells import printable
 from btq_lang.render.location import location
 from btq_lang.render.summary import counted
@@ -23,23 +23,32 @@ def render(report: Report) -> Iterator[str]:
     cases: dict[str, list[Finding]] = {path: [] for path in report.checked}
     for finding in report.findings:
         cases.setdefault(finding.path, []).append(finding)
-    numbers = f'tests="{len(cases)}" failures="{sum(any(map(_fails, case)) for case in cases.values())}" errors="0"'
+    troubles: dict[str, list[Trouble]] = {}
+    for trouble in report.troubles:
+        cases.setdefault(trouble.path, [])
+        troubles.setdefault(trouble.path, []).append(trouble)
+    failures = sum(any(map(_fails, case)) for path, case in cases.items() if path not in troubles)
+    numbers = f'tests="{len(cases)}" failures="{failures}" errors="{len(troubles)}"'
     yield '<?xml version="1.0" encoding="UTF-8"?>\n'
     yield f'<testsuites name="btq check" {numbers}>\n'
     yield f'  <testsuite name="btq check" {numbers}>\n'
     for path, findings in cases.items():
-        yield from _case(report, path, findings)
+        yield from _case(report, path, findings, troubles.get(path, []))
     yield "  </testsuite>\n</testsuites>\n"
 
 
-def _case(report: Report, path: str, findings: list[Finding]) -> Iterator[str]:
-    failures = [finding for finding in findings if _fails(finding)]
-    others = [finding for finding in findings if not _fails(finding)]
+def _case(report: Report, path: str, findings: list[Finding], troubles: list[Trouble]) -> Iterator[str]:
+    """A test case; beside an `<error>` what was found is no `<failure>`, for a test case has one result."""
+    failures = [finding for finding in findings if not troubles and _fails(finding)]
+    others = [finding for finding in findings if troubles or not _fails(finding)]
     start = f'    <testcase classname="btq" name="{_escaped(path)}" file="{_escaped(path)}" time="0"'
-    if not findings:
+    if not findings and not troubles:
         yield start + "/>\n"
         return
     yield start + ">\n"
+    if troubles:
+        yield f'      <error type="io-error" message="{_escaped(troubles[0].message)}">'
+        yield "\n".join(_escaped(str(trouble)) for trouble in troubles) + "</error>\n"
     if failures:
         worst = next(severity for severity in _FAILURES if _has(failures, severity))
         yield f'      <failure type="{worst.value}" message="{counted(failures)}">'

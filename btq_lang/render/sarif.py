@@ -14,7 +14,7 @@ from urllib.parse import quote
 
 from btq_lang import __version__
 from btq_lang.diagnostics import Fix, Place
-from btq_lang.render import Finding, Report
+from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.location import location
 from btq_lang.rules import RULES, Severity, page
 
@@ -40,6 +40,7 @@ def render(report: Report, page: Callable[[str], str] = page) -> Iterator[str]:
                         "rules": [_rule(rule, page) for rule in indexes],
                     }
                 },
+                **_invocations(report.troubles),
                 "columnKind": "unicodeCodePoints",
                 "results": [_result(report, finding, indexes) for finding in report.findings],
             }
@@ -57,6 +58,24 @@ def _rule(name: str, page: Callable[[str], str]) -> Json:
         "help": {"text": text, "markdown": text},
         "defaultConfiguration": {"level": _LEVELS[rule.severity]},
     }
+
+
+def _invocations(troubles: tuple[Trouble, ...]) -> Json:
+    """What kept the run from seeing all files (§3.20); a run without trouble needs none."""
+    if not troubles:
+        return {}
+    notifications = [
+        {"level": "error", "message": {"text": trouble.message}, "locations": [{"physicalLocation": _where(trouble)}]}
+        for trouble in troubles
+    ]
+    return {"invocations": [{"executionSuccessful": False, "toolExecutionNotifications": notifications}]}
+
+
+def _where(trouble: Trouble) -> Json:
+    where: Json = {"artifactLocation": _artifact(trouble.path)}
+    if trouble.line is not None:
+        where["region"] = {"startLine": trouble.line, "startColumn": trouble.column}
+    return where
 
 
 def _result(report: Report, finding: Finding, indexes: dict[str, int]) -> Json:

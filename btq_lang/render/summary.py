@@ -19,6 +19,8 @@ def summary(report: Report) -> str:
     """`Found 3 errors, 1 warning (2 fixable with --fix)`, or that nothing was found."""
     if not report.findings and not report.checked:
         return "No files were checked"
+    if not report.findings and report.troubles:
+        return "Found nothing, but not every file could be read or written"
     if not report.findings:
         return f"No problems found in {_number(len(report.checked), 'file', 'files')}"
     fixable = sum(map(is_fixable, report.findings))
