@@ -15,7 +15,7 @@ from test_build import Btq, btq  # noqa: F401  # the fixture
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
-from btq_lang.btcpp.restoring import restored
+from btq_lang.btcpp.restoring import Lost, restored
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.cli import main
 from btq_lang.symbols import Kind
@@ -188,7 +188,7 @@ def test_of_xml_that_was_edited_the_rest_comes_back() -> None:
     edited = xml.replace('<Pick name="Again"/>', '<Pick name="Again" x="1"/>').replace("<Move ", "<Drive ")
     again = restored(edited, import_xml(edited).text, side)
     assert again is not None
-    assert (again.is_whole, again.lost) == (False, ("satisfices ergonomics",))
+    assert (again.is_whole, again.lost) == (False, (Lost("satisfices ergonomics", None, 18),))
     now, then = (Workspace.of({"main.btq": text}) for text in (again.text, MISSION))
     assert now.files["main.btq"].parsed.diagnostics == ()
     for kind in (Kind.SIGNAL, Kind.REQUIREMENT, Kind.TREE):
@@ -222,6 +222,86 @@ def test_clauses_over_several_lines_come_back_on_one() -> None:
 )
 def test_what_is_no_side_file_is_none(side: str) -> None:
     assert restored("<root/>", "", side) is None
+
+
+BUNDLED = {
+    "main.btq": 'include "shared/a.btq"\ninclude "old.xml"\nRoot M\nBehaviorTree M\n    SubTree P satisfies quick\n',
+    "shared/a.btq": (
+        'include "deep/b.btq"\ncontext near : speed < 1 m/s\nBehaviorTree P\n    ->\n        Pick tags x\n        Go\n'
+    ),
+    "shared/deep/b.btq": "signal speed : m/s\nQualityReq quick : time-behaviour\n    takes at most 1 s\n",
+    "old.xml": '<root BTCPP_format="4"><BehaviorTree ID="Old"><Go/></BehaviorTree></root>\n',
+}
+
+
+def bundled(folder: Path, btq: Btq) -> Path:  # noqa: F811
+    for name, text in BUNDLED.items():
+        (folder / "my" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "my" / name).write_text(text)
+    assert btq.build("my/main.btq", "--bundle", "-o", "out")[0] == 0
+    side = folder / "out" / "main.qreq.json"
+    assert list(violations(json.loads(side.read_text()), SCHEMA)) == []
+    return side
+
+
+def below(folder: Path) -> dict[str, str]:
+    return {each.relative_to(folder).as_posix(): each.read_text() for each in folder.rglob("*.*") if each.is_file()}
+
+
+def test_of_a_bundle_every_file_comes_back(btq: Btq) -> None:  # noqa: F811
+    bundled(btq.folder, btq)
+    assert main(["import", "out/main.xml", "-o", "back"]) == 0
+    assert below(btq.folder / "back") == BUNDLED
+    assert main(["check", "back"]) == 0
+
+
+def test_files_of_a_bundle_are_written_over_if_asked(btq: Btq) -> None:  # noqa: F811
+    bundled(btq.folder, btq)
+    mine = btq.folder / "back" / "shared" / "a.btq"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine")
+    assert main(["import", "out/main.xml", "-o", "back"]) == 2
+    assert below(btq.folder / "back") == {"shared/a.btq": "mine"}
+    assert main(["import", "out/main.xml", "-o", "back", "--force"]) == 0
+    assert below(btq.folder / "back") == BUNDLED
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../x.btq",
+        "a/../../x.btq",
+        "/x.btq",
+        "C:/x.btq",
+        "..\\x.btq",
+        "link/x.btq",
+        "a.sh",
+        ".btq/../../x.btq",
+        "main.btq",
+    ],
+)
+def test_no_file_of_a_bundle_goes_elsewhere(btq: Btq, name: str) -> None:  # noqa: F811
+    side = bundled(btq.folder, btq)
+    data = json.loads(side.read_text())
+    data["sources"][0]["file"] = name
+    side.write_text(json.dumps(data))
+    (btq.folder / "elsewhere").mkdir()
+    (btq.folder / "back").mkdir()
+    (btq.folder / "back" / "link").symlink_to(btq.folder / "elsewhere", target_is_directory=True)
+    known = below(btq.folder)
+    assert main(["import", "out/main.xml", "-o", "back", "--force"]) == 2
+    assert below(btq.folder) == known
+
+
+def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) -> None:  # noqa: F811
+    bundled(btq.folder, btq)
+    xml = btq.folder / "out" / "main.xml"
+    xml.write_text(xml.read_text().replace("<Pick", "<Take"))
+    assert main(["import", "out/main.xml", "-o", "back"]) == 0
+    text = btq.read("back/main.btq")
+    for said in ("context near : speed < 1 m/s\n", "signal speed : m/s\n", "takes at most 1 s\n", "satisfies quick\n"):
+        assert said in text
+    assert sorted(below(btq.folder / "back")) == ["main.btq"]
 
 
 def test_places_and_marks() -> None:

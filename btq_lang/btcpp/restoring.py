@@ -7,7 +7,8 @@ trees, and the clauses at the nodes that are still there.  What is not is told.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from btq_lang.btcpp.side_file import FORMAT, VERSION
 from btq_lang.catalog.names import legal_name
@@ -32,8 +33,9 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.text import Edit, LineIndex, Span, apply_edits
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
+from btq_lang.workspace import is_btq
 
 
 @record
@@ -43,12 +45,30 @@ class Restored:
     Attributes:
         text: of the .btq file.
         is_whole: it is the mission as it was.
-        lost: clauses of nodes that are not there any more, as they were written.
+        lost: clauses of nodes that are not there any more.
+        others: of a whole bundle, the files that it includes: their paths, seen from the mission, and texts.  The paths
+            are whatever the side file says, and may lead anywhere.
     """
 
     text: str
     is_whole: bool
-    lost: tuple[str, ...] = ()
+    lost: tuple[Lost, ...] = ()
+    others: tuple[tuple[str, str], ...] = ()
+
+
+@record
+class Lost:
+    """Clauses of one node.
+
+    Attributes:
+        text: as they were written.
+        file: where that was, seen from the mission; None: in the mission.
+        line: from 1 on.
+    """
+
+    text: str
+    file: str | None
+    line: int
 
 
 def restored(xml: str, imported: str, side: str) -> Restored | None:
@@ -66,32 +86,53 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         data = json.loads(side)
         is_known = data["format"] == FORMAT and data["version"] == VERSION
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
+        others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
-    if not is_known or not isinstance(mission, str):
+    if not is_known or not all(_is_text(each) for each in (mission, *chain(*others))):
         return None
     if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
-        return Restored(mission, True)
-    return _merged(parse(imported), parse(mission))
+        return Restored(mission, True, others=others)
+    sources = ((None, mission), *((file, text) for file, text in others if is_btq(file)))
+    return _merged(parse(imported), [(file, parse(text)) for file, text in sources])
 
 
-def _merged(now: Parsed, then: Parsed) -> Restored:
-    """What the XML says now, with what the mission said beyond it."""
+def _is_text(value: object) -> bool:
+    """Whether it can be written into a file: JSON can name half a character."""
+    return isinstance(value, str) and not any("\ud800" <= char <= "\udfff" for char in value)
+
+
+def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]]) -> Restored:
+    """What the XML says now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
-    lost: list[str] = []
+    lost: list[Lost] = []
+    for file, then in sources:
+        _merge(now, then, file, edits, lost)
+    return Restored(apply_edits(now.text, edits), False, tuple(lost))
+
+
+def _merge(now: Parsed, then: Parsed, file: str | None, edits: list[Edit], lost: list[Lost]) -> None:
     items = [_lines(then, entry) for entry in then.entries if isinstance(entry.item, _WITHOUT_ELEMENT)]
     if items:
         at = _place_of_items(now)
         edits.append(Edit(Span(at, at), "".join(f"{item}\n" for item in items)))
+    lines = LineIndex(then.text)
+
+    def lose(text: str, start: int) -> None:
+        lost.append(Lost(text, file, lines.position(start).line + 1))
+
     nodes = {name: _nodes(entry) for entry, name in _trees(now)}
     for entry, name in _trees(then):
         known = nodes.get(name, {})
         assert isinstance(entry.item, Tree)
         if entry.item.clauses:
+            text = _clauses(then, entry, entry.item.clauses)
             other = next((each for each, of in _trees(now) if of == name), None)
-            edit = _tree_clauses(now, other, _clauses(then, entry, entry.item.clauses)) if other is not None else None
-            edits += [edit] if edit is not None else []
-            lost += [_clauses(then, entry, entry.item.clauses)] if edit is None else []
+            edit = _tree_clauses(now, other, text) if other is not None else None
+            if edit is not None:
+                edits.append(edit)
+            else:
+                lose(text, entry.start + entry.item.clauses[0].start)
         for key, (_, node) in _nodes(entry).items():
             if not node.clauses:
                 continue
@@ -101,8 +142,7 @@ def _merged(now: Parsed, then: Parsed) -> Restored:
                 end = there.start + match.end
                 edits.append(Edit(Span(end, end), f" {text}"))
             else:
-                lost.append(text)
-    return Restored(apply_edits(now.text, edits), False, tuple(lost))
+                lose(text, entry.start + node.clauses[0].start)
 
 
 def _trees(parsed: Parsed) -> Iterator[tuple[Entry, str]]:

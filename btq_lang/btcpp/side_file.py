@@ -87,6 +87,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             },
             "mission": {"file": place.name(built.path), "text": workspace.files[built.path].text},
             "files": [place.name(path) for path in paths],
+            **({"sources": _sources(workspace, paths)} if len(built.documents) < len(paths) else {}),
             "main_tree": main,
             "signals": [_plain(signal, place) for signal in found.signals.values()],
             "requirements": [_plain(each, place) for each in found.all.values()],
@@ -101,6 +102,13 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             "nodes": [_node(instance, node, place) for instance, node in running.all],
         }
     )
+
+
+def _sources(workspace: Workspace, paths: tuple[str, ...]) -> list[Json]:
+    """What a bundle was made of beside the mission: its XML names none of these files."""
+    *others, mission = paths
+    folder = posixpath.dirname(mission) or "."
+    return [{"file": posixpath.relpath(path, folder), "text": workspace.files[path].source} for path in others]
 
 
 def _says_more(entry: Entry) -> bool:

@@ -20,12 +20,19 @@ _STDIN = "-"
 
 @record
 class _Job:
-    """An XML file, what became of it, and where that goes; None: to standard output."""
+    """An XML file, what became of it, and where that goes; None: to standard output.
+
+    Attributes:
+        others: the files of its bundle: where they go, and their texts.
+        losses: what it said before and does not say any more, a line each.
+    """
 
     path: str
     xml: str
     done: Imported
     target: str | None
+    others: tuple[tuple[str, str], ...] = ()
+    losses: tuple[str, ...] = ()
 
 
 def run(options: Namespace) -> int:
@@ -78,27 +85,36 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
             return named
         return os.path.relpath(other, os.path.dirname(target)).replace(os.sep, "/")
 
-    done = import_xml(text, options.keep_v3, included_as=included_as)
-    return _Job(path, text, _with_side_file(path, text, done), target)
+    job = _Job(path, text, import_xml(text, options.keep_v3, included_as=included_as), target)
+    return _with_side_file(job, target, options.force, problems)
 
 
-def _with_side_file(path: str, xml: str, done: Imported) -> Imported:
+def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProblem]) -> _Job | None:
     """What became of a file that `btq build` made, with what the mission said beyond it: that stands beside it."""
-    side = side_path(path)
+    side = side_path(job.path)
     text, problem = read(side) if os.path.isfile(side) else (None, None)
-    if text is None or problem is not None or not done.is_complete:
-        return done
+    if text is None or problem is not None or not job.done.is_complete:
+        return job
     from btq_lang.btcpp.restoring import restored
     from btq_lang.formatter import format_text
 
-    mission = restored(xml, done.text, text)
+    mission = restored(job.xml, job.done.text, text)
     if mission is None:
-        return done
+        return job
     if mission.is_whole:
-        return replace(done, text=mission.text, changes=())
-    for lost in mission.lost:
-        print(f"{shown(path)}: its node is not there any more: {lost}", file=sys.stderr)
-    return replace(done, text=format_text(mission.text).text)
+        from btq_lang.commands.unpacking import unpacked
+
+        others = unpacked(mission.others, target, (job.path, side), force, problems)
+        return others if others is None else replace(job, done=_quiet(job.done, mission.text), others=others)
+    losses = tuple(
+        f"its node is not there any more: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
+        for lost in mission.lost
+    )
+    return replace(job, done=replace(job.done, text=format_text(mission.text).text), losses=losses)
+
+
+def _quiet(done: Imported, text: str) -> Imported:
+    return replace(done, text=text, changes=())
 
 
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
@@ -119,11 +135,14 @@ def _write(job: _Job, problems: list[LoadProblem]) -> bool:
     if job.target is None:
         sys.stdout.write(job.done.text)
         return True
+    at = job.target
     try:
-        os.makedirs(os.path.dirname(job.target), exist_ok=True)
-        write_whole(job.target, job.done.text)
+        for path, text in (*job.others, (job.target, job.done.text)):
+            at = path
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            write_whole(path, text)
     except OSError as error:
-        problems.append(LoadProblem(job.target, f"cannot be written: {error.strerror}"))
+        problems.append(LoadProblem(at, f"cannot be written: {error.strerror}"))
         return False
     return True
 
@@ -140,7 +159,9 @@ def _show_findings(jobs: Iterable[_Job], options: Namespace) -> None:
 
 
 def _show_changes(job: _Job) -> None:
-    """What the new file says otherwise than the XML, a line each."""
+    """What is lost, and what the new file says otherwise than the XML, a line each."""
+    for loss in job.losses:
+        print(f"{shown(job.path)}: {loss}", file=sys.stderr)
     lines = LineIndex(job.xml)
     for change in job.done.changes:
         line, column = lines.position(change.span.start)
@@ -153,7 +174,8 @@ def _sum_up(written: list[_Job], refused: int) -> None:
 
     changes = sum(len(job.done.changes) for job in written)
     told = f" with {changes} change{'' if changes == 1 else 's'}" if changes else ""
-    parts = [f"{files(len(written))} imported{told}"]
+    others = sum(len(job.others) for job in written)
+    parts = [f"{files(len(written) + others)} imported{told}"]
     if refused:
         parts.append(f"{files(refused)} that cannot be read left alone")
     print(", ".join(parts), file=sys.stderr)
