@@ -173,6 +173,24 @@ def test_nothing_checked_is_not_called_clean(btq: Run) -> None:
     assert (done.returncode, done.stdout) == (2, "No files were checked\n")
 
 
+def test_a_folder_without_missions_is_named(btq: Run, tmp_path: Path) -> None:
+    for folder in ("empty", "x.btq"):
+        (tmp_path / folder).mkdir()
+    done = btq("check", "empty", "x.btq/")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        2,
+        "No files were checked: no .btq below empty/, x.btq/\n",
+        "",
+    )
+    done = btq("check", "empty", "--output-format", "github")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "btq check: no .btq below empty/\n")
+    for command in ("build", "trace", "graph"):
+        done = btq(command, "x.btq")
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"btq {command}: no .btq below x.btq/\n")
+    (tmp_path / "a.btq").write_text("BehaviorTree Main\n    AlwaysSuccess\n")
+    assert btq("check", "empty", "a.btq").returncode == 0
+
+
 XML = """\
 <root BTCPP_format="4">
   <BehaviorTree ID="Main">

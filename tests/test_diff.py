@@ -141,6 +141,12 @@ def test_a_part_that_became_a_tree_of_its_own() -> None:
     ]
 
 
+def test_what_is_applied() -> None:
+    old = "QualityReq rq1\n    takes at most 30 s\nBehaviorTree Main\n    Go\n"
+    said = "old.btq -> new.btq\n+ apply rq1 to Go added  new.btq:5\n\n1 apply added"
+    assert in_words(old, f"{old}apply rq1 to Go\n").rstrip() == said
+
+
 def test_markdown_for_a_pull_request() -> None:
     new = OLD.replace("30 s", "20 s").replace("        Grip", "        Hold")
     assert list(as_markdown.render([comparison(OLD, new)])) == [
@@ -254,7 +260,12 @@ def test_a_mission_and_its_xml(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (("a.btq",), "btq diff: two missions can be compared, not 1; revisions of one: btq diff --git HEAD FILE\n"),
-        (("a.btq", "b.btq"), "btq diff: a.btq: cannot be read: No such file or directory\n"),
+        (
+            ("a.btq", "b.btq"),
+            "btq diff: a.btq: cannot be read: No such file or directory\n"
+            "btq diff: b.btq: cannot be read: No such file or directory\n",
+        ),
+        ((".", "nix"), "btq diff: nix: cannot be read: No such file or directory\n"),
     ],
 )
 def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
@@ -307,6 +318,20 @@ def test_revisions(repository: Path) -> None:
         "",
     )
     assert btq("--git", "HEAD..HEAD", cwd=repository) == (0, "", "")
+
+
+def test_a_file_that_is_in_neither_revision(repository: Path) -> None:
+    said = "btq diff: {}: no such file in {}\n"
+    assert btq("--git", "HEAD", "nix.btq", cwd=repository) == (2, "", said.format("nix.btq", "HEAD or here"))
+    assert btq("--git", "HEAD", "nix/nix.btq", cwd=repository) == (2, "", said.format("nix/nix.btq", "HEAD or here"))
+    told = said.format("nix", "HEAD~1 or HEAD")
+    assert btq("--git", "HEAD~1..HEAD", "nix", cwd=repository) == (2, "", told)
+
+
+def test_a_folder_that_is_in_the_revision_alone(repository: Path) -> None:
+    shutil.rmtree(repository / "missions")
+    code, out, told = btq("--git", "HEAD", "missions", cwd=repository)
+    assert (code, out.splitlines()[0], told) == (1, "HEAD:missions/main.btq (removed)", "")
 
 
 def test_revisions_that_there_are_not(repository: Path, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from btq_lang.btcpp.marks import generated_mark, is_generated
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
-from btq_lang.commands.files import STDIN, Files, Group, usage_problem
+from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.diagnostics import Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.record import record, replace
@@ -77,7 +77,9 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
     )
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
-    if problems:  # a file that could not be read may be part of any other
+    if nothing := nothing_below(options.paths, groups):
+        print(f"btq build: {nothing}", file=sys.stderr)
+    if problems or nothing:  # a file that could not be read may be part of any other
         return 2, watched
     if _has_errors(groups, options):
         return 1, watched

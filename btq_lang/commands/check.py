@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
-from btq_lang.commands.files import STDIN, Files, Group, usage_problem, write_stdout
+from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import LoadProblem, shown, write_whole
@@ -73,12 +73,15 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     checked = tuple(path for group in groups for path in group.given)
-    report = with_paths(Report(tuple(findings), texts, checked, tuple(map(_trouble, problems))), shown)
-    _print(report, options, mended)
+    nothing = nothing_below(options.paths, groups)
+    report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), nothing)
+    _print(with_paths(report, shown), options, mended)
+    if nothing and options.output_format not in ("full", "concise"):  # those for people say it in their summary
+        print(f"btq check: {nothing}", file=sys.stderr)
     watched = tuple(
         path for group in groups for path in (*group.workspace.files, *group.absent, group.project_file) if path
     )
-    if problems:
+    if problems or nothing:
         return 2, watched
     return int(any(finding.diagnostic.effective_severity in _FAILS for finding in findings)), watched
 

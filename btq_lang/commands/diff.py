@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from argparse import Namespace
@@ -69,6 +70,9 @@ def _of_paths(paths: list[str]) -> Iterator[Comparison]:
     if len(paths) != 2:
         raise Trouble(f"two missions can be compared, not {len(paths)}; revisions of one: btq diff --git HEAD FILE")
     old, new = (None if path == os.devnull else absolute(path) for path in paths)
+    # Before anything is made of the paths, so that what is missing is called as it was asked for.
+    missing = (path for path in (old, new) if path is not None and not os.path.exists(path))
+    _raise(tuple(LoadProblem(path, f"cannot be read: {os.strerror(errno.ENOENT)}") for path in missing))
     if old is not None and new is not None and os.path.isdir(old) != os.path.isdir(new):
         # As `diff` does: a file and the one of its name in a folder.
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
@@ -107,8 +111,12 @@ def _raise(problems: tuple[LoadProblem, ...]) -> None:
 def _of_revisions(options: Namespace) -> Iterator[Comparison]:
     for path in map(absolute, options.paths or ["."]):
         known = revisions(options.git, path)
-        if not os.path.isdir(path):
-            yield compared(_revised(known, known.old, path, True), _revised(known, known.new, path, True))
+        if not os.path.isdir(path) and not known.had_folder(path):
+            sides = _revised(known, known.old, path, True), _revised(known, known.new, path, True)
+            if sides == (NOWHERE, NOWHERE):
+                where = known.names[known.new] if known.new is not None else "here"
+                raise Trouble(f"{shown(path)}: no such file in {known.names[known.old]} or {where}")
+            yield compared(*sides)
             continue
         for before, after in known.changed(path):
             yield compared(_revised(known, known.old, before, False), _revised(known, known.new, after, False))

@@ -38,6 +38,14 @@ def usage_problem(paths: Iterable[str]) -> str | None:
     return "a path is empty; `.` is this folder" if "" in paths else None
 
 
+def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
+    """What to say where folders were asked for and there is no mission below any of them."""
+    folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
+    if not folders or any(group.given for group in groups):
+        return None
+    return f"no .btq below {', '.join(folders)}"
+
+
 def write_stdout(text: str) -> None:
     """Print a file as it is: standard output itself would write other line ends on some systems."""
     sys.stdout.flush()

@@ -67,6 +67,10 @@ class Revisions:
                     waiting += [candidate for candidate in found if self._has(commit, candidate)][:1]
         return Workspace(files, project) if path in files else None
 
+    def had_folder(self, path: str) -> bool:
+        """Whether a path is a folder of one of the revisions, and perhaps no more."""
+        return any(self._kind(commit, path) == "tree" for commit in (self.old, self.new) if commit is not None)
+
     def _text(self, commit: str, path: str) -> str | None:
         if not self._has(commit, path):
             return None
@@ -74,8 +78,11 @@ class Revisions:
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
     def _has(self, commit: str, path: str) -> bool:
-        inside = self._inside(path)
-        return bool(inside) and _succeeds(self._root, "cat-file", "-e", f"{commit}:{inside}")
+        return self._kind(commit, path) == "blob"
+
+    def _kind(self, commit: str, path: str) -> str:
+        """`blob` of a file, `tree` of a folder; empty where the commit has nothing there."""
+        return os.fsdecode(_run(self._root, "cat-file", "-t", f"{commit}:{self._inside(path)}").stdout).strip()
 
     def _inside(self, path: str) -> str:
         """A path as git names it: from the root of the repository."""
@@ -96,7 +103,9 @@ def revisions(asked: str, path: str) -> Revisions:
     Raises:
         GitTrouble: the path is in no repository, a revision is not known, git is not installed.
     """
-    folder = path if os.path.isdir(path) else os.path.dirname(path)
+    folder = path
+    while not os.path.isdir(folder) and os.path.dirname(folder) != folder:  # a revision may have had it
+        folder = os.path.dirname(folder)
     root = absolute(_git(folder, "rev-parse", "--show-toplevel").rstrip("\n"))
     first, dots, second = asked.partition("..." if "..." in asked else "..")
     first, second = first or "HEAD", second or "HEAD"

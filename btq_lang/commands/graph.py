@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from btq_lang.commands.files import Files, usage_problem
+from btq_lang.commands.files import Files, nothing_below, usage_problem
 from btq_lang.commands.output import write_output
 from btq_lang.graph import draw
 from btq_lang.graph.missions import figures
@@ -23,6 +23,8 @@ def run(options: Namespace) -> int:
         problems += (LoadProblem(given[1][1], "one file at a time is drawn"),)
     for each in problems:
         print(f"btq: {each}", file=sys.stderr)
+    if nothing := nothing_below(options.paths, groups):
+        print(f"btq graph: {nothing}", file=sys.stderr)
     if problems or not given:
         return 2
     ((workspace, path),) = given

@@ -11,7 +11,7 @@ from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export, is_mission
 from btq_lang.checks import check
-from btq_lang.commands.files import Files, Group, usage_problem
+from btq_lang.commands.files import Files, Group, nothing_below, usage_problem
 from btq_lang.commands.output import write_output
 from btq_lang.loader import shown
 from btq_lang.render.colour import wants_colour
@@ -32,7 +32,9 @@ def run(options: Namespace) -> int:
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     for each in problems:
         print(f"btq: {each}", file=sys.stderr)
-    if problems:
+    if nothing := nothing_below(options.paths, groups):
+        print(f"btq trace: {nothing}", file=sys.stderr)
+    if problems or nothing:
         return 2
     errors = {path: number for group in groups for path, number in _errors(group)}
     broken = frozenset(path for path, number in errors.items() if number)

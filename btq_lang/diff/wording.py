@@ -51,7 +51,7 @@ def headline(change: Change) -> tuple[str, str, str]:
         words.append(f"{'around' if change.what == 'added' else 'from around'} {_row(change.around)}")
     if change.what == "moved" and change.earlier != change.name:
         words.append(f"from {change.earlier}")
-    return change.thing, change.name, " ".join(words)
+    return change.thing, change.name.removeprefix("apply ") if change.thing == "apply" else change.name, " ".join(words)
 
 
 def lines(change: Change) -> Iterator[Line]:

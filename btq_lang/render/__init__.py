@@ -51,12 +51,14 @@ class Report:
         texts: the other files that related places and fixes may name; a file that is missing here is shown by its name.
         checked: the files that were asked for, those without findings too.
         troubles: what is in the formats for programs; for people the command prints it by itself.
+        nothing: why there are none, where that can be said.
     """
 
     findings: tuple[Finding, ...]
     texts: Mapping[str, str]
     checked: tuple[str, ...] = ()
     troubles: tuple[Trouble, ...] = ()
+    nothing: str | None = None
 
 
 def render(form: str, report: Report, *, colour: bool = False, width: int = 120) -> Iterator[str]:
@@ -124,4 +126,5 @@ def with_paths(report: Report, shown: Callable[[str], str]) -> Report:
         {shown(path): text for path, text in report.texts.items()},
         tuple(map(shown, report.checked)),
         tuple(replace(trouble, path=shown(trouble.path)) for trouble in report.troubles),
+        report.nothing,
     )
