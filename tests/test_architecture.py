@@ -123,6 +123,10 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
             {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
             | {"typing", "argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
         ),
+        (
+            "import btq_lang.commands.arguments",
+            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.catalog", "btq_lang.requirements", "dataclasses"},
+        ),
         ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "re", "btq_lang.parser"}),
     ],
 )

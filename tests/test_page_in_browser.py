@@ -156,6 +156,9 @@ def test_a_click_highlights_what_belongs_together(seen: Callable[..., dict[str, 
     click("g.note[data-note=r2]"); found.note = chosen();
     press("Escape"); found.escaped = chosen(); found.clear = faint();
     click("g.box#n3 .outline"); found.node = chosen();
+    press("Escape");
+    document.querySelector("g.box#n20").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter" }));
+    found.entered = chosen(); press("Escape");
     document.querySelector("tr#r3").dispatchEvent(new MouseEvent("mouseenter"));
     found.near = [...document.querySelectorAll("g.box.near")].map((part) => part.id);
     document.querySelector("tr#r3").dispatchEvent(new MouseEvent("mouseleave"));
@@ -172,6 +175,7 @@ def test_a_click_highlights_what_belongs_together(seen: Callable[..., dict[str, 
         "escaped": [],
         "clear": 0,
         "node": ["n3", "note q1", "note q2", "q1", "q2"],
+        "entered": ["n20", "note r3", "r3"],
         "near": ["n20"],
         "left": 0,
     }

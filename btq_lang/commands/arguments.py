@@ -9,7 +9,7 @@ from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.render import FORMATS
-from btq_lang.trace.formats import FORMATS as TRACE_FORMATS
+from btq_lang.trace import FORMATS as TRACE_FORMATS
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction

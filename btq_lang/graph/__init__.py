@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.graph.figure import Figure
-
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
+
+    from btq_lang.graph.figure import Figure
 
 FORMATS: Final = ("svg", "dot", "mermaid")
 DIRECTIONS: Final = ("down", "right")

@@ -11,13 +11,14 @@ One invariant: everything is said once, in a row with a key, and the same missio
 
 from __future__ import annotations
 
-from btq_lang.trace.formats import FORMATS
-
-TYPE_CHECKING = False  # every command line that is parsed asks for the formats, and few want an overview
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from typing import Final
+
     from btq_lang.trace.overview import Overview
 
-__all__ = ["FORMATS", "write"]
+# The command line asks for them whatever it is to do, so nothing else is imported here.
+FORMATS: Final = ("table", "csv", "json", "markdown", "html")
 
 
 def write(overview: Overview, form: str, *, colour: bool = False, width: int = 120) -> str:
