@@ -191,7 +191,8 @@ class Scope:
 
     Attributes:
         paths: those files, included ones before the file that includes them.
-        complete: all includes were found and understood, so a name that is not here is nowhere.
+        complete: all includes were found and understood, and no string may have swallowed the rest of a file, so a
+            name that is not here is nowhere.
     """
 
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
@@ -200,7 +201,7 @@ class Scope:
             (target := workspace.included_by(path, include)) is not None and workspace.files[target].is_understood
             for path in paths
             for include in workspace.files[path].includes
-        )
+        ) and not any(map(_is_swallowed, (workspace.files[path] for path in paths)))
         self._found: dict[tuple[Kind, str], list[Definition]] = {}
         self._names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
         for path in paths:
@@ -223,6 +224,14 @@ class Scope:
     def names(self, kind: Kind) -> tuple[str, ...]:
         """All names of a kind, in the order of their definitions."""
         return tuple(self._names[kind])
+
+
+def _is_swallowed(file: File) -> bool:
+    """Whether a forgotten quote may have made text of what declares names."""
+    return any(problem.rule in _SWALLOWING for entry in file.parsed.entries for problem in entry.diagnostics)
+
+
+_SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 
 
 class Workspace:

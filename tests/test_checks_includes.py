@@ -51,3 +51,14 @@ def test_in_a_circle_everything_is_known() -> None:
         'a.btq:1:9 error cyclic-include «"b.btq"» this file includes `b.btq`, which includes this file again',
         'b.btq:1:9 error cyclic-include «"a.btq"» this file includes `a.btq`, which includes this file again',
     )
+
+
+def test_a_quality_that_a_missing_file_may_declare_is_not_called_unknown() -> None:
+    missing = '1:9 error missing-include «"own.btq"» there is no file `own.btq`'
+    text = 'include "own.btq"\nBehaviorTree Main\n    Action X satisfices {}\n'
+    assert_problems(text.replace("{}", "hygiene"), missing)
+    assert_problems(
+        text.replace("{}", "relability"),
+        missing,
+        "3:25 warning unknown-quality «relability» `relability` is no quality of iso25010-2023",
+    )

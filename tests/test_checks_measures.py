@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
+from btq_lang.checks import check
+from btq_lang.workspace import Workspace
+
 SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
 
 
@@ -82,3 +85,27 @@ def test_a_signal_that_fits_nothing() -> None:
 
 def test_a_file_without_any_tree_is_for_others() -> None:
     assert_clean('QualityReq rq1 "t"\n    Somewhere/Else takes at most 3 s\n')
+
+
+def test_a_number_with_an_unknown_unit_is_told_once() -> None:
+    assert_problems(
+        'QualityReq rq1 "t"\n    takes at most 45 sek\nBehaviorTree Main\n    Action X satisfies rq1\n',
+        "2:22 error unknown-unit «sek» `sek` is no unit: did you mean `s`?",
+    )
+
+
+@pytest.mark.parametrize(
+    ("compared", "unit"),
+    [("< 20 %", "%"), ("< 3 m/s", "m/s"), ("< speed", "m/s"), ('== "full"', "text"), ("== true", "bool")],
+)
+def test_an_unknown_signal_is_declared_in_the_unit_of_what_it_is_compared_with(compared: str, unit: str) -> None:
+    workspace = Workspace.of({"main.btq": f"signal speed : m/s from {{speed}}\ncontext low : batery {compared}\n"})
+    (found,) = check(workspace, "main.btq")
+    assert found.notes == (f"declare it: `signal batery : {unit} from {{batery}}`",)
+
+
+def test_the_near_name_comes_before_the_declaration() -> None:
+    text = "signal battery : % from {battery}\ncontext low : batery < 20 %\n"
+    (found,) = check(Workspace.of({"main.btq": text}), "main.btq")
+    assert found.notes == ("did you mean `battery`? or declare it: `signal batery : % from {batery}`",)
+    assert [fix.title for fix in found.fixes] == ["Replace `batery` by `battery`"]

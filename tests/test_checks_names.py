@@ -152,3 +152,26 @@ def test_subtrees_without_a_name_of_their_own() -> None:
         "the engine refuses the instance name ``: it is empty, as that of the main tree is",
     )
     assert_clean(tree("SubTree Pick") + 'BehaviorTree Pick\n    SubTree Place ""\nBehaviorTree Place\n    X\n')
+
+
+def test_what_a_forgotten_quote_may_have_swallowed_is_not_called_unknown() -> None:
+    assert_problems(
+        """
+        Root a
+
+        BehaviorTree a
+            ->
+                SubTree b
+                Go (place = "home)
+                Go (place = "shelf")
+                SubTree c
+
+        BehaviorTree b
+            Act (x = "y")
+
+        BehaviorTree c
+            Act (x = "y z")
+        """,
+        '6:21 error unclosed-string «"home)» a closing " is probably missing: '
+        "this string ends at the next one, on another line",
+    )

@@ -31,6 +31,8 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
         meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
+        if not meant and not view.scope.complete:
+            continue  # it may be declared in what could not be read
         yield Diagnostic(
             "unknown-quality",
             use.span,

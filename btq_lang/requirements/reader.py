@@ -182,8 +182,8 @@ class Reader(PathReader):
             self.complain("invalid-literal", word.span, f"`{word.raw}` is more than any number")
         return isfinite(value)
 
-    def _named(self, word: Word) -> Term | None:
-        """A parameter, a signal, or a literal that looks like a name."""
+    def _named(self, word: Word, beside: Term | None = None) -> Term | None:
+        """A parameter, a signal, or a literal that looks like a name; `beside` is what it is compared with."""
         name = word.text
         if word.kind == STRING:
             return Term(Text(name), "text", None, None, word.span)
@@ -196,18 +196,25 @@ class Reader(PathReader):
         if name in self.contexts:
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
             return None
-        self.unknown(word, (*self.parameters, *self.signals))
+        self.unknown(word, (*self.parameters, *self.signals), _unit_of(beside))
         return None
 
-    def unknown(self, word: Word, names: tuple[str, ...]) -> None:
+    def unknown(self, word: Word, names: tuple[str, ...], unit: str = "m") -> None:
+        """A name that nothing declares.
+
+        Args:
+            names: what may have been meant.
+            unit: what a signal of that name would be declared in.
+        """
         if not self.scope.complete:
             return
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
             return  # told as a subtraction without blanks
-        fixes = tuple(
-            replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in near(word.text, names)
-        )
-        note = f"declare it: `signal {word.text} : m from {{{word.text}}}`"
+        meant = near(word.text, names)
+        fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in meant)
+        note = f"declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
+        if meant:
+            note = f"did you mean `{meant[0]}`? or {note}"
         self.complain("unknown-signal", word.span, f"no signal `{word.text}` is declared", notes=(note,), fixes=fixes)
 
     def _is_subtraction(self, name: str) -> bool:
@@ -245,9 +252,20 @@ class Reader(PathReader):
 
     def _bare(self, term: Term, message: str, unit: str) -> None:
         assert term.word is not None, "the caller has looked"
+        if self._has_unknown_unit(term):
+            return
         number = term.word.raw
         fix = replace_fix(f"Write `{number} {unit}`", term.span, f"{number} {unit}")
         self.complain("number-without-unit", term.span, f"{message}, `{number}` has no unit", fixes=(fix,))
+
+    def _has_unknown_unit(self, term: Term) -> bool:
+        """Whether the word behind a number is told to be no unit: `45 sek`."""
+        return any(
+            problem.rule == "unknown-unit"
+            and problem.span.start >= term.span.end
+            and not self.text(term.span.end, problem.span.start).strip()
+            for problem in self.entry.diagnostics
+        )
 
     # ---- conditions ----
 
@@ -339,7 +357,13 @@ class Reader(PathReader):
         return None
 
     def _compare(self, written: Comparison) -> Condition | None:
-        terms = [self._expression(operand) for operand in written.operands]
+        terms: list[Term | None] = [None] * len(written.operands)
+        # A name that nothing declares may be declared in the unit of what it is compared with, so names come last.
+        for at, operand in sorted(enumerate(written.operands), key=lambda each: self._is_unknown(each[1])):
+            if self._is_unknown(operand) and isinstance(operand, Operand):
+                terms[at] = self._named(operand.word, next(filter(None, terms), None))
+            else:
+                terms[at] = self._expression(operand)
         found = [term for term in terms if term is not None]
         if len(found) < len(terms):
             return None
@@ -348,6 +372,14 @@ class Reader(PathReader):
         for operator, left, right in zip(written.operators, found, found[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
         return Compare(written.operators, tuple(term.value for term in found)) if ok else None
+
+    def _is_unknown(self, written: WrittenCondition) -> bool:
+        if not isinstance(written, Operand) or written.word.kind != NAME:
+            return False
+        name = written.word.text
+        return name not in ("true", "false") and not any(
+            name in known for known in (self.parameters, self.signals, self.contexts)
+        )
 
     def _comparable(self, left: Term, right: Term, operator: str) -> bool:
         if left.sort != right.sort:
@@ -516,6 +548,13 @@ def _term(value: Read | Parameter, word: Word) -> Term:
         return Term(value, kind.sort, None, None, word.span)
     level: Level = "level" if unit.offset else "either"
     return Term(value, "number", unit.dimension, _symbol(unit), word.span, level)
+
+
+def _unit_of(term: Term | None) -> str:
+    """What a signal would be declared in that is compared with this."""
+    if term is None or (term.sort == "number" and term.unit is None):
+        return "m" if term is None or not term.is_bare else "1"
+    return term.unit or term.sort
 
 
 def _symbol(unit: Unit) -> str | None:
