@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
+from btq_lang.commands.garbage import collecting_seldom
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import LoadProblem, shown, write_whole
@@ -22,9 +22,6 @@ from btq_lang.workspace import Workspace
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)
 _ROUNDS = 10  # of fixing: a fix may make room for another
-# How often to look for garbage (`gc.set_threshold`): with 1 000 files Python would look through all that is kept again
-# and again, a fifth of the time.
-_COLLECT = (20_000, 50, 10)
 
 
 def run(options: CheckOptions) -> int:
@@ -32,17 +29,15 @@ def run(options: CheckOptions) -> int:
     if problem := _usage_problem(options):
         print(f"btq check: {problem}", file=sys.stderr)
         return 2
-    files = Files()
-    usual = gc.get_threshold()
-    gc.set_threshold(*_COLLECT)
-    try:
-        code, watched = _check(options, files)
-        if options.watch:
-            from btq_lang.commands.again import run_again
+    return collecting_seldom(lambda: _run(options, Files()))
 
-            run_again(lambda: _check(options, files)[1], options.paths, watched)
-    finally:
-        gc.set_threshold(*usual)
+
+def _run(options: CheckOptions, files: Files) -> int:
+    code, watched = _check(options, files)
+    if options.watch:
+        from btq_lang.commands.again import run_again
+
+        run_again(lambda: _check(options, files)[1], options.paths, watched)
     return code
 
 

@@ -9,6 +9,7 @@ from argparse import Namespace
 from collections.abc import Callable, Iterator
 
 from btq_lang.commands.files import Files, Group
+from btq_lang.commands.garbage import collecting_seldom
 from btq_lang.commands.git import GitTrouble, Revisions, revisions
 from btq_lang.diff import as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
@@ -24,6 +25,10 @@ class Trouble(Exception):
 
 def run(options: Namespace) -> int:
     """Compare and print; 0 the same, 1 different, 2 neither can be said."""
+    return collecting_seldom(lambda: _run(options))
+
+
+def _run(options: Namespace) -> int:
     try:
         comparisons = tuple(_of_revisions(options) if options.git is not None else _of_paths(options.paths))
     except (Trouble, GitTrouble) as trouble:
