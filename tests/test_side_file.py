@@ -21,6 +21,7 @@ from btq_lang.cli import main
 from btq_lang.symbols import Kind
 from btq_lang.workspace import Workspace
 
+Capsys = pytest.CaptureFixture[str]
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads((ROOT / "btq_lang" / "btcpp" / "qreq.schema.json").read_text(encoding="utf-8"))
 
@@ -302,6 +303,48 @@ def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) ->
     for said in ("context near : speed < 1 m/s\n", "signal speed : m/s\n", "takes at most 1 s\n", "satisfies quick\n"):
         assert said in text
     assert sorted(below(btq.folder / "back")) == ["main.btq"]
+
+
+def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+    (btq.folder / "main.btq").write_text(MISSION)
+    assert btq.build("main.btq", "-o", "out")[0] == 0
+    xml, side = btq.folder / "out" / "main.xml", btq.folder / "out" / "main.qreq.json"
+    xml.write_text(xml.read_text().replace("<Move", "<Drive"))
+    assert main(["import", "out/main.xml"]) == 0
+    summary = "out/main.xml:2:1: what a build put there is left out: its mark, {}\n1 file imported with 1 change\n"
+    put = "1 node that enforces, 3 descriptions"
+    lost = "its node is not there any more: satisfices ergonomics (line 18 of the mission as built)"
+    after = "Next: btq check out/main.btq\n"
+    assert capsys.readouterr().err == f"out/main.xml: {lost}\n{summary.format(put)}{after}"
+    side.write_text("{}")
+    assert main(["import", "out/main.xml", "--force"]) == 0
+    lost = "3 nodes carried requirements or qualities: "
+    no = "out/main.qreq.json is not the one that the build wrote beside the XML"
+    assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
+    side.unlink()
+    assert main(["import", "out/main.xml", "--force"]) == 0
+    no = "put out/main.qreq.json beside the XML to keep them"
+    assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
+
+
+def test_what_a_mission_includes_is_to_be_imported_too(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+    (btq.folder / "my" / "shared").mkdir(parents=True)
+    (btq.folder / "my" / "main.btq").write_text('include "shared/a.btq"\nBehaviorTree M\n    SubTree A tags x\n')
+    (btq.folder / "my" / "shared" / "a.btq").write_text("BehaviorTree A\n    Go\n")
+    assert btq.build("my/main.btq", "-o", "out")[0] == 0
+    capsys.readouterr()
+    next_ = "Next: btq check {}/main.btq\n"
+    assert main(["import", "out/main.xml"]) == 0
+    also = "also: btq import out/shared/a.xml\n"
+    assert capsys.readouterr().err == f"1 file imported\n{also}{next_.format('out')}"
+    assert main(["import", "out/main.xml", "-o", "back"]) == 0
+    also = "also: btq import out/shared/a.xml -o back/shared\n"
+    assert capsys.readouterr().err == f"1 file imported\n{also}{next_.format('back')}"
+    assert main(["import", "out/shared/a.xml", "-o", "back/shared"]) == 0
+    assert main(["check", "back"]) == 0
+    capsys.readouterr()
+    assert main(["import", "--force", "out/main.xml", "-o", "back"]) == 0
+    assert capsys.readouterr().err == f"1 file imported\n{next_.format('back')}"
 
 
 def test_places_and_marks() -> None:

@@ -1,6 +1,6 @@
 """Taking out of XML what a build has put into it: the marks of `marks`, for the .btq file says all that itself.
 
-One invariant: XML that no build has made is left as it is, and every removal is told.
+One invariant: XML that no build has made is left as it is, and what is removed is told, in one line.
 """
 
 from __future__ import annotations
@@ -17,25 +17,40 @@ def may_be_generated(text: str) -> bool:
     return DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text
 
 
-def without_generated(document: Document, changes: list[Change]) -> None:
-    """Take the marks out, in place."""
+def without_generated(document: Document, changes: list[Change]) -> int:
+    """Take the marks out, in place; in how many elements a build had something to say."""
+    marks: list[Span] = []
     for content in list(document.contents):
         if isinstance(content, Comment) and is_generated_mark(content.text):
-            end = content.start + len(content.text) + len("<!---->")
-            changes.append(Change(Span(content.start, end), "the mark of a generated file is left out"))
+            marks.append(Span(content.start, content.start + len(content.text) + len("<!---->")))
             document.contents.remove(content)
+    enforcing: list[Span] = []
+    described: list[Span] = []
     stack = [document.root]
     while stack:
         element = stack.pop()
-        _take_out(element, changes)
+        _take_out(element, enforcing)
         stack += element.elements
         for index, attribute in enumerate(element.attributes):
             if attribute.name == "_description" and DESCRIPTION_MARK in attribute.raw:
-                _cut(element, index, changes)
+                described += _cut(element, index)
                 break
+    if marks or enforcing or described:
+        parts = [
+            *(("its mark",) if marks else ()),
+            *((_counted(len(enforcing), "node that enforces", "nodes that enforce"),) if enforcing else ()),
+            *((_counted(len(described), "description", "descriptions"),) if described else ()),
+        ]
+        first = min((*marks, *enforcing, *described))
+        changes.append(Change(first, f"what a build put there is left out: {', '.join(parts)}"))
+    return len(described)
 
 
-def _take_out(parent: Element, changes: list[Change]) -> None:
+def _counted(number: int, one: str, many: str) -> str:
+    return f"{number} {one if number == 1 else many}"
+
+
+def _take_out(parent: Element, found: list[Span]) -> None:
     """What enforces a requirement, among the children of an element; what is in it comes up."""
     index = 0
     while index < len(parent.children):
@@ -47,20 +62,18 @@ def _take_out(parent: Element, changes: list[Change]) -> None:
         if inside is None:  # now it is somebody's
             child.attributes[:] = [each for each in child.attributes if each.name not in (MARK, MOVED)]
             continue
-        what = f"<{child.tag}> `{child.get('name')}`, which a build put there, is left out"
-        changes.append(Change(Span(child.start + 1, child.start + 1 + len(child.tag)), what))
+        found.append(Span(child.start + 1, child.start + 1 + len(child.tag)))
         parent.children[index : index + 1] = inside
 
 
-def _cut(element: Element, index: int, changes: list[Change]) -> None:
-    """The user's part of a `_description`."""
+def _cut(element: Element, index: int) -> tuple[Span, ...]:
+    """Leave the user's part of a `_description`; where there was more."""
     attribute = element.attributes[index]
     own = own_description(attribute.raw)
     if own == attribute.raw:
-        return
-    end = attribute.value_start + len(attribute.raw) + 1
-    changes.append(Change(Span(attribute.start, end), "what a build wrote into this _description is left out"))
+        return ()
     if own is None:
         del element.attributes[index]
     else:
         element.attributes[index] = Attribute(attribute.name, own, attribute.place)
+    return (Span(attribute.start, attribute.value_start + len(attribute.raw) + 1),)

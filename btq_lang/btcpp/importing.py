@@ -47,12 +47,14 @@ class Imported:
         changes: what it says otherwise than the XML did, in the order of the XML.
         diagnostics: what is wrong with the XML itself; spans count from its start.
         places: what in `text` was made of what in the XML.
+        described: how many elements a build had told of requirements or qualities, which is left out.
     """
 
     text: str
     changes: tuple[Change, ...]
     diagnostics: tuple[Diagnostic, ...]
     places: Places
+    described: int = 0
 
     @property
     def is_complete(self) -> bool:
@@ -85,15 +87,14 @@ def import_xml(
             problem = Diagnostic("xml-root", span, f"the document element is <{root.tag}>, not <root>", notes=(note,))
             return Imported("", (), (*done.problems, problem), Places())
         writer = _Writer(text, for_people, included_as or _as_it_is)
-        if may_be_generated(text):
-            without_generated(done.document, writer.changes)
+        described = without_generated(done.document, writer.changes) if may_be_generated(text) else 0
         if not keep_v3 and is_version_3(root):
             translated(root, writer.changes)
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=_start))
-        return Imported(
-            "".join(writer.out), changes, (*done.problems, *writer.ignored), Places(writer.marks, writer.out, located)
-        )
+        problems = (*done.problems, *writer.ignored)
+        places = Places(writer.marks, writer.out, located)
+        return Imported("".join(writer.out), changes, problems, places, described)
     finally:
         if collecting:
             gc.enable()

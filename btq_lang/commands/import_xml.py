@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
+from btq_lang.loader import LoadProblem, absolute, find_project, read, shown, write_whole
+from btq_lang.project import include_candidates
 from btq_lang.record import record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
@@ -24,7 +25,7 @@ class _Job:
 
     Attributes:
         others: the files of its bundle: where they go, and their texts.
-        losses: what it said before and does not say any more, a line each.
+        losses: what it said before and does not say any more, a line each, with what can be done.
     """
 
     path: str
@@ -67,7 +68,8 @@ def _target(path: str, options: Namespace) -> str:
 def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     if path == _STDIN:
         xml = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
-        return _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
+        job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
+        return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
     text, problem = read(path)
     if text is None or problem is not None:  # what is no UTF-8 would lose something
@@ -94,13 +96,13 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
     side = side_path(job.path)
     text, problem = read(side) if os.path.isfile(side) else (None, None)
     if text is None or problem is not None or not job.done.is_complete:
-        return job
+        return _without_side_file(job, f"put {shown(side)} beside the XML to keep them")
     from btq_lang.btcpp.restoring import restored
     from btq_lang.formatter import format_text
 
     mission = restored(job.xml, job.done.text, text)
     if mission is None:
-        return job
+        return _without_side_file(job, f"{shown(side)} is not the one that the build wrote beside the XML")
     if mission.is_whole:
         from btq_lang.commands.unpacking import unpacked
 
@@ -111,6 +113,14 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
         for lost in mission.lost
     )
     return replace(job, done=replace(job.done, text=format_text(mission.text).text), losses=losses)
+
+
+def _without_side_file(job: _Job, advice: str) -> _Job:
+    number = job.done.described
+    if not number:
+        return job
+    nodes = "1 node" if number == 1 else f"{number} nodes"
+    return replace(job, losses=(f"{nodes} carried requirements or qualities: {advice}",))
 
 
 def _quiet(done: Imported, text: str) -> Imported:
@@ -179,5 +189,27 @@ def _sum_up(written: list[_Job], refused: int) -> None:
     if refused:
         parts.append(f"{files(refused)} that cannot be read left alone")
     print(", ".join(parts), file=sys.stderr)
+    for command in dict.fromkeys(command for job in written for command in _missing(job)):
+        print(f"also: {command}", file=sys.stderr)
     if len(written) == 1 and written[0].target is not None:
         print(f"Next: btq check {shown(written[0].target)}", file=sys.stderr)
+
+
+def _missing(job: _Job) -> Iterator[str]:
+    """What brings the files that a mission includes and that are still XML beside its XML."""
+    if job.target is None or "include" not in job.done.text:
+        return
+    from btq_lang.parser import parse
+    from btq_lang.syntax import Include
+
+    project = find_project(job.target).project
+    for entry in parse(job.done.text).entries:
+        item = entry.item
+        if not isinstance(item, Include) or item.path is None or item.path.text.endswith(".xml") or item.attributes:
+            continue
+        xml = absolute(os.path.join(os.path.dirname(job.path), f"{os.path.splitext(item.path.text)[0]}.xml"))
+        places = include_candidates(project, job.target, item.path.text)
+        if any(os.path.isfile(place) for place in places) or not os.path.isfile(xml):
+            continue
+        folder = os.path.dirname(absolute(os.path.join(os.path.dirname(job.target), item.path.text)))
+        yield f"btq import {shown(xml)}" + (f" -o {shown(folder)}" if folder != os.path.dirname(xml) else "")
