@@ -120,6 +120,26 @@ def test_every_xml_is_answered(xml: str) -> None:
         assert 0 <= each.span.start <= each.span.end <= len(xml)
 
 
+OLD = """\
+<root>
+  <BehaviorTree ID="A"><SequenceStar><InitNeo4j/><Known/></SequenceStar></BehaviorTree>
+  <BehaviorTree ID="B"><Known/></BehaviorTree>
+  <TreeNodesModel><Action ID="Known"/></TreeNodesModel>
+</root>
+"""
+
+
+def test_notes_on_xml_speak_of_xml() -> None:
+    main = ("unknown-main-tree", ('`main_tree_to_execute="…"` of <root> names the main tree',))
+    shortest = '`<Action ID="InitNeo4j"/>` in <TreeNodesModel>'
+    node = ("unknown-node", (f"the other nodes here have models; the shortest is {shortest}",))
+    why = "SequenceStar is version 3's name of SequenceWithMemory"
+    way = "`btq import` makes a .btq file of it that says this as version 4 does"
+    assert [(each.rule, each.notes) for each in problems(OLD)] == [main, ("not-an-engine-node", (why, way)), node]
+    new = problems(OLD.replace("<root>", '<root BTCPP_format="4">'))
+    assert [(each.rule, each.notes) for each in new] == [main, ("not-an-engine-node", (why,)), node]
+
+
 def problems(xml: str) -> tuple[Diagnostic, ...]:
     return check(workspace_of({"a.xml": xml}), "a.xml")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from btq_lang.catalog.names import model_name_problem
@@ -15,6 +16,10 @@ from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 # How many children the nodes of a category have; None: any number.
 CHILDREN: dict[str, tuple[int, int | None]] = {
@@ -58,7 +63,8 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         known = KNOWN_WORDS.get(name.text)
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
-            yield Diagnostic("not-an-engine-node", name.span, message, notes=(known.why,), fixes=fixes)
+            notes = (known.why, *_way_in(view, known))
+            yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
             note = f"in quotes a kind is the XML tag, and the engine's node is called {meant.tag}"
             fix = replace_fix("Take off the quotes", name.span, name.text)
@@ -184,6 +190,14 @@ def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     return ()
 
 
+def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
+    """What makes a file for version 4 of XML for version 3, where that is what a word comes from."""
+    origin = view.file.origin
+    if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
+        return ()
+    return ("`btq import` makes a .btq file of it that says this as version 4 does",)
+
+
 def _quoted_alias(seen: SeenNode, name: Word) -> NodeKind | None:
     """The built-in that a word would mean without its quotes: `"Retry"` is no tag of the engine."""
     return lookup(name.text) if name.quoted and seen.kind is None else None
@@ -206,7 +220,10 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         model = f"{likely_category(seen)} {written(name.text)}"
         margin = view.file.text[entry.start : entry.start + entry.item.start]
         fixes = (Fix(f"Declare it: `{model}`", (Change(Place(Span(0, 0)), f"{margin}{model}\n"),)),)
-        notes = (f"the other nodes here have models; the shortest is a line `{model}`",)
+        shortest = f"a line `{model}`"
+        if view.file.origin is not None:
+            shortest = f'`<{likely_category(seen)} ID="{name.text}"/>` in <TreeNodesModel>'
+        notes = (f"the other nodes here have models; the shortest is {shortest}",)
     yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
 
 
@@ -277,3 +294,8 @@ def _interface(symbol: Symbol) -> object:
         return None
     ports = [(port.direction, port.name, port.type, port.default) for port in model.ports]
     return model.category.raw, shape(tuple(ports))
+
+
+# Words of version 3 that an import says in another way.
+_TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
+_SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")

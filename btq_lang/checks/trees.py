@@ -133,12 +133,14 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return  # without one at the top they run in circles, and that is told
     names = ", ".join(f"`{name}`" for name in tuple(tops)[:_MOST_NAMES])
     span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
+    is_xml = view.file.origin is not None
+    way = '`main_tree_to_execute="…"` of <root>' if is_xml else "a line `Root <tree>`"
     yield Diagnostic(
         "unknown-main-tree",
         span,
         f"nothing says which tree is the mission: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
         related=tuple(tops.values())[1:_MOST_NAMES],
-        notes=("a line `Root <tree>` names the main tree",),
+        notes=(f"{way} names the main tree",),
         fixes=tuple(_main_tree_fix(view, roots, name) for name in tuple(tops)[:3]),
     )
 
