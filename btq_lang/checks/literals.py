@@ -16,7 +16,7 @@ from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import record
 from btq_lang.rules import Severity
-from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word
+from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
 from btq_lang.units import convert, dimension_name, parse_unit
 
@@ -71,16 +71,19 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         quantity = parse_quantity(value.raw)
         if quantity is None:
             continue  # an unknown unit, which is told
-        number, unit, _ = quantity
+        unit = quantity[1]
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
-            plain = _plain(number)
+            as_text = check_literal(target.type, value.raw, view.workspace.project.target) is None
+            # No fix: without its unit the number may mean something else, and not every node reads the text.
             yield Diagnostic(
                 "quantity-on-unitless-port",
                 value.span,
                 f"nobody knows the unit of the port `{target.port}`",
-                notes=("write the number that the node expects, and say its unit in the port's description",),
-                fixes=(replace_fix(f"Write `{plain}`", value.span, plain),) if isfinite(number) else (),
+                notes=(
+                    "write the number in the unit that the node expects, and say that unit in the port's description",
+                    *([f"for a node that reads the unit itself, write it in quotes: `{quote(value.raw)}`"] * as_text),
+                ),
             )
         elif unit.dimension != wanted.dimension:
             message = f"`{target.port}` takes {dimension_name(wanted)}, `{value.raw}` is {dimension_name(unit)}"
