@@ -8,7 +8,7 @@ meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be mi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import record
@@ -643,19 +643,28 @@ def is_name(text: str) -> bool:
 _NAME = re.compile(r"[^\W\d](?:\w|-(?=\w))*[?!]?")
 
 
-def shape(part: object) -> object:
-    """A part of the tree without its offsets: two parts with one shape say the same."""
+def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> object:
+    """A part of the tree without its offsets: two parts with one shape say the same.
+
+    Args:
+        of_quantity: what two quantities that are the same have in common; else how they are written, without blanks.
+    """
     if isinstance(part, Node):  # in document order, each with its number of children: no recursion, trees are deep
         return "Node", *(_shape_of_one(node) for node in _in_order(part))
     if isinstance(part, Word):
+        if part.kind == QUANTITY and of_quantity is not None:
+            return False, of_quantity(part)
         text = "".join(part.raw.split()) if part.kind == QUANTITY else part.text  # `30s` is `30 s`
         return part.kind == STRING, text
     if isinstance(part, tuple):
-        return tuple(shape(element) for element in part)
+        return tuple(shape(element, of_quantity) for element in part)
     if isinstance(part, str | int | None):
         return part
     fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # every class of this module has them
-    return type(part).__name__, *(shape(getattr(part, field)) for field in fields if field not in ("start", "end"))
+    return type(part).__name__, *(shape(getattr(part, field), of_quantity) for field in fields if field not in _OFFSETS)
+
+
+_OFFSETS = ("start", "end")
 
 
 def walk(part: object) -> Iterator[object]:

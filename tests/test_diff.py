@@ -141,6 +141,30 @@ def test_a_part_that_became_a_tree_of_its_own() -> None:
     ]
 
 
+def test_the_same_quantity_in_another_unit_is_no_change() -> None:
+    mission = dedent("""\
+        signal speed : m/s from {{speed}} fresh within {0} initially {1}
+        context slow = speed < {1}
+        QualityReq rq1(limit : m/s = {1})
+            takes at most {0}
+            uses at most {2}
+            keeps speed <= {1}
+            over last {0}
+        BehaviorTree Main
+            Go satisfies rq1(limit = {1})
+        apply rq1(limit = {1}) to Go
+        """)
+    old = mission.format("90 s", "0.5 m/s", "20 Wh")
+    assert in_words(old, mission.format("1.5 min", "50 cm/s", "72 kJ")) == ""
+    changed = in_words(old, mission.format("90 min", "0.5 m/s", "20 Wh")).splitlines()
+    assert changed[1:5] == [
+        "~ requirement rq1 changed  new.btq:3",
+        "    - takes at most 90 s",
+        "    + takes at most 90 min",
+        "    - over last 90 s",
+    ]
+
+
 def test_what_is_applied() -> None:
     old = "QualityReq rq1\n    takes at most 30 s\nBehaviorTree Main\n    Go\n"
     said = "old.btq -> new.btq\n+ apply rq1 to Go added  new.btq:5\n\n1 apply added"
@@ -241,6 +265,14 @@ def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> N
     said += "1 requirement changed\n"
     assert btq("a/main.btq", "b/main.btq", cwd=tmp_path) == (1, f"a/main.btq -> b/main.btq\n{said}", "")
     assert btq("a", "b", cwd=tmp_path) == (1, f"a/reqs.btq -> b/reqs.btq\n{said}", "")
+
+
+def test_a_missing_include_is_told(tmp_path: Path) -> None:
+    (tmp_path / "a.btq").write_text('include "skills.btq"\nBehaviorTree Main\n    Go\n')
+    (tmp_path / "b.btq").write_text("BehaviorTree Main\n    Go\n")
+    code, out, told = btq("a.btq", "b.btq", cwd=tmp_path)
+    assert (code, out.splitlines()[1]) == (1, "- include skills.btq removed  a.btq:1")
+    assert told == "btq: a.btq: includes `skills.btq`, which is not there: what it says cannot be compared\n"
 
 
 def test_a_mission_and_its_xml(tmp_path: Path) -> None:

@@ -55,6 +55,11 @@ def _warn(side: Side) -> None:
     """Say of what is compared only in part that it is."""
     for path in side.paths:
         file = side.workspace.files[path]
+        for include in file.includes:
+            is_packaged = any(pair.key.text == "ros_pkg" for pair in include.attributes)
+            if include.path is not None and not is_packaged and side.workspace.included_by(path, include) is None:
+                message = f"includes `{include.path.text}`, which is not there: what it says cannot be compared"
+                print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if error := _first_error(file):
             print(f"btq: {side.shown(path)}:{error}; what could be understood is compared", file=sys.stderr)
 

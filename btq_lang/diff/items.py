@@ -41,9 +41,10 @@ def item_changes(
     before, after = _by_name(old), _by_name(new)
     names = {(thing, new_name): old_name for (thing, old_name), new_name in renamed.items()}
     attached = [_attached(each) for each in nodes]
-    for (thing, name), item in after.items():
+    for key, item in after.items():
+        thing, name = item.thing, item.name
         earlier = names.get((thing, name))
-        was = before.get((thing, earlier if earlier is not None else name))
+        was = before.get((thing, earlier) if earlier is not None else key)
         if was is None:
             yield Change("added", thing, name, None, item.place, tuple(_told(item, added=True)))
             continue
@@ -60,9 +61,9 @@ def item_changes(
                 said.append(Detail("attached to", _nodes(counts[0]), _nodes(counts[1])))
         if said:
             yield Change("changed", thing, name, was.place, item.place, tuple(said))
-    for (thing, name), item in before.items():
-        if (thing, name) not in after and (thing, name) not in renamed:
-            yield Change("removed", thing, name, item.place, None, tuple(_told(item, added=False)))
+    for key, item in before.items():
+        if key not in after and (item.thing, item.name) not in renamed:
+            yield Change("removed", item.thing, item.name, item.place, None, tuple(_told(item, added=False)))
 
 
 def _told(item: Item, added: bool) -> Iterator[Detail]:
@@ -72,10 +73,13 @@ def _told(item: Item, added: bool) -> Iterator[Detail]:
             yield Detail(aspect, None, value.text) if added else Detail(aspect, value.text, None)
 
 
-def _by_name(items: Iterable[Item]) -> dict[tuple[str, str], Item]:
-    found: dict[tuple[str, str], Item] = {}
+def _by_name(items: Iterable[Item]) -> dict[tuple[str, object], Item]:
+    found: dict[tuple[str, object], Item] = {}
     for item in items:
-        found.setdefault((item.thing, item.name), item)
+        name = (
+            item.values[""].key if item.thing == "apply" else item.name
+        )  # whose name is its text, however it is spelt
+        found.setdefault((item.thing, name), item)
     return found
 
 

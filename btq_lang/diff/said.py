@@ -55,7 +55,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, QUANTITY
-from btq_lang.units import convert, parse_unit
+from btq_lang.units import convert, parse_unit, to_si
 from btq_lang.workspace import File, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -260,7 +260,9 @@ class _Reader:
         text = ""
         name = requirement.name.text if requirement.name is not None else ""
         if isinstance(requirement, ReqRef):
-            arguments = tuple(sorted(((each.name.text, shape(each.value)) for each in requirement.arguments), key=repr))
+            arguments = tuple(
+                sorted(((each.name.text, _meaning(each.value)) for each in requirement.arguments), key=repr)
+            )
             text = ", ".join(f"{each.name.text} = {self._text(each.value)}" for each in requirement.arguments)
         elif not requirement.is_reference:
             self.inside.append(self._requirement(requirement, quality))
@@ -282,11 +284,13 @@ class _Reader:
         elif isinstance(item, Signal):
             words = {"unit": item.unit, "from": item.source, "kind": item.behaviour, "fresh within": item.fresh}
             values = {aspect: _value(word) for aspect, word in words.items() if word is not None}
+            if item.fresh is not None:
+                values["fresh within"] = Value(_meaning(item.fresh), item.fresh.raw)
             if item.initially is not None:
-                values["initially"] = Value(shape(item.initially), self._text(item.initially))
+                values["initially"] = Value(_meaning(item.initially), self._text(item.initially))
             yield self._item("signal", item.name, values, item)
         elif isinstance(item, Context):
-            condition = Value(shape(item.condition), self._text(item.condition))
+            condition = Value(_meaning(item.condition), self._text(item.condition))
             yield self._item("context", item.name, {"condition": condition}, item)
         elif isinstance(item, QualityDecl):
             values = {"title": _value(item.text)} if item.text is not None else {}
@@ -306,7 +310,7 @@ class _Reader:
             yield Item(MISSION, "qualities", {"edition": _value(item.edition)}, self._place(item.start, item.end))
         elif isinstance(item, Apply):
             text = self._slice(item.start, item.end)
-            yield Item("apply", text, {"": Value(shape(item), text)}, self._place(item.start, item.end))
+            yield Item("apply", text, {"": Value(_meaning(item), text)}, self._place(item.start, item.end))
         elif isinstance(item, Verbatim):
             yield self._item("xml", item.text, {}, item)
 
@@ -321,14 +325,14 @@ class _Reader:
         for parameter in requirement.parameters:
             text = " : ".join(word.raw for word in (parameter.name, parameter.unit) if word is not None)
             default = f" = {self._text(parameter.default)}" if parameter.default is not None else ""
-            values[f"parameter {parameter.name.text}"] = Value(shape(parameter), text + default)
+            values[f"parameter {parameter.name.text}"] = Value(_meaning(parameter), text + default)
         for clause in requirement.clauses:
             aspect = clause.verb.text if isinstance(clause, Claim) else _ASPECTS[type(clause)]
             number = 2
             while aspect in values:
                 aspect = f"{aspect.split(' #')[0]} #{number}"
                 number += 1
-            values[aspect] = Value(shape(clause), self._slice(clause.start, clause.end))
+            values[aspect] = Value(_meaning(clause), self._slice(clause.start, clause.end))
         return self._item("requirement", requirement.name, values, requirement)
 
     def _model(self, model: Model) -> Item:
@@ -391,6 +395,18 @@ def _places(part: object) -> Iterator[tuple[int, int]]:
     for each in walk(part):
         if isinstance(each, Word):
             yield each.start, each.end
+
+
+def _meaning(part: object) -> object:
+    """The shape of a part, in which `90 s` is `1.5 min`."""
+    return shape(part, _in_si)
+
+
+def _in_si(word: Word) -> object:
+    quantity = parse_quantity(word.raw)
+    if quantity is None:
+        return "".join(word.raw.split())
+    return quantity[1].dimension, f"{to_si(quantity[0], quantity[1]):.12g}"
 
 
 def _value(word: Word | None, unit: str | None = None) -> Value:
