@@ -270,7 +270,7 @@ def test_files_of_a_bundle_are_written_over_if_asked(btq: Btq) -> None:  # noqa:
 @pytest.mark.parametrize(
     "name",
     [
-        "../x.btq",
+        "../../x.btq",
         "a/../../x.btq",
         "/x.btq",
         "C:/x.btq",
@@ -292,6 +292,32 @@ def test_no_file_of_a_bundle_goes_elsewhere(btq: Btq, name: str) -> None:  # noq
     known = below(btq.folder)
     assert main(["import", "out/main.xml", "-o", "back", "--force"]) == 2
     assert below(btq.folder) == known
+
+
+def test_a_mission_that_includes_what_stands_above_it_keeps_its_folder(btq: Btq) -> None:  # noqa: F811
+    texts = {
+        "missions/m.btq": 'include "../shared/a.btq"\nBehaviorTree M\n    SubTree A tags x\n',
+        "shared/a.btq": "BehaviorTree A\n    Go\n",
+    }
+    for name, text in texts.items():
+        (btq.folder / "my" / name).parent.mkdir(parents=True)
+        (btq.folder / "my" / name).write_text(text)
+    assert btq.build("my/missions/m.btq", "--bundle", "-o", "out")[0] == 0
+    assert main(["import", "out/missions/m.xml", "-o", "back"]) == 0
+    assert below(btq.folder / "back") == texts
+
+
+def test_bundles_that_hold_different_files_of_one_name_are_not_mixed(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+    for folder in ("one", "two"):
+        (btq.folder / folder).mkdir()
+        (btq.folder / folder / "a.btq").write_text(f"BehaviorTree A\n    Go {folder}\n")
+        text = 'include "a.btq"\nBehaviorTree M\n    SubTree A tags x\n'
+        (btq.folder / folder / f"{folder}.btq").write_text(text)
+        assert btq.build(f"{folder}/{folder}.btq", "--bundle", "-o", "out")[0] == 0
+    capsys.readouterr()
+    assert main(["import", "out/one.xml", "out/two.xml", "-o", "back"]) == 2
+    assert "btq: out/one.xml: not imported: out/two.xml has another back/a.btq\n" in capsys.readouterr().err
+    assert below(btq.folder / "back") == {}
 
 
 def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) -> None:  # noqa: F811

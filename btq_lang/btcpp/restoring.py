@@ -45,6 +45,7 @@ class Restored:
     Attributes:
         text: of the .btq file.
         is_whole: it is the mission as it was.
+        file: where the mission was, seen from the side file, which may say anything.
         lost: clauses of nodes that are not there any more.
         others: of a whole bundle, the files that it includes: their paths, seen from the mission, and texts.  The paths
             are whatever the side file says, and may lead anywhere.
@@ -52,6 +53,7 @@ class Restored:
 
     text: str
     is_whole: bool
+    file: str
     lost: tuple[Lost, ...] = ()
     others: tuple[tuple[str, str], ...] = ()
 
@@ -86,15 +88,16 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         data = json.loads(side)
         is_known = data["format"] == FORMAT and data["version"] == VERSION
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
+        place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
-    if not is_known or not all(_is_text(each) for each in (mission, *chain(*others))):
+    if not is_known or not all(_is_text(each) for each in (mission, place, *chain(*others))):
         return None
     if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
-        return Restored(mission, True, others=others)
+        return Restored(mission, True, place, others=others)
     sources = ((None, mission), *((file, text) for file, text in others if is_btq(file)))
-    return _merged(parse(imported), [(file, parse(text)) for file, text in sources])
+    return _merged(parse(imported), [(file, parse(text)) for file, text in sources], place)
 
 
 def _is_text(value: object) -> bool:
@@ -102,13 +105,13 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str) and not any("\ud800" <= char <= "\udfff" for char in value)
 
 
-def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]]) -> Restored:
+def _merged(now: Parsed, sources: Sequence[tuple[str | None, Parsed]], place: str) -> Restored:
     """What the XML says now, with what the mission and the files of its bundle said beyond it."""
     edits: list[Edit] = []
     lost: list[Lost] = []
     for file, then in sources:
         _merge(now, then, file, edits, lost)
-    return Restored(apply_edits(now.text, edits), False, tuple(lost))
+    return Restored(apply_edits(now.text, edits), False, place, tuple(lost))
 
 
 def _merge(now: Parsed, then: Parsed, file: str | None, edits: list[Edit], lost: list[Lost]) -> None:

@@ -104,10 +104,13 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
     if mission is None:
         return _without_side_file(job, f"{shown(side)} is not the one that the build wrote beside the XML")
     if mission.is_whole:
-        from btq_lang.commands.unpacking import unpacked
+        from btq_lang.commands.unpacking import place_of_mission, unpacked
 
-        others = unpacked(mission.others, target, (job.path, side), force, problems)
-        return others if others is None else replace(job, done=_quiet(job.done, mission.text), others=others)
+        root, target = os.path.dirname(target), place_of_mission(target, mission.file, mission.others)
+        others = unpacked(mission.others, root, target, (job.path, side), force, problems)
+        if others is None:
+            return None
+        return replace(job, done=replace(job.done, text=mission.text, changes=()), target=target, others=others)
     losses = tuple(
         f"its node is not there any more: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
         for lost in mission.lost
@@ -123,10 +126,6 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
     return replace(job, losses=(f"{nodes} carried requirements or qualities: {advice}",))
 
 
-def _quiet(done: Imported, text: str) -> Imported:
-    return replace(done, text=text, changes=())
-
-
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
     """Whether a file would be lost by writing this one."""
     if job.target is None:
@@ -135,6 +134,16 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
     if same is not job:
         problems.append(LoadProblem(job.path, f"not imported: {shown(same.path)} becomes {shown(job.target)}, too"))
         return True
+    for other in jobs:
+        known = {
+            other.path: other.xml,
+            **dict(other.others),
+            **({other.target: other.done.text} if other.target else {}),
+        }
+        for path, text in job.others:
+            if known.get(path, text) != text:
+                problems.append(LoadProblem(job.path, f"not imported: {shown(other.path)} has another {shown(path)}"))
+                return True
     if job.target == job.path or (os.path.lexists(job.target) and not force):
         problems.append(LoadProblem(job.target, "is there already: --force writes it anew"))
         return True
