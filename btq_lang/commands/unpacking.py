@@ -69,7 +69,7 @@ def _below(root: str, folder: str, name: str) -> str | None:
     if not name.endswith(_KNOWN) or os.path.isabs(name) or any(char in name for char in _FOREIGN):
         return None
     path = absolute(os.path.join(folder, name))
-    if posixpath.normpath(name) != name or not path.startswith(os.path.join(root, "")):
+    if posixpath.normpath(name) != name or not path.startswith(f"{root.rstrip('/')}/"):
         return None
     return path if os.path.realpath(path).startswith(os.path.join(os.path.realpath(root), "")) else None
 
