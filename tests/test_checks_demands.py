@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_problems, findings, problems
+from check_asserts import assert_clean, assert_problems, findings, problems
 
 
 def mission(tree: str, *requirements: str) -> str:
@@ -338,3 +338,41 @@ def test_an_entry_of_a_tree_is_not_that_of_the_root(call: str, port: str, is_ano
     )
     expected = "1 warning «hot» `hot` is read from the root's `heat`, and the tree `Part` writes its own"
     assert findings(text, "signal-never-written") == ([expected] if is_another else [])
+
+
+def outbid(*clauses: str) -> str:
+    lines = "".join(f"    {clause}\n" for clause in clauses)
+    return f'QualityReq rq1 "t"\n{lines}BehaviorTree Main\n    Action X satisfies rq1\n'
+
+
+@pytest.mark.parametrize(
+    ("clauses", "line", "said"),
+    [
+        (("takes at most 30 s", "takes at most 40 s"), 3, "at most `30 s`, so `40 s`"),
+        (("takes at most 1 min", "takes at most 40 s"), 2, "at most `40 s`, so `1 min`"),
+        (("tries at most 2", "tries at most 1"), 2, "at most `1`, so `2`"),
+        (("takes at least 3 s", "takes at least 4 s"), 2, "at least `4 s`, so `3 s`"),
+        (("takes at most 30 s", "takes at most 30 s"), 3, "at most `30 s`, so `30 s`"),
+    ],
+)
+def test_a_bound_that_another_of_the_requirement_outbids(clauses: tuple[str, ...], line: int, said: str) -> None:
+    assert_problems(
+        outbid(*clauses),
+        f"{line}:5 warning dead-bound «{clauses[line - 2]}» the same requirement asks for {said} says nothing",
+    )
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        ("takes at least 3 s", "takes at most 30 s"),
+        ("takes at most 40 s", "succeeds within 50 s"),
+        ("takes at most 30 s", "takes less than 30 s"),
+    ],
+)
+def test_bounds_that_both_say_something(clauses: tuple[str, ...]) -> None:
+    assert_clean(outbid(*clauses))
+
+
+def test_a_requirement_that_reaches_a_node_twice_outbids_nothing() -> None:
+    assert_clean(outbid("takes at most 30 s") + "apply rq1 to every X\n")

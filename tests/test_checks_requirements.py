@@ -214,3 +214,14 @@ def test_nodes_that_look_like_clauses() -> None:
     nodes = ("Satisfied a", "satisfied", "satisfy (a = 1)", 'satisfy "b"')
     assert_clean("BehaviorTree Main\n    ->\n" + "".join(f"        {node}\n" for node in nodes))
     assert_clean("Action satisfy\nBehaviorTree Main\n    satisfy hunger\n")
+
+
+def test_an_action_without_a_claim() -> None:
+    text = 'QualityReq rq1 "t"\n    {}\nBehaviorTree Main\n    Action X satisfies rq1\n'
+    told = "the requirement `rq1` says nothing that could be violated, so `on violation {}` does nothing"
+    for action in ("fail", "halt", "warn", "log"):
+        assert_problems(
+            text.replace("{}", f"on violation {action}"),
+            f"1:12 warning requirement-without-text «rq1» {told.replace('{}', action)}",
+        )
+    assert_clean(text.replace("{}", "takes at most 30 s on violation fail"))

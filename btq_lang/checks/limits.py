@@ -8,7 +8,7 @@ from math import inf
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
-from btq_lang.requirements.model import Claim, Compare, Read, SourceNode, Target, Value
+from btq_lang.requirements.model import Claim, Compare, Read, SourceNode, Table, Target, Value
 from btq_lang.rules import Severity
 
 _OF_TIME = frozenset(("takes", "succeeds"))
@@ -64,6 +64,33 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
         message = f"`{most[1]}` is never reached: a Timeout halts {node.shown} after {seconds(limit)}"
         related = (Related(above.place, "the Timeout"),)
         yield place, Diagnostic("dead-bound", place.span, message, related=related)
+
+
+def outbid_bound(demanded: Demanded) -> Iterator[Found]:
+    """A bound that says nothing, for the same requirement has a tighter one of the same kind for the same node."""
+    kinds: dict[tuple[object, ...], list[tuple[Claim, _Limit, Place]]] = {}
+    for applied, claim, node, place in demanded.claims:
+        if claim.limit is not None and Table in (type(claim.limit.value), type(claim.limit.upper)):
+            continue  # each of its values is for a situation of its own
+        for limit in _limits(claim) if claim.verb != "tries" else [((claim.per,), lowest(claim), highest(claim))]:
+            kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
+                (claim, limit, place)
+            )
+    for same in kinds.values():
+        lows = [(low[0], low[1], claim, place) for claim, (_, low, _), place in same if low is not None]
+        highs = [(high[0], high[1], claim, place) for claim, (_, _, high), place in same if high is not None]
+        for word, bounds in (("least", lows), ("most", highs)):
+            pick = max if word == "least" else min
+            tight = pick(bounds, key=lambda each: each[0], default=None)
+            for bound in bounds:
+                # Two that are equal and not written alike may differ: `at most 30 s`, `less than 30 s`.
+                if tight is None or (bound[0] == tight[0] and bound[2].text != tight[2].text):
+                    continue
+                if bound[2].place == tight[2].place:  # the same claim, which may reach the node by several ways
+                    continue
+                message = f"the same requirement asks for at {word} `{tight[1]}`, so `{bound[1]}` says nothing"
+                related = (Related(tight[3], "the tighter bound"),) if tight[3] != bound[3] else ()
+                yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
 
 
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:

@@ -10,7 +10,7 @@ from btq_lang.checks.kinds import include_place, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.symbols import Kind, Symbol, same_requirement
-from btq_lang.syntax import Claim, Entry, Requirement
+from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -82,15 +82,20 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A requirement with neither a text nor a clause."""
+    """A requirement with neither a text nor a clause, or with nothing that its `on violation` could be about."""
     for symbol in view.file.summary_of(entry).symbols:
         requirement = symbol.target
-        if not isinstance(requirement, Requirement) or not _is_empty(requirement):
+        if not isinstance(requirement, Requirement):
+            continue
+        action = _idle_action(view, requirement)
+        if action is None and not _is_empty(requirement):
             continue
         if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
             continue  # what it says may be what could not be read
         message = f"the requirement `{symbol.name}` says nothing"
-        note = "give it a text in quotes, or a clause such as `takes at most 30 s`"
+        if action is not None:
+            message += f" that could be violated, so `on violation {action}` does nothing"
+        note = "give it a clause such as `takes at most 30 s`" + ("" if action else ", or a text in quotes")
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
@@ -106,6 +111,14 @@ def _differ(symbol: Symbol, first: Symbol) -> bool:
         and not (_is_empty(mine) or _is_empty(other))
         and not same_requirement(mine, other)
     )
+
+
+def _idle_action(view: View, requirement: Requirement) -> str | None:
+    """What would be done on a violation of a requirement that claims nothing, by a clause or in its description."""
+    if any(isinstance(clause, Claim) for clause in requirement.clauses) or view.constraints(requirement):
+        return None
+    actions = (clause.action for clause in requirement.clauses if isinstance(clause, OnViolation))
+    return next((action.text for action in actions if action is not None), None)
 
 
 def _is_empty(requirement: Requirement) -> bool:
