@@ -89,7 +89,10 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 if bound[2].place == tight[2].place:  # the same claim, which may reach the node by several ways
                     continue
                 message = f"the same requirement asks for at {word} `{tight[1]}`, so `{bound[1]}` says nothing"
-                related = (Related(tight[3], "the tighter bound"),) if tight[3] != bound[3] else ()
+                at = tight[3]
+                if at.path == bound[3].path and at.anchor is bound[3].anchor:
+                    at = Place(at.span)  # without its item, which would be hashed for each of many claims
+                related = (Related(at, "the tighter bound"),) if tight[3].span != bound[3].span else ()
                 yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
 
 
