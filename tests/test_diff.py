@@ -267,6 +267,34 @@ def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> N
     assert btq("a", "b", cwd=tmp_path) == (1, f"a/reqs.btq -> b/reqs.btq\n{said}", "")
 
 
+def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
+    (tmp_path / "skills.btq").write_text("BehaviorTree Enough\n    input level : double = 25\n    AlwaysSuccess\n")
+    mission = tmp_path / "mission.btq"
+    mission.write_text(
+        'include "skills.btq"\nQualityReq rq1\n    takes at most 30 s\n'
+        "Root Main\nBehaviorTree Main\n    SubTree Enough satisfies rq1\n"
+    )
+    build = [sys.executable, "-m", "btq_lang", "build", "mission.btq"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    subprocess.run(build, cwd=tmp_path, env=environment, check=True, capture_output=True)
+    assert btq("mission.xml", "mission.btq", cwd=tmp_path) == (0, "", "")
+    assert btq("skills.xml", "skills.btq", cwd=tmp_path) == (0, "", "")
+    built = mission.read_text()
+    mission.write_text(built.replace("30 s", "20 s"))
+    code, out, told = btq("mission.btq", "mission.xml", cwd=tmp_path)
+    assert (code, out.splitlines()[1], told) == (
+        1,
+        "~ requirement rq1 changed  mission.qreq.json:mission.btq:2",
+        "",
+    )
+    mission.write_text(built)
+    (tmp_path / "mission.qreq.json").unlink()
+    code, out, told = btq("mission.btq", "mission.xml", cwd=tmp_path)
+    assert (code, out.splitlines()[-1]) == (1, "1 requirement removed, 1 node changed")
+    message = "it was built, and requirements cannot be seen in XML without the side file beside it"
+    assert told == f"btq: mission.xml: {message}\n"
+
+
 def test_a_missing_include_is_told(tmp_path: Path) -> None:
     (tmp_path / "a.btq").write_text('include "skills.btq"\nBehaviorTree Main\n    Go\n')
     (tmp_path / "b.btq").write_text("BehaviorTree Main\n    Go\n")

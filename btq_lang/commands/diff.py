@@ -8,6 +8,8 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 
+from btq_lang.btcpp.marks import DESCRIPTION_MARK
+from btq_lang.commands.as_built import as_built
 from btq_lang.commands.files import Files, Group
 from btq_lang.commands.garbage import collecting_seldom
 from btq_lang.commands.git import GitTrouble, Revisions, revisions
@@ -60,6 +62,9 @@ def _warn(side: Side) -> None:
             if include.path is not None and not is_packaged and side.workspace.included_by(path, include) is None:
                 message = f"includes `{include.path.text}`, which is not there: what it says cannot be compared"
                 print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
+        if file.origin is not None and DESCRIPTION_MARK in file.source:
+            message = "it was built, and requirements cannot be seen in XML without the side file beside it"
+            print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if error := _first_error(file):
             print(f"btq: {side.shown(path)}:{error}; what could be understood is compared", file=sys.stderr)
 
@@ -96,6 +101,10 @@ def _sides(path: str) -> dict[str, Side]:
     """The mission of a file, with all that it includes; or those of a folder, each by itself, by their names in it."""
     is_folder = os.path.isdir(path)
     found: dict[str, Side] = {}
+    built = None if is_folder else as_built(path)
+    if built is not None:
+        group, mission, place = built
+        return {"": Side(shown(path), group.workspace, group.workspace.closure(mission), place)}
     for group in _groups([path]):
         for each in group.given:
             paths = (each,) if is_folder else group.workspace.closure(each)

@@ -39,6 +39,7 @@ def item_changes(
         nodes: those of the old and of the new mission, for the requirements that are attached to them.
     """
     before, after = _by_name(old), _by_name(new)
+    _leave_out_built(before, after)
     names = {(thing, new_name): old_name for (thing, old_name), new_name in renamed.items()}
     attached = [_attached(each) for each in nodes]
     for key, item in after.items():
@@ -64,6 +65,19 @@ def item_changes(
     for key, item in before.items():
         if key not in after and (item.thing, item.name) not in renamed:
             yield Change("removed", item.thing, item.name, item.place, None, tuple(_told(item, added=False)))
+
+
+def _leave_out_built(before: dict[tuple[str, object], Item], after: dict[tuple[str, object], Item]) -> None:
+    """Leave out an include of a mission and the one of its XML: a build names one for the other."""
+    gone = {_stem(item): key for key, item in before.items() if item.thing == "include" and key not in after}
+    came = {_stem(item): key for key, item in after.items() if item.thing == "include" and key not in before}
+    for stem in gone.keys() & came.keys():
+        if before[gone[stem]].name.endswith(".xml") != after[came[stem]].name.endswith(".xml"):
+            del before[gone[stem]], after[came[stem]]
+
+
+def _stem(item: Item) -> str:
+    return item.name.rpartition("/")[2].rpartition(".")[0]
 
 
 def _told(item: Item, added: bool) -> Iterator[Detail]:

@@ -54,7 +54,7 @@ from btq_lang.syntax import (
     walk,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import COMMENT, QUANTITY
+from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.units import convert, parse_unit, to_si
 from btq_lang.workspace import File, Workspace
 
@@ -179,6 +179,12 @@ def said(workspace: Workspace, paths: Iterable[str]) -> Said:
         name = main.symbol.name
         place = Place(main.path, main.span)
         items[MISSION, ""] = Item(MISSION, "", {**values, MAIN: Value(name, name)}, place)
+    for tree in trees:
+        model = items.get(("node model", tree.name or ""))
+        if model is not None and model.values["category"].key == SUBTREE:  # XML has a tree's ports nowhere else
+            ports = {aspect: value for aspect, value in model.values.items() if aspect.startswith("port ")}
+            tree.values = {**ports, **tree.values}
+            del items[model.thing, model.name]
     return Said(tuple(trees), tuple(items.values()))
 
 
@@ -305,7 +311,8 @@ class _Reader:
             if item.name is not None:
                 values[MAIN] = _value(item.name)
             values.pop("BTCPP_format", None)  # which build and XML files have, and missions do not
-            yield Item(MISSION, "", values, self._place(item.start, item.end))
+            if values:
+                yield Item(MISSION, "", values, self._place(item.start, item.end))
         elif isinstance(item, Qualities):
             yield Item(MISSION, "qualities", {"edition": _value(item.edition)}, self._place(item.start, item.end))
         elif isinstance(item, Apply):
@@ -353,7 +360,7 @@ class _Reader:
         return {
             f"port {port.name.text if port.name is not None else ''}": Value(
                 (
-                    *(port.direction.raw, _saying(port.type), _saying(port.default), _saying(port.text)),
+                    *(port.direction.raw, _saying(port.type), _default(port), _saying(port.text)),
                     *sorted((pair.key.text, _saying(pair.value)) for pair in port.attributes),
                 ),
                 self._slice(port.start, port.end),
@@ -422,6 +429,12 @@ def _value(word: Word | None, unit: str | None = None) -> Value:
 
 def _saying(word: Word | None) -> str:
     return word.text if word is not None else ""
+
+
+def _default(port: Port) -> str:
+    if port.default is not None and port.default.kind == NUMBER and _saying(port.type) in ("double", "float"):
+        return f"{float(port.default.text):.15g}"  # a build writes 25.0 for 25
+    return _saying(port.default)
 
 
 def _edition(file: File) -> str | None:
