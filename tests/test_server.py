@@ -510,7 +510,7 @@ def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None
 
 
 def test_a_cancelled_request_is_answered_as_cancelled(tmp_path: Path) -> None:
-    for number in range(20):
+    for number in range(300):
         (tmp_path / f"main{number}.btq").write_text(WRONG, encoding="utf-8")
     editor = Editor(tmp_path, capabilities=PULLS)
     editor.send(id="slow", method="workspace/diagnostic", params={"previousResultIds": []})
