@@ -126,7 +126,7 @@ class Server(LanguageServer):
             del self.waiting[path]
             try:
                 self.publish(path)
-            except Exception:
+            except Exception:  # one file that cannot be checked must not silence the others, nor end the server
                 logging.getLogger(__name__).exception("checking %s", path)
             await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:

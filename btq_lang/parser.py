@@ -7,11 +7,10 @@ and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`
 
 from __future__ import annotations
 
-import gc
-
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
+from btq_lang.garbage import NotCollecting
 from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import NodeParser
@@ -109,13 +108,8 @@ def parse(text: str) -> Parsed:
     Returns:
         The tree of what could be understood, with a diagnostic for every mistake.
     """
-    collecting = gc.isenabled()
-    gc.disable()  # nothing made here is garbage, and collecting it is a fifth of the time
-    try:
+    with NotCollecting():
         return Parsed(text, Parser(text).file())
-    finally:
-        if collecting:
-            gc.enable()
 
 
 class Parser(NodeParser):

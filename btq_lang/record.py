@@ -63,9 +63,14 @@ def record(cls: type[T]) -> type[T]:
 
 def replace(instance: T, **changes: object) -> T:
     """A copy of a record with some fields changed."""
-    fields: tuple[str, ...] = type(instance).__slots__  # type: ignore[attr-defined]  # every record has them
-    values = dict(zip(fields, instance._values, strict=True)) | changes  # type: ignore[attr-defined]  # as above
+    values = dict(zip(fields_of(instance), instance._values, strict=True)) | changes  # type: ignore[attr-defined]  # as above
     return type(instance)(*values.values())
+
+
+def fields_of(part: object) -> tuple[str, ...]:
+    """The names of the fields of a record, or of a class that says them as records do, in order."""
+    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # what has none is no record
+    return fields
 
 
 class _Record:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.record import record
+from btq_lang.record import fields_of, record
 from btq_lang.text import Span
 from btq_lang.tokens import QUANTITY, STRING
 from btq_lang.words import Node as Node
@@ -660,8 +660,9 @@ def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> 
         return tuple(shape(element, of_quantity) for element in part)
     if isinstance(part, str | int | None):
         return part
-    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # every class of this module has them
-    return type(part).__name__, *(shape(getattr(part, field), of_quantity) for field in fields if field not in _OFFSETS)
+    return type(part).__name__, *(
+        shape(getattr(part, field), of_quantity) for field in fields_of(part) if field not in _OFFSETS
+    )
 
 
 _OFFSETS = ("start", "end")
@@ -677,8 +678,7 @@ def walk(part: object) -> Iterator[object]:
         elif part is not None and not isinstance(part, str | int):
             yield part
             if not isinstance(part, Word):
-                fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # as in `shape`
-                stack += [getattr(part, field) for field in reversed(fields)]
+                stack += [getattr(part, field) for field in reversed(fields_of(part))]
 
 
 def _in_order(top: Node) -> Iterator[Node | Verbatim]:

@@ -16,7 +16,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
-    frozenset({"record", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
+    frozenset({"record", "garbage", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
         {"tokens", "characters", "scan", "lexer", "words", "syntax", "cursor"}
         | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain"}

@@ -7,7 +7,6 @@ element of each node, to put others around it.
 
 from __future__ import annotations
 
-import gc
 import posixpath
 from collections.abc import Callable, Mapping
 
@@ -18,8 +17,9 @@ from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
 from btq_lang.comments import NO_COMMENTS
+from btq_lang.garbage import NotCollecting
 from btq_lang.record import record
-from btq_lang.syntax import Entry, Include, Model, Node, Root, Tree, Verbatim
+from btq_lang.syntax import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax import Models as ModelsItem
 from btq_lang.workspace import Workspace, is_btq
 
@@ -45,10 +45,6 @@ class Export:
     problems: tuple[Remark, ...]
     elements: Mapping[int, Element]
 
-    def element_of(self, node: Node) -> Element:
-        """The element of one of the file's nodes."""
-        return self.elements[id(node)]
-
 
 def export(
     workspace: Workspace,
@@ -69,17 +65,12 @@ def export(
     Raises:
         KeyError: there is no such file.
     """
-    collecting = gc.isenabled()
-    gc.disable()  # nothing made here is garbage, and looking for it takes long
-    try:
+    with NotCollecting():
         source = Source(workspace, path, target or workspace.project.target, verbatim)
         trees = Trees(source)
         document = _document(source, trees, included_as or (lambda target: xml_path(workspace, path, target)))
         source.finish()
         return Export(document, tuple(source.repairs), tuple(source.problems), trees.elements)
-    finally:
-        if collecting:
-            gc.enable()
 
 
 def xml_path(workspace: Workspace, path: str, included: str) -> str:

@@ -9,8 +9,7 @@ def fragment_problem(text: str) -> str | None:
     """What is wrong with a text that should be one element; None: nothing.  Prefixes need no declaration."""
     if text[:1] != "<" or not is_xml_name(text[1:2]):
         return "`xml` takes one element: the text begins with its `<`"
-    # Here, for few files have such elements, and it takes long to import; it has no types of its own.
-    from lxml import etree  # type: ignore[import-untyped]
+    from lxml import etree  # here, for few files have such elements, and it takes long to import
 
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     try:

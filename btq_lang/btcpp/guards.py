@@ -32,6 +32,8 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
+    from btq_lang.btcpp.wrappers import WrapperTag
+
 
 class NotEnforced(Exception):
     """No wrapper makes the engine do what a clause asks; the text is the reason, to stand behind "because"."""
@@ -110,7 +112,7 @@ class _Draft:
     def around(
         self,
         rank: int,
-        tag: str,
+        tag: WrapperTag,
         what: str,
         *,
         attributes: tuple[tuple[str, str], ...] = (),
@@ -119,7 +121,7 @@ class _Draft:
         node: SourceNode | None = None,
     ) -> None:
         """Something stands around the clause's node, or another one."""
-        wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)  # type: ignore[arg-type]  # one of three
+        wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
         self._wrappers.append((node or self.node, wrapper))
 
     def condition(self, what: str, code: str) -> Leaf:

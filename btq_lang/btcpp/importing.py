@@ -8,7 +8,6 @@ at, save for what version 3 said in other words (`version3`).
 
 from __future__ import annotations
 
-import gc
 import re
 from itertools import accumulate
 
@@ -18,6 +17,7 @@ from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, string, string_of, type_, value
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.garbage import NotCollecting
 from btq_lang.places import Places
 from btq_lang.record import record
 from btq_lang.rules import RULES, Severity
@@ -74,9 +74,7 @@ def import_xml(
             names and lines are as long as they are, so that a comment silences a rule for all of an element.
         included_as: what an `include` says for the path of an `<include>`; None: the same.
     """
-    collecting = gc.isenabled()
-    gc.disable()  # as in `reader`: nothing made here is garbage
-    try:
+    with NotCollecting():
         done = read(text)
         if done.document is None:
             return Imported("", (), done.problems, Places())
@@ -95,9 +93,6 @@ def import_xml(
         problems = (*done.problems, *writer.ignored)
         places = Places(writer.marks, writer.out, located)
         return Imported("".join(writer.out), changes, problems, places, described)
-    finally:
-        if collecting:
-            gc.enable()
 
 
 def _as_it_is(path: str) -> str:

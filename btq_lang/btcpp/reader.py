@@ -11,7 +11,6 @@ Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement:
 
 from __future__ import annotations
 
-import gc
 import re
 
 from btq_lang.btcpp.document import (
@@ -30,6 +29,7 @@ from btq_lang.btcpp.document import (
 )
 from btq_lang.btcpp.strict import not_well_formed
 from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.garbage import NotCollecting
 from btq_lang.record import record
 from btq_lang.text import LINE_END, Span
 
@@ -59,16 +59,12 @@ def read(text: str) -> Read:
     Args:
         text: any string at all.
     """
-    collecting = gc.isenabled()
-    gc.disable()  # nothing made here is garbage, and collecting it is half of the time
     refused = not_well_formed(text)
     try:
-        contents = _Reader(text, refused is None).contents()
+        with NotCollecting():
+            contents = _Reader(text, refused is None).contents()
     except _Broken as broken:
         return Read(None, (broken.diagnostic,))
-    finally:
-        if collecting:
-            gc.enable()
     roots = [content for content in contents if isinstance(content, Element)]
     if not roots:
         end = len(text.rstrip())

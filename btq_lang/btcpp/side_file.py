@@ -15,7 +15,7 @@ from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
-from btq_lang.record import record
+from btq_lang.record import fields_of, record
 from btq_lang.requirements import requirements
 from btq_lang.requirements.model import Applied, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
@@ -253,11 +253,10 @@ def _plain(value: object, place: _Places) -> Json:
         return value.symbol
     if isinstance(value, SourceNode):
         return {"name": value.node.head.text, **place.of(value.place)}
-    fields: tuple[str, ...] = type(value).__slots__  # type: ignore[attr-defined]  # every record has them
     found: dict[str, Json] = {}
     if not isinstance(value, Requirement | Signal):
         found["is"] = type(value).__name__.lower()
-    for field in fields:
+    for field in fields_of(value):
         part = getattr(value, field)
         if part is None or part == () or field in _LEFT_OUT or (field == "every" and not part):
             continue
@@ -268,5 +267,5 @@ def _plain(value: object, place: _Places) -> Json:
     return found
 
 
-_LEFT_OUT: Final = frozenset(("place", "action_place", "path", "entry"))
+_LEFT_OUT: Final = frozenset(("place", "path", "entry"))
 _RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}

@@ -21,7 +21,7 @@ def not_well_formed(text: str) -> tuple[Diagnostic, ...] | None:
 
     Nothing is said where it gave up by limits of its own, which XML does not have.
     """
-    from lxml import etree  # type: ignore[import-untyped]  # its stubs are a package of their own
+    from lxml import etree
 
     parser = etree.XMLParser(
         encoding="utf-8", resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_pis=True

@@ -17,7 +17,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final, Literal, TypeAlias
 
-    Rank: TypeAlias = Literal[0, 1, 2, 3, 4, 5, 6]
+    WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
 
 MARK: Final = "_btq"
 MOVED: Final = "_btq_moved"
@@ -59,7 +59,7 @@ class Wrapper:
 
     rank: int
     requirement: str
-    tag: Literal["Sequence", "ReactiveSequence", "Timeout"]
+    tag: WrapperTag
     name: str
     attributes: tuple[tuple[str, str], ...] = ()
     before: tuple[Leaf, ...] = ()

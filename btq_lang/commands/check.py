@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
-from btq_lang.commands.garbage import collecting_seldom
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace

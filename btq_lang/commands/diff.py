@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterator
 from btq_lang.btcpp.marks import DESCRIPTION_MARK
 from btq_lang.commands.as_built import as_built
 from btq_lang.commands.files import Files, Group
-from btq_lang.commands.garbage import collecting_seldom
 from btq_lang.commands.git import GitTrouble, Revisions, revisions
 from btq_lang.diff import as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
+from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, shown
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.rules import Severity

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, subject
+from btq_lang.features.meaning import Found, at, definition, everywhere, subject
 from btq_lang.mentions import What
 from btq_lang.record import record
 from btq_lang.syntax import Node
@@ -108,11 +108,6 @@ def direction(workspace: Workspace, path: str, node: Node, port: str) -> str | N
     from btq_lang.features.ports import ports_of
 
     return next((one.direction for one in ports_of(workspace, path, node) if one.name == port), None)
-
-
-def uses_of(workspace: Workspace, wanted: Subject) -> tuple[Found, ...]:
-    """The mentions of a subject that do not define it."""
-    return tuple(found for found in everywhere(workspace, wanted) if not found.mention.defines)
 
 
 _WITHOUT_REFERENCES = frozenset((What.QUANTITY, What.UNIT, What.ATTRIBUTE, What.EDITION, What.RULE))

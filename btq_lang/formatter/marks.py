@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.parser import Parsed
-from btq_lang.record import record
+from btq_lang.record import fields_of, record
 from btq_lang.syntax import (
     Amount,
     Argument,
@@ -100,8 +100,7 @@ def marks_of(parsed: Parsed) -> Marks:
                 parts += part
             elif not isinstance(part, Word | str | int | None):
                 marker.mark(part, entry.start)
-                fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # as every class of syntax
-                parts += [getattr(part, field) for field in fields]
+                parts += [getattr(part, field) for field in fields_of(part)]
     return marker.marks
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.diagnostics import Place, Related, replace_fix
 from btq_lang.near import near
-from btq_lang.record import record, replace
+from btq_lang.record import fields_of, record, replace
 from btq_lang.requirements.model import (
     Applied,
     Argument,
@@ -100,7 +100,7 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
         return tuple([_filled(each, values) for each in part])
     if type(part).__module__ != Requirement.__module__ or isinstance(part, SourceNode):
         return part
-    fields: tuple[str, ...] = type(part).__match_args__  # type: ignore[attr-defined]  # every record has them
+    fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:
         return part  # what is read has no parameters in it, and its signal may be large
     changes = {}

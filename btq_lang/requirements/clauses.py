@@ -108,7 +108,7 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[Writte
         elif isinstance(clause, WrittenWindow):
             found["window"] = _window(reader, clause)
         elif isinstance(clause, OnViolation) and clause.action is not None:
-            found = {"action": clause.action.raw, "action_place": reader.place(clause.action.span)}
+            found = {"action": clause.action.raw}
         elif isinstance(clause, Goal):
             goals.append(clause)
         elif isinstance(clause, Because) and clause.text is not None:

@@ -434,7 +434,6 @@ class Requirement:
     confidence: float | None = None
     window: Window | None = None
     action: Action | None = None
-    action_place: Place | None = None
     goal: Bounded | None = None
     reasons: tuple[str, ...] = ()
     method: Method | None = None

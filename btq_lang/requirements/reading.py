@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.record import fields_of
 from btq_lang.requirements.model import Signal, SourceNode
 
 
@@ -22,5 +23,4 @@ def signals_in(part: object) -> Iterator[Signal]:
             if id(part) in contexts:
                 continue
             contexts.add(id(part))
-            fields: tuple[str, ...] = type(part).__slots__  # type: ignore[attr-defined]  # every record has them
-            waiting += [getattr(part, field) for field in reversed(fields)]
+            waiting += [getattr(part, field) for field in reversed(fields_of(part))]
