@@ -44,6 +44,7 @@ class Server(LanguageServer):
         self.count = 0
         self.waiting: dict[str, None] = {}
         self.task: asyncio.Task[None] | None = None
+        self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
 
     # ---- what an editor can do ----
 

@@ -49,6 +49,7 @@ def _diagnostics(server: Server) -> None:
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> types.WorkspaceDiagnosticReport:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
         items: list[types.WorkspaceDocumentDiagnosticReport] = []
+        await server.scanned.wait()
         for path in session.paths() if session.setting("checkClosedFiles", True) else ():
             report = server.report(path, known.get(path))
             uri, version = convert.uri(path), server.versions.get(path)

@@ -24,10 +24,13 @@ def register(server: Server) -> None:
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         session.folders = tuple(map(convert.path, folders))
         capabilities = server.client_capabilities.workspace
-        await _register_watchers(server)
-        if capabilities is not None and capabilities.configuration:
-            await _ask_settings(server)
-        await _first_check(server)
+        try:
+            await _register_watchers(server)
+            if capabilities is not None and capabilities.configuration:
+                await _ask_settings(server)
+            await _first_check(server)
+        finally:
+            server.scanned.set()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:
@@ -79,6 +82,7 @@ async def _first_check(server: Server) -> None:
     server.check_soon(server.session.paths())
     await asyncio.sleep(0)
     paths = server.session.reload()
+    server.scanned.set()
     window = server.client_capabilities.window
     if len(paths) < MANY_FILES or window is None or not window.work_done_progress or server.pulls:
         server.check_soon(paths)
