@@ -76,7 +76,8 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     shutil.copytree(root / PACKAGE, folder / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
     modules = [f"{PACKAGE}/{module}.py" for module in COMPILED]
     environment = {"MYPYC_OPT_LEVEL": "3"} | os.environ | {"MYPYPATH": str(folder)}
-    options = ("--python-version", f"{sys.version_info.major}.{sys.version_info.minor}")
+    version = f"{sys.version_info.major}.{sys.version_info.minor}"
+    options = ("--config-file", str(root / "pyproject.toml"), "--python-version", version)
     command = (sys.executable, "-m", "mypyc", *options, *modules)
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
