@@ -47,7 +47,7 @@ ROWS: tuple[frozenset[str], ...] = (
 ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
 READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog"})  # the rules' pages and the catalog's data too
 READS_SIBLINGS = {
-    "features": frozenset({"checks", "fixes", "formatter"}),  # an editor shows what they find and do
+    "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
     "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours
 }
 PROTOCOL = frozenset({"pygls", "lsprotocol"})

@@ -125,6 +125,18 @@ def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tu
     return _plans(workspace, found, path, _written(workspace, path, bundled))[0].held
 
 
+def unasked(method: str | None, action: str | None) -> tuple[Way, str] | None:
+    """How the clauses of a requirement are held that nobody asks the engine to hold, and why; None: it takes a plan.
+
+    Args:
+        method: of `verified by`.
+        action: of `on violation`.
+    """
+    if method in ("review", "test", "analysis"):
+        return "reviewed", f"verified by {method}"
+    return None if action in ("fail", "halt") else ("monitored", "")
+
+
 def _has_requirements(workspace: Workspace, path: str) -> bool:
     """Whether it is worth to look at requirements at all: most files have none."""
     return any(True for _ in workspace.scope(path).names(Kind.REQUIREMENT))
@@ -197,12 +209,9 @@ class _Planner:
     def held(self, applied: Applied, claim: Claim) -> Held:
         """What is done about a clause; what it needs is remembered."""
         requirement = applied.requirement
-        held = Held(requirement.name, claim.text, claim.place, applied.node, "monitored")
-        if requirement.method in ("review", "test", "analysis"):
-            return replace(held, way="reviewed", why=f"verified by {requirement.method}")
-        if requirement.action not in ("fail", "halt"):
-            return held
-        held = replace(held, asked=True)
+        if (known_way := unasked(requirement.method, requirement.action)) is not None:
+            return Held(requirement.name, claim.text, claim.place, applied.node, *known_way)
+        held = Held(requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True)
         try:
             node = self._node(applied)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)

@@ -22,7 +22,8 @@ from btq_lang.mentions import What
 from btq_lang.quantities import parse_quantity
 from btq_lang.rules import RULES, page
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Context, Model, Node, QualityDecl, Requirement, Signal, Tree
+from btq_lang.syntax import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree
+from btq_lang.text import Span
 from btq_lang.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.workspace import Definition, Workspace
 
@@ -80,8 +81,13 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
     return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
 
 
-def requirement(workspace: Workspace, found: Definition, with_uses: bool = True) -> str:
-    """A requirement as its file has it, its quality, and where it is used."""
+def requirement(workspace: Workspace, path: str, found: Definition) -> str:
+    """A requirement as its file has it with its values in SI units, its quality, what a build does about each clause,
+    and where it is used.
+
+    Args:
+        path: the file that is looked at.
+    """
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
     lines = [f"**{found.symbol.name}**"]
@@ -91,13 +97,33 @@ def requirement(workspace: Workspace, found: Definition, with_uses: bool = True)
     if item.text is not None:
         lines.append(" ".join(item.text.text.split()))
     if item.clauses:
-        start = found.entry.start
-        text = workspace.files[found.path].text
-        clauses = (" ".join(text[start + one.start : start + one.end].split()) for one in item.clauses)
-        lines.append("```btq\n" + "\n".join(clauses) + "\n```")
-    if with_uses:
-        lines.append(used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to"))
-    return "\n\n".join(filter(None, lines))
+        lines.append(
+            "```btq\n"
+            + "\n".join(_clause(workspace, found, Span(one.start, one.end)) for one in item.clauses)
+            + "\n```"
+        )
+    attached = used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to")
+    if item.clauses or item.text is not None:
+        from btq_lang.features.held import held  # most hovers need no plan of a build
+
+        said = held(workspace, path, found, is_attached=bool(attached))
+        lines.append(f"What `btq build` does about it:\n{said}" if said else "")
+    return "\n\n".join(filter(None, (*lines, attached)))
+
+
+def _clause(workspace: Workspace, found: Definition, span: Span) -> str:
+    """A clause on one line, and in a comment what its quantities are in SI units, where they are typed in others."""
+    file = workspace.files[found.path]
+    text = " ".join(file.text[slice(*span.shifted(found.entry.start))].split())
+    typed = [one.name for one in file.mentions_of(found.entry) if one.what is What.QUANTITY and _is_in(one.span, span)]
+    converted = [
+        f"{one} = {said}" for one in dict.fromkeys(typed) if (said := in_si(one)) and said.split() != one.split()
+    ]
+    return f"{text}  # {', '.join(converted)}" if converted else text
+
+
+def _is_in(inner: Span, outer: Span) -> bool:
+    return outer.start <= inner.start and inner.end <= outer.end
 
 
 def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
@@ -110,9 +136,12 @@ def used(workspace: Workspace, wanted: Subject, heading: str) -> str:
 
 
 def place_of(workspace: Workspace, found: Found) -> str:
-    """Where a mention stands: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``."""
+    """Where a mention stands: `` `MoveBase ToWard` in `Deliver` (deliver.btq) ``, or the `apply` that it is in."""
     node = found.mention.node
     item = found.entry.item if found.entry is not None else None
+    if isinstance(item, Apply) and found.entry is not None:
+        text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
+        return f"`{' '.join(text.split())}` ({shown_path(workspace, found.path)})"
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{called(node)}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
     path = shown_path(workspace, found.path)
@@ -176,11 +205,15 @@ def quantity(text: str, port_unit: str | None = None) -> str | None:
     read = parse_quantity(text)
     if read is None:
         return None
-    value, unit, _ = read
-    in_si = f"{number(to_si(value, unit))} {si_symbol(unit)}".rstrip()
-    shown = f"**{text}** = {in_si} ({dimension_name(unit)})"
+    shown = f"**{text}** = {in_si(text)} ({dimension_name(read[1])})"
     converted = in_unit(text, port_unit)
     return f"{shown}\n\nWritten to the port as `{converted}`, in {port_unit}." if converted else shown
+
+
+def in_si(text: str) -> str:
+    """A quantity in SI units; empty for what is no quantity."""
+    read = parse_quantity(text)
+    return f"{number(to_si(read[0], read[1]))} {si_symbol(read[1])}".rstrip() if read is not None else ""
 
 
 def unit(text: str) -> str | None:

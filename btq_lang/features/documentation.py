@@ -26,7 +26,7 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
         return describe.tree(workspace, path, name)
     if kind == "requirement":
         found = _definition(workspace, path, Kind.REQUIREMENT, name)
-        return describe.requirement(workspace, found) if found else None
+        return describe.requirement(workspace, path, found) if found else None
     if kind in ("signal", "context"):
         found = _definition(workspace, path, Kind.SIGNAL if kind == "signal" else Kind.CONTEXT, name)
         return describe.declared(workspace, found) if found else None

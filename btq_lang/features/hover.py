@@ -52,7 +52,7 @@ def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | Non
         )
     if wanted.what is What.REQUIREMENT:
         place = definition(workspace, path, wanted)
-        return describe.requirement(workspace, place) if place else None
+        return describe.requirement(workspace, path, place) if place else None
     if wanted.what in (What.SIGNAL, What.CONTEXT):
         place = definition(workspace, path, wanted)
         return describe.declared(workspace, place) if place else None

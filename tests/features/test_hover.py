@@ -67,10 +67,175 @@ def test_a_requirement_from_another_file() -> None:
         on violation fail
         ```
 
+        What `btq build` does about it:
+        - `takes at most 30 s`: **enforced**
+
         Attached to:
         - `Pick Near` in `Main` (main.btq)
         - `Place` in `Main` (main.btq)
         """,
+    )
+
+
+def test_a_requirement_in_si_units_and_what_a_build_does_about_it() -> None:
+    check_hover(
+        """
+        signal speed : m/s from {speed} initially 0 m/s
+        QualityReq <hover>ca$0lm</hover> : safety "Calm"
+            takes at most 2 min
+            keeps speed <= 36 kmh
+            in at least 95 % of runs
+        apply calm to every Pick
+        BehaviorTree Main
+            Pick
+        """,
+        """
+        **calm** · safety
+
+        Calm
+
+        ```btq
+        takes at most 2 min  # 2 min = 120 s
+        keeps speed <= 36 kmh  # 36 kmh = 10 m/s
+        in at least 95 % of runs  # 95 % = 0.95
+        ```
+
+        What `btq build` does about it:
+        - `takes at most 2 min`: **monitored**
+        - `keeps speed <= 36 kmh`: **monitored**
+
+        Attached to:
+        - `apply calm to every Pick` (main.btq)
+        """,
+    )
+
+
+def test_what_a_build_does_may_differ_from_node_to_node() -> None:
+    check_hover(
+        """
+        Root Main
+        QualityReq <hover>so$0on</hover>
+            takes at most 2 s
+            on violation fail
+        BehaviorTree Main
+            ->
+                Action Go satisfies soon
+                Condition At satisfies soon
+        """,
+        """
+        **soon**
+
+        ```btq
+        takes at most 2 s
+        on violation fail
+        ```
+
+        What `btq build` does about it:
+        - `takes at most 2 s`: **enforced** at `Go`; **not enforced, monitored** at `At`: `At` completes within one tick
+
+        Attached to:
+        - `Go` in `Main` (main.btq)
+        - `At` in `Main` (main.btq)
+        """,
+    )
+
+
+def test_what_a_build_does_about_a_requirement_that_missions_share() -> None:
+    check_hover(
+        """
+        //- lib.btq
+        QualityReq <hover>so$0on</hover> "In time"
+            takes at most 2 s
+            on violation fail
+            verified by monitor
+        //- one.btq
+        include "lib.btq"
+        Root One
+        BehaviorTree One
+            Action Go satisfies soon
+        //- two.btq
+        include "lib.btq"
+        Root Two
+        BehaviorTree Two
+            Condition At satisfies soon
+        //- unconcerned.btq
+        BehaviorTree Other
+            Go
+        """,
+        """
+        **soon**
+
+        In time
+
+        ```btq
+        takes at most 2 s
+        on violation fail
+        verified by monitor
+        ```
+
+        What `btq build` does about it:
+        - `takes at most 2 s`: **enforced** at `Go`; **not enforced, monitored** at `At`: `At` completes within one tick
+
+        Attached to:
+        - `Go` in `One` (one.btq)
+        - `At` in `Two` (two.btq)
+        """,
+    )
+
+
+def test_a_requirement_that_people_judge() -> None:
+    check_hover(
+        """
+        BehaviorTree Main
+            Pick satisfies <hover>ti$0dy</hover>
+        QualityReq tidy "Tidy"
+            takes at most 3 s
+            verified by review
+        """,
+        """
+        **tidy**
+
+        Tidy
+
+        ```btq
+        takes at most 3 s
+        verified by review
+        ```
+
+        What `btq build` does about it:
+        - `takes at most 3 s`: **reviewed**: verified by review
+
+        Attached to:
+        - `Pick` in `Main` (main.btq)
+        """,
+    )
+
+
+def test_a_requirement_of_a_classic_file() -> None:
+    check_hover(
+        """
+        Root Main
+        BehaviorTree Main
+            Action Pick (satisfies QualityReq ID = <hover>"rq$01"</hover> description = "SuccessIf takes at most 1 min")
+        """,
+        """
+        **rq1**
+
+        SuccessIf takes at most 1 min
+
+        What `btq build` does about it:
+        - `takes at most 1 min`: **enforced**
+
+        Attached to:
+        - `Pick` in `Main` (main.btq)
+        """,
+    )
+
+
+def test_a_requirement_that_holds_for_nothing() -> None:
+    check_hover(
+        'QualityReq <hover>r$0q</hover> "Soon"\n    takes at most 1 s\n',
+        "**rq**\n\nSoon\n\n```btq\ntakes at most 1 s\n```",
     )
 
 

@@ -1,0 +1,91 @@
+"""What `btq build` does about the clauses of a requirement, for a hover.
+
+One invariant: it says what the build itself plans, in its words; nothing is judged here.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from btq_lang.btcpp.enforcement import Held, how_held, unasked
+from btq_lang.constraints import constraints
+from btq_lang.syntax import Claim, How, OnViolation, Requirement
+from btq_lang.workspace import Definition, Workspace, is_btq
+
+_MOST_MISSIONS = 4  # planning one takes as long as checking it
+_MOST_NODES = 4
+
+
+def held(workspace: Workspace, path: str, found: Definition, *, is_attached: bool) -> str:
+    """For each clause a line: enforced, monitored or reviewed, where that is not so everywhere, and why; empty where
+    the requirement holds for nothing.
+
+    Args:
+        path: the file that is looked at; where it is a part of missions, some of those are planned.
+        found: the requirement.
+        is_attached: something refers to it.
+    """
+    item = found.symbol.target
+    assert isinstance(item, Requirement), "a requirement's symbol defines one"
+    ways: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
+    known = None if item.text is not None and constraints(item.text) else unasked(*_asked(item))
+    if known is not None:  # and in a large mission a plan takes long
+        text = workspace.files[found.path].text
+        for claim in item.clauses:
+            if isinstance(claim, Claim) and (is_attached or claim.subject is not None):
+                typed = text[found.entry.start + claim.start : found.entry.start + claim.end]
+                ways[" ".join(typed.split())] = {known: {}}
+        return _lines(ways)
+    for mission in _missions(workspace, path, found):
+        for each in _plan(workspace, mission):
+            if (each.requirement, each.place.path) == (found.symbol.name, found.path):
+                nodes = ways.setdefault(each.clause, {}).setdefault((_way(each), each.why), {})
+                if each.node is not None:
+                    nodes[each.node.shown] = None
+    return _lines(ways)
+
+
+def _asked(item: Requirement) -> tuple[str | None, str | None]:
+    """The method and the action that a requirement names."""
+    method = action = None
+    for clause in item.clauses:
+        if isinstance(clause, How) and clause.method is not None:
+            method = clause.method.raw
+        if isinstance(clause, OnViolation) and clause.action is not None:
+            action = clause.action.raw
+    return method, action
+
+
+def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:
+    """The missions in which the requirement is looked at: the file itself, or those that it is a part of."""
+    if path not in workspace.included_files:
+        missions = [path]
+    else:
+        missions = [other for other in workspace.files if other not in workspace.included_files]
+    return tuple(one for one in missions if is_btq(one) and found.path in workspace.scope(one).paths)[:_MOST_MISSIONS]
+
+
+@lru_cache(_MOST_MISSIONS)  # who looks at one requirement looks at the next one
+def _plan(workspace: Workspace, mission: str) -> tuple[Held, ...]:
+    return tuple(each for clauses in how_held(workspace, mission) for each in clauses)
+
+
+def _way(held: Held) -> str:
+    return "not enforced, monitored" if held.asked and held.way == "monitored" else held.way
+
+
+def _lines(ways: dict[str, dict[tuple[str, str], dict[str, None]]]) -> str:
+    return "\n".join(f"- `{clause}`: {_shown(said)}" for clause, said in ways.items())
+
+
+def _shown(said: dict[tuple[str, str], dict[str, None]]) -> str:
+    return "; ".join(
+        f"**{way}**{_at(nodes) if len(said) > 1 else ''}{f': {why}' if why else ''}"
+        for (way, why), nodes in said.items()
+    )
+
+
+def _at(nodes: dict[str, None]) -> str:
+    named = [*nodes][:_MOST_NODES]
+    more = [f"{len(nodes) - _MOST_NODES} more"] if len(nodes) > _MOST_NODES else []
+    return f" at {', '.join([*named, *more])}" if named else ""
