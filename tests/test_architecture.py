@@ -25,7 +25,7 @@ ROWS: tuple[frozenset[str], ...] = (
     frozenset({"catalog"}),
     frozenset(
         {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
-        | {"graph"}
+        | {"graph", "entry_types"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
     frozenset(

@@ -67,7 +67,7 @@ def port_element(source: Source, entry: Entry, port: Port, tree: Word | None = N
     attributes = [Attribute(name, spelt(word)) for name, word in said if word is not None]
     if tree is not None and port.name is not None and port.default is not None and not source.verbatim:
         raw = attributes[-1].raw
-        fit = fitting(source.type_below(tree.text, port.name.text), raw)
+        fit = fitting(source.types_below(tree.text, port.name.text), raw)
         if fit != raw:
             source.respelt(entry, port.default, raw, fit)
             attributes[-1] = Attribute("default", fit)

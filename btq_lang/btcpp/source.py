@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btq_lang.btcpp.constants import type_below
+from btq_lang.btcpp.constants import types_below
 from btq_lang.btcpp.document import Comment, Content, Raw, escape
 from btq_lang.btcpp.fragment import fragment_problem
 from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
@@ -61,7 +61,7 @@ class Source:
         self.repairs: Final[dict[Remark, None]] = {}
         self.problems: Final[dict[Remark, None]] = {}
         self._tree_ids: dict[str, str] = {}
-        self._types: dict[tuple[str, str], str] = {}
+        self._types: dict[tuple[str, str], tuple[str, ...]] = {}
         self._changed_comments: list[SourceComment] = []
 
     def repair(self, entry: Entry, part: Part, message: str) -> None:
@@ -89,11 +89,11 @@ class Source:
         """The comments of an element."""
         return self.comments.get(entry.start + part.start, NO_COMMENTS)
 
-    def type_below(self, tree: str, port: str) -> str:
-        """The type that a port of a tree meets, as `constants` finds it."""
+    def types_below(self, tree: str, port: str) -> tuple[str, ...]:
+        """The types that a port of a tree meets, as `constants` finds them."""
         known = self._types.get((tree, port))
         if known is None:
-            known = self._types[tree, port] = type_below(self.scope, self.target, tree, port)
+            known = self._types[tree, port] = types_below(self.scope, self.target, tree, port)
         return known
 
     def respelt(self, entry: Entry, part: Part, said: str, written: str) -> None:

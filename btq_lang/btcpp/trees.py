@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
-from btq_lang.btcpp.constants import fitting, is_number
+from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
@@ -18,6 +18,7 @@ from btq_lang.catalog.kinds import CATEGORIES, at_least
 from btq_lang.catalog.names import is_port_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, xml_tag
 from btq_lang.comments import NO_COMMENTS
+from btq_lang.entry_types import is_number
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word
 
@@ -229,7 +230,7 @@ class Trees:
         if not is_number(attribute.raw) or not is_port_name(attribute.name):
             return attribute
         source = self._source
-        raw = fitting(source.type_below(tree, attribute.name), attribute.raw)
+        raw = fitting(source.types_below(tree, attribute.name), attribute.raw)
         if raw == attribute.raw:
             return attribute
         said = next((pair.value for pair in node.attributes if pair.key.text == attribute.name), None)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from btq_lang.checks import (
     children,
     conditions,
+    constants,
     demands,
     includes,
     kinds,
@@ -87,6 +88,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         literals.invalid_literal,
         literals.quantity_on_unitless_port,
+        constants.number_for_text,
         children.child_count,
         children.switch_cases,
         children.parallel_threshold,
@@ -117,6 +119,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         literals.invalid_literal,
         literals.quantity_on_unitless_port,
+        constants.number_for_text,
         names.forbidden_name,
     ),
     Models: (
@@ -124,6 +127,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         ports.duplicate_attribute,
         literals.invalid_literal,
         literals.quantity_on_unitless_port,
+        constants.number_for_text,
         names.forbidden_name,
     ),
     Signal: (kinds.duplicate_definition, measures.unresolved, demands.demands),

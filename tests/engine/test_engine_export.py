@@ -17,9 +17,12 @@ from btq_lang.btcpp.export import export, xml_name
 from btq_lang.btcpp.instances import instances
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
+from btq_lang.checks import check
 from btq_lang.cli import main
 from btq_lang.loader import open_workspace
 from btq_lang.placeholders import is_placeholder
+from btq_lang.project import Project
+from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Node as Written
 from btq_lang.syntax import Tree
@@ -97,15 +100,64 @@ def test_constants_of_subtrees_reach_ports_of_every_type(engine: Engine, tmp_pat
     assert assert_loads_and_ticks(engine, workspace, tmp_path, ticks=2) == 1
 
 
-def test_a_number_does_not_reach_a_port_of_text_in_new_engines(engine: Engine) -> None:
-    # Wrong today, and the engine's doing: from 4.9.1 on no spelling of a number stays the text that it is.
-    text = "Action Say\n    input text : string\nRoot Main\nBehaviorTree Main\n    SubTree S (n = 4)\n"
-    workspace = Workspace.of({"main.btq": f"{text}BehaviorTree S\n    Say (text = {{n}})\n"})
-    answer = engine.run_one(write(export(workspace, "main.btq").document))
-    if tuple(map(int, engine.version.split("."))) >= (4, 9, 1):
-        assert "initially created with type [int] and, later type [std::string] was used" in answer.error
-    else:
-        assert answer.error == ""
+def test_a_constant_reaches_ports_of_several_types(engine: Engine) -> None:
+    text = """Action Drive
+    input speed : double
+    input tries : int
+Root Main
+BehaviorTree Main
+    ->
+        SubTree S (n = 2)
+        SubTree S (n = 2.5)
+BehaviorTree S
+    Timeout (msec = {n})
+        Drive (speed = {n} tries = {n})
+"""
+    done = export(Workspace.of({"main.btq": text}), "main.btq")
+    assert [repair.message.partition(":")[0] for repair in done.repairs] == [
+        "`2` is written as `2 `",
+        "`2.5` is written as `2.5 `",
+    ]
+    answer = engine.run_one(write(done.document), ticks=5)
+    assert (answer.stage, answer.error) == ("done", "")
+
+
+# What a SubTree gives to the port `n` of its tree, and what stands in that tree.
+NUMBERS_FOR_TEXT = {
+    "whole": ("n = 4", "Say (text = {n})"),
+    "real": ('n = ".5"', "Say (text = {n})"),
+    "named": ("n = inf", "Say (text = {n})"),
+    "not_all": ('n = "4 bars"', "Say (text = {n})"),
+    "hexadecimal": ('n = "0x10"', "Say (text = {n})"),
+    "switch": ("n = 1", "Switch2 (variable = {n} case_1 = a case_2 = b)\n        Rest\n        Rest\n        Rest"),
+    "further_below": ("n = 4", "SubTree Below (text = {n})"),
+    "untyped": ("n = 4", "Show (what = {n})"),
+    "entry": ("n = {n}", "Say (text = {n})"),
+}
+
+
+@pytest.mark.parametrize("case", NUMBERS_FOR_TEXT)
+def test_a_number_for_a_port_of_text_is_told_where_the_engine_makes_no_tree(engine: Engine, case: str) -> None:
+    given, below = NUMBERS_FOR_TEXT[case]
+    text = f"""Action Say
+    input text : string
+Root Main
+BehaviorTree Main
+    ->
+        Script (code = "n := '4'")
+        SubTree S ({given})
+BehaviorTree S
+    {below}
+BehaviorTree Below
+    Say (text = {{=}})
+"""
+    workspace = Workspace.of({"main.btq": text}, Project(engines=(engine.version,)))
+    told = [each.rule for each in check(workspace, "main.btq") if each.effective_severity is Severity.ERROR]
+    answer = engine.run_one(write(export(workspace, "main.btq").document), ticks=5)
+    refused = "was initially created with type" in answer.error
+    assert (told, answer.stage) == (["number-for-text"] * refused, "load" if refused else "done")
+    is_number = case in ("whole", "real", "named", "switch", "further_below")
+    assert refused == (is_number and tuple(map(int, engine.version.split("."))) >= (4, 9, 1))
 
 
 def assert_loads_and_ticks(

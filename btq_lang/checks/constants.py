@@ -1,0 +1,66 @@
+"""Numbers that a SubTree gives to ports of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.kinds import at_least
+from btq_lang.catalog.names import is_port_name
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.entry_types import Meeting, is_number, is_text, meetings
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Model, Models, Port, Tree, Word
+from btq_lang.tokens import QUANTITY
+
+# Before, the engine kept the text and whoever read it converted it.
+_TYPED_SINCE = "4.9.1"
+
+
+def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
+    if not at_least(view.workspace.project.target, _TYPED_SINCE):
+        return
+    for seen in view.nodes(entry):
+        if not seen.is_subtree or seen.node.id is None:
+            continue
+        for pair in seen.node.attributes:
+            met = _text_below(view, seen.node.id, pair.key, pair.value)
+            if met is not None and pair.value is not None:
+                yield _told(pair.value, met, None)
+    for tree, port in _ports_of_trees(entry):
+        met = _text_below(view, tree, port.name, port.default)
+        if met is not None and port.default is not None:
+            # Only where a SubTree gives the port nothing else.
+            yield _told(port.default, met, Severity.WARNING)
+
+
+def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -> Meeting | None:
+    if value is None or port is None or value.kind == QUANTITY or not is_number(value.text):
+        return None
+    if not is_port_name(port.text):
+        return None
+    found = meetings(view.scope, view.workspace.project.target, tree.text, port.text)
+    return next((meeting for meeting in found if is_text(meeting.type)), None)
+
+
+def _told(value: Word, met: Meeting, severity: Severity | None) -> Diagnostic:
+    port = f"`{met.pair.key.text}` of `{met.node.head.text}`"
+    message = f"from {_TYPED_SINCE} on the engine makes a number of `{value.text}`, and no tree: {port} takes a text"
+    return Diagnostic(
+        "number-for-text",
+        value.span,
+        message,
+        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the port that takes a text"),),
+        notes=(f"give it an entry that holds the text: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
+        severity=severity,
+    )
+
+
+def _ports_of_trees(entry: Entry) -> Iterator[tuple[Word, Port]]:
+    item = entry.item
+    if isinstance(item, Tree) and item.name is not None:
+        yield from ((item.name, port) for port in item.ports)
+    for model in item.models if isinstance(item, Models) else (item,):
+        if isinstance(model, Model) and model.category.raw == "SubTree" and model.name is not None:
+            yield from ((model.name, port) for port in model.ports)
