@@ -418,6 +418,9 @@ class NodeParser(ClauseParser):
         """`charger" …`: what follows is a string only because a quote is missing."""
         span = word.span.shifted(self.base)
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
+        at, lexer = self.starts[self.index], self.lexer
+        lexer.problems = [problem for problem in lexer.problems if problem.span.start != at]  # that it is not closed
+        self.forget()
         self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
         self.inside_out = min(self.inside_out, span.end)
         self.recover()

@@ -73,7 +73,7 @@ from btq_lang.syntax import (
     Word,
 )
 from btq_lang.text import Edit, LineIndex, apply_edits
-from btq_lang.tokens import DEDENT, INDENT, QUANTITY
+from btq_lang.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 
 MISSING = "MISSING"
 
@@ -125,6 +125,11 @@ def assert_invariants(parsed: Parsed) -> None:
     assert_tokens(parsed)
     assert_entries(parsed)
     assert_diagnostics(parsed)
+    assert parsed.diagnostics or not any(map(_is_cut_off, parsed.tokens)), "a string without an end and nothing said"
+
+
+def _is_cut_off(token: Token) -> bool:
+    return token.kind == STRING and (len(token.text) == 1 or token.text[0] != token.text[-1])
 
 
 def assert_tokens(parsed: Parsed) -> None:

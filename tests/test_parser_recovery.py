@@ -262,6 +262,8 @@ def test_a_quote_that_is_missing_is_said_first() -> None:
     (only,) = parse(text).diagnostics
     assert only.message == "a quote is missing at `charger`"
     assert [fix.title for fix in only.fixes] == ['Put " before it']
+    (alone,) = parse('BehaviorTree A\n    B (p = charger")\n').diagnostics
+    assert alone.message == only.message
 
 
 LOST = 'a closing " is probably missing: this string ends at the next one, on another line'
