@@ -35,7 +35,7 @@ class Command:
     """A command, and what each run of it took: `wall` and `cpu` (its own and its children's) in seconds.
 
     Attributes:
-        many: it checks the 1 000 files, so fewer rounds are enough.
+        many: it takes seconds, so fewer rounds are enough.
         failure: why it cannot be measured.
     """
 
@@ -74,11 +74,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def commands(folder: Path, btq: tuple[str, ...]) -> list[Command]:
     """What is measured; the first is what the others are compared with."""
+    large = str(folder / "large" / "mission.btq")
     made = [
         Command("python -c pass", (sys.executable, "-c", "pass")),
         Command("btq --version", (*btq, "--version")),
         Command("btq check, 100 nodes", (*btq, "check", str(folder / "one" / "mission.btq"))),
         Command("btq check, 1 000 files", (*btq, "check", str(folder / "many")), many=True),
+        Command("btq trace, 10 000 nodes, HTML", (*btq, "trace", "--format", "html", large), many=True),
+        Command("btq graph, 10 000 nodes, SVG", (*btq, "graph", "--qualities", large), many=True),
     ]
     usage = subprocess.run([*btq, "check", "--help"], capture_output=True, text=True, check=False)
     if "--jobs" in usage.stdout:
@@ -145,6 +148,10 @@ def _spawn(argv: tuple[str, ...]) -> tuple[float, float, int]:
 def _write_missions(folder: Path, spelling: missions.Spelling) -> None:
     (folder / "one").mkdir()
     (folder / "one" / "mission.btq").write_text(missions.mission(100, missions.SEED, spelling), encoding="utf-8")
+    (folder / "large").mkdir()
+    (folder / "large" / "mission.btq").write_text(
+        missions.mission(missions.NODES, missions.SEED, spelling), encoding="utf-8"
+    )
     (folder / "many").mkdir()
     for number in range(FILES):
         text = missions.mission(NODES_A_FILE, number, spelling)
@@ -220,7 +227,7 @@ def as_data(measured: Sequence[Command], goals: Sequence[Goal]) -> dict[str, obj
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=40, help="runs of each short command (default 40)")
-    parser.add_argument("--many-rounds", type=int, default=5, help="runs over the 1 000 files (default 5)")
+    parser.add_argument("--many-rounds", type=int, default=5, help="runs of each long one (default 5)")
     parser.add_argument("--spelling", choices=("short", "classic"), default="short")
     parser.add_argument("--json", action="store_true", help="print JSON with every single time")
     return parser.parse_args(arguments)

@@ -13,6 +13,7 @@ from btq_lang.btcpp.export import export, is_mission
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, Group, nothing_below, usage_problem
 from btq_lang.commands.output import write_output
+from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import shown
 from btq_lang.render.colour import wants_colour
 from btq_lang.requirements import Requirements
@@ -26,6 +27,10 @@ from btq_lang.workspace import Workspace
 
 def run(options: Namespace) -> int:
     """Write the overview; of missions with errors what could be understood."""
+    return collecting_seldom(lambda: _run(options))
+
+
+def _run(options: Namespace) -> int:
     if problem := usage_problem(options.paths):
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2

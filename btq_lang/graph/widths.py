@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
+@lru_cache(maxsize=4096)  # the same kinds and clauses stand in many boxes
 def width(text: str, size: int, bold: bool = False) -> int:
     """The width of a line, in the unit of `size`, the font's size."""
     total = sum(_width(character) for character in text)

@@ -7,6 +7,7 @@ are written once.  What is wrong with the missions is not said here: an overview
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
 
 from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics import Place
@@ -269,6 +270,8 @@ class _Quality:
 
 
 def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Place], At]:
+    shown_once = cache(shown)  # a file has thousands of places
+
     def at(place: Place) -> At:
         assert place.path is not None, "places of nodes and requirements have a path"
         file = workspace.files[place.path]
@@ -276,7 +279,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
         if file.origin is not None:
             span = file.origin.places.origin(span)
         position = file.source_lines.position(span.start)
-        return At(shown(place.path), position.line + 1, position.column + 1)
+        return At(shown_once(place.path), position.line + 1, position.column + 1)
 
     return at
 
