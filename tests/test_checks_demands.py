@@ -38,6 +38,23 @@ def test_the_sum_is_shown_with_each_share() -> None:
     assert [related.message for related in found.related] == ["up to 4 s, 3 times"]
 
 
+def test_the_time_from_one_node_to_another_is_that_of_its_sequence() -> None:
+    for tree, expected in (
+        (
+            "->\n    Action A\n    Action B",
+            [
+                "2 warning «from A starts to B succeeds takes at most 5 s» "
+                "`->` may take 7 s, more than `5 s`: `A` 4 s + `B` 3 s"
+            ],
+        ),
+        ("?\n    Action A\n    Action B", []),
+    ):
+        text = mission(
+            tree, "way from A starts to B succeeds takes at most 5 s", "a A takes at most 4 s", "b B takes at most 3 s"
+        )
+        assert findings(text, "budget-exceeded") == expected
+
+
 def test_a_step_without_a_bound_hides_the_rest() -> None:
     assert budget("takes at most 1 s") == []
 

@@ -12,6 +12,7 @@ first values.  It does not judge whether a clause makes sense: that is for `chec
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.document import Comment, Document, Element
@@ -24,7 +25,8 @@ from btq_lang.diagnostics import Place
 from btq_lang.record import record, replace
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.budgets import Budget, Budgets
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Target
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
+from btq_lang.requirements.spans import node_of
 from btq_lang.symbols import Kind
 from btq_lang.workspace import Workspace
 
@@ -204,7 +206,6 @@ class _Planner:
         self._shared: Final = path in workspace.included_files
         self._has_start: Final = self._shared or _begins(workspace, found, path, files)
         self._keys: Final = Keys()
-        self._budgets: Budgets | None = None
 
     def held(self, applied: Applied, claim: Claim) -> Held:
         """What is done about a clause; what it needs is remembered."""
@@ -213,7 +214,7 @@ class _Planner:
             return Held(requirement.name, claim.text, claim.place, applied.node, *known_way)
         held = Held(requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True)
         try:
-            node = self._node(applied)
+            node = self._node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)
             known = self.enforced.get(identity)
             if known is None and node.path not in self._files:
@@ -227,7 +228,7 @@ class _Planner:
             return replace(held, why=str(reason))
         return known
 
-    def _node(self, applied: Applied) -> SourceNode:
+    def _node(self, applied: Applied, claim: Claim) -> SourceNode:
         requirement, subject = applied.requirement, applied.subject
         if requirement.odds is not None:
             raise NotEnforced("odds are judged over many runs")
@@ -235,6 +236,12 @@ class _Planner:
             raise NotEnforced("a window is looked at in the logs of many runs")
         if isinstance(subject, Target) and subject.through:
             raise NotEnforced("its path names some instances of a node only")
+        if (
+            isinstance(subject, Span)
+            and claim.verb == "takes"
+            and (node := node_of(subject, self._budgets)) is not None
+        ):
+            return node
         if not isinstance(subject, Target | Mission):
             raise NotEnforced("it is about the time between nodes, and nothing stands around that")
         if subject.node is None:
@@ -282,9 +289,11 @@ class _Planner:
             _can_stand_around(each, self._budget_of(each).skip is not None)
 
     def _budget_of(self, node: SourceNode) -> Budget:
-        if self._budgets is None:
-            self._budgets = Budgets(self._found)
         return self._budgets.composed(node)
+
+    @cached_property
+    def _budgets(self) -> Budgets:
+        return Budgets(self._found)
 
 
 def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:

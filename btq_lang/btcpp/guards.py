@@ -21,6 +21,7 @@ from btq_lang.requirements.model import (
     Requirement,
     Signal,
     SourceNode,
+    Span,
     Table,
     Target,
     Value,
@@ -48,7 +49,7 @@ class Guarded:
         cells: the entries of the root blackboard that the mission begins with, each with its first value.
         signals: what its scripts read.
         stop: the entry that halts the mission; None: nothing does.
-        note: what of the clause is not enforced.
+        note: what is to be known of it: what of the clause is not enforced, or what it is taken for.
     """
 
     wrappers: tuple[tuple[SourceNode, Wrapper], ...]
@@ -89,7 +90,7 @@ class _Draft:
         self.name: Final = name
         self.halts: Final = requirement.action == "halt"
         self.stop: Final = stop
-        self.note = ""
+        self._notes: Final[list[str]] = []
         self._shared: Final = shared
         self._values: Final[list[str]] = []
         self._wrappers: Final[list[tuple[SourceNode, Wrapper]]] = []
@@ -106,7 +107,11 @@ class _Draft:
         read = signals_in((claim.condition, claim.limit, claim.signal, scopes))
         signals = tuple({signal.name: signal for signal in read}.values()) if wrappers else ()
         return Guarded(
-            tuple(wrappers), tuple(self._cells.items()), signals, self.stop if self.halts else None, self.note
+            tuple(wrappers),
+            tuple(self._cells.items()),
+            signals,
+            self.stop if self.halts else None,
+            "; ".join(self._notes),
         )
 
     def around(
@@ -123,6 +128,10 @@ class _Draft:
         """Something stands around the clause's node, or another one."""
         wrapper = Wrapper(rank, self.requirement.name, tag, f"{self.name}_{what}", attributes, before, behind)
         self._wrappers.append((node or self.node, wrapper))
+
+    def noted(self, note: str) -> None:
+        """What is to be known of what is done."""
+        self._notes.append(note)
 
     def condition(self, what: str, code: str) -> Leaf:
         """A condition that breaks the clause where it fails."""
@@ -188,6 +197,8 @@ def _takes(draft: _Draft) -> None:
     """`<Timeout msec="30000">X</Timeout>`: halted at the deadline, FAILURE."""
     when = draft.when()
     _limit(draft, _upper(draft), when)
+    if isinstance(draft.claim.subject, Span):
+        draft.noted(f"as a bound on {draft.node.shown}, anew whenever that starts")
 
 
 def _succeeds(draft: _Draft) -> None:
@@ -196,7 +207,7 @@ def _succeeds(draft: _Draft) -> None:
         when = draft.when()
         _limit(draft, _upper(draft), when)
     elif not draft.halts:
-        draft.note = "its failure is one by itself"
+        draft.noted("its failure is one by itself")
         return
     else:
         when = draft.when()
@@ -337,7 +348,7 @@ def _upper(draft: _Draft) -> Limit:
         raise NotEnforced("the engine can stop a node, and not make it do more")
     if limit.upper is None:
         return limit
-    draft.note = "its lower end is monitored"
+    draft.noted("its lower end is monitored")
     return Limit("<=", limit.upper)
 
 

@@ -10,7 +10,8 @@ from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Term
-from btq_lang.requirements.model import Applied, Bounded, Claim, SourceNode, Table, Value
+from btq_lang.requirements.model import Applied, Bounded, Claim, SourceNode, Span, Table, Value
+from btq_lang.requirements.spans import node_of
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ class Demanded:
     """What is demanded in a file.
 
     Attributes:
-        claims: all that hold for nodes and can be told of in this file: what is applied, the claim, the node, and where
-            to tell of it.
+        claims: all that hold for nodes and can be told of in this file: what is applied, the claim, the node (of a
+            span the one that takes as long), and where to tell of it.
         budgets: how long the nodes take if they all hold.
     """
 
@@ -34,17 +35,18 @@ class Demanded:
         self.view = view
         self.requirements: Requirements = view.requirements
         self.budgets: Budgets = view.budgets
-        self.claims = tuple(_claims(view, self.requirements))
+        self.claims = tuple(_claims(view, self.requirements, self.budgets))
 
 
-def _claims(view: View, found: Requirements) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
+def _claims(view: View, found: Requirements, budgets: Budgets) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
     for applied in found.applied:
-        if applied.node is None:
-            continue
         for claim in applied.requirement.claims:
-            place = told_at(view, applied, claim)
-            if place is not None:
-                yield applied, claim, applied.node, place
+            node = applied.node
+            if isinstance(applied.subject, Span) and claim.verb == "takes":
+                node = node_of(applied.subject, budgets)
+            place = told_at(view, applied, claim) if node is not None else None
+            if node is not None and place is not None:
+                yield applied, claim, node, place
 
 
 def told_at(view: View, applied: Applied, claim: Claim) -> Place | None:

@@ -12,6 +12,7 @@ the engine can enforce, nor what a run of the robot was like.
     classic.py   SuccessIf and FailureIf in classic descriptions
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds
+    spans.py     the node whose time a span is
 """
 
 from __future__ import annotations

@@ -56,7 +56,9 @@ def guarded(text: str) -> str:
     workspace = Workspace.of({"main.btq": text})
     assert problems(workspace) == []
     done = enforced(workspace, "main.btq", export(workspace, "main.btq"))
-    assert {(held.way, held.why) for applied in done.held for held in applied} == {("enforced", "")}
+    clauses = [held for applied in done.held for held in applied]
+    assert {held.way for held in clauses} == {"enforced"}
+    assert all(held.why == "" or held.why.startswith("as a bound on") for held in clauses)
     return write(done.export.document)
 
 
@@ -287,6 +289,45 @@ def test_a_bound_on_the_mission(engine: Engine) -> None:
         text = f"QualityReq rq1\n    mission takes at most 20 ms\n    on violation {action}\n{SWALLOWED}"
         assert_fails(engine, text, SLOW)
         assert_unchanged(engine, text.replace("20 ms", "20 s"), QUICK)
+
+
+# ---- from one node to another ----
+
+
+TRIP = """
+Root Main
+BehaviorTree Main
+    ->
+        Fallback
+            -> Trip
+                -> Grasp
+                    Pick
+                    Lift
+                Move
+                Place
+            Plan_B
+        Rest
+"""
+# None of them takes long, all together do.
+SLOW_TRIP: Parts = {name: ["RUNNING"] * 25 + ["SUCCESS"] for name in ("Pick", "Move", "Place")}
+
+
+@pytest.mark.parametrize("span", ["Pick starts to Place succeeds", "Pick starts to Place finishes"])
+def test_a_way_from_one_node_to_another_that_is_a_sequence(engine: Engine, span: str) -> None:
+    for action in ("fail", "halt"):
+        text = f"QualityReq rq1\n    from {span} takes at most 250 ms\n    on violation {action}\n{TRIP}"
+        tree = text if action == "halt" else text.replace("Plan_B", "AlwaysFailure")
+        answer = assert_fails(engine, tree, SLOW_TRIP, tick_ms=5)
+        assert answer.statuses("Move") == ["RUNNING", "IDLE"]
+        assert_unchanged(engine, text.replace("250 ms", "10 s"), SLOW_TRIP, ["Pick", "Lift", "Move", "Place"])
+        assert_unchanged(engine, text, {}, ["Pick", "Lift", "Move", "Place"])
+
+
+def test_a_way_from_one_node_to_another_begins_anew_with_its_sequence(engine: Engine) -> None:
+    tree = TRIP.replace("            -> Trip", "            Retry (num_attempts = 3)\n             -> Trip")
+    parts: Parts = {"Pick": ["RUNNING"] * 40 + ["SUCCESS"], "Place": [["FAILURE"], ["FAILURE"], ["SUCCESS"]]}
+    text = f"QualityReq rq1\n    from Pick starts to Place succeeds takes at most 400 ms\n    on violation halt\n{tree}"
+    assert_unchanged(engine, text, parts, ["Pick", "Lift", "Move", "Place"], tick_ms=5)
 
 
 # ---- counters and flags ----

@@ -1,0 +1,44 @@
+"""The node whose time a span is: from the start of the first child of a Sequence to the success of its last one is the
+time of that Sequence.
+
+One invariant: whenever the node starts, the span's first event happens in the same tick, and where the node succeeds,
+so does its last one.
+"""
+
+from __future__ import annotations
+
+from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.model import Event, SourceNode, Span, Target
+
+
+def node_of(span: Span, budgets: Budgets) -> SourceNode | None:
+    """The innermost node whose time a span is; None: there is no such node."""
+    first, last = _node(span.first, ("starts",)), _node(span.last, ("succeeds", "finishes"))
+    if first is None or last is None:
+        return None
+    beginning, ending = _chain(first, at_end=False), _chain(last, at_end=True)
+    node = next((each for each in beginning if each in ending), None)
+    if node is None:
+        return None
+    between = (*beginning[: beginning.index(node)], *ending[: ending.index(node)])
+    may_be_skipped = any(budgets.of(each).skip is not None for each in between)
+    return None if may_be_skipped else node
+
+
+def _node(event: Event, happenings: tuple[str, ...]) -> SourceNode | None:
+    """The node of an event that is one of these, in all of its instances."""
+    subject = event.subject
+    if event.happening not in happenings or not isinstance(subject, Target) or subject.through:
+        return None
+    return subject.node
+
+
+def _chain(node: SourceNode, *, at_end: bool) -> list[SourceNode]:
+    """A node and the Sequences above it that begin with it, or end with it."""
+    chain = [node]
+    while (parent := node.parent) is not None and parent.tag == "Sequence":
+        if node.index != (len(parent.node.children) - 1 if at_end else 0):
+            break
+        chain.append(parent)
+        node = parent
+    return chain
