@@ -7,6 +7,7 @@ from engine_rules import violations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
+from mission_strategies import odd_missions
 from missions import mission
 
 from btq_lang.btcpp.document import write
@@ -14,7 +15,7 @@ from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.project import Project
 from btq_lang.rules import Severity
-from btq_lang.syntax import Tree, quote
+from btq_lang.syntax import Tree
 from btq_lang.workspace import Workspace
 
 VERSIONS = ("4.6", "4.8", "4.10")
@@ -53,77 +54,8 @@ def test_the_rules_find_what_is_wrong() -> None:
     ]
 
 
-# Names that people write, and some that nobody should.
-NAMES = st.sampled_from(
-    (
-        "Pick",
-        "Place",
-        "BatteryLow?",
-        "my node",
-        "3 Way",
-        "Größe",
-        "a/b",
-        "Root",
-        "Sequence",
-        "-",
-        "é.b",
-        "x<y",
-        "MoveBase",
-    )
-)
-TEXTS = st.text(st.sampled_from("ab \n\t\"'\\<>&;{}#-/*]\u2028é\ufeff"), max_size=8)
-SYMBOLS = ("->", "?", "||", "R->", "R?", "M->", "A->", "Sequence", "Fallback", "IfThenElse")
-DECORATORS = (
-    "Inverter",
-    "ForceSuccess",
-    "Retry (num_attempts = 3)",
-    "Timeout (msec = 3 s)",
-    "Delay (delay_msec = 1 s)",
-)
-
-
-@st.composite
-def nodes(draw: st.DrawFn, depth: int = 0) -> list[str]:
-    """The lines of a node."""
-    kind = draw(st.integers(0, 9 if depth < 4 else 4))
-    name, text = quote(draw(NAMES)), draw(TEXTS)
-    if kind <= 1:
-        lines = [f"{name} {quote(text)} (a = {quote(draw(TEXTS))} _description = {quote(text)})"]
-    elif kind == 2:
-        lines = [f"Action {name}", f"Condition {name} (x = {{key}})"][draw(st.integers(0, 1)) :][:1]
-    elif kind == 3:
-        lines = [f"SubTree {draw(st.sampled_from(('A', quote('b c'), 'Missing')))} {name}"]
-    elif kind == 4:
-        lines = [draw(st.sampled_from((f"ScriptAction (name = {name})", f"ScriptCondition (name = {name} y = 1)")))]
-    elif kind <= 6:
-        lines = [draw(st.sampled_from(DECORATORS)), *indented(draw(nodes(depth + 1)))]
-    else:
-        lines = [f"{draw(st.sampled_from(SYMBOLS))} {name}"]
-        for _ in range(draw(st.integers(1, 3))):
-            lines += indented(draw(nodes(depth + 1)))
-    if draw(st.integers(0, 3)) == 0:
-        lines[0] += f"  # {' '.join(text.split())}"
-    if draw(st.integers(0, 3)) == 0:
-        lines.insert(0, f"/* {text.replace('*/', '')} */".replace("\n", " "))
-    if draw(st.integers(0, 5)) == 0:
-        lines[0] += " satisfices safety" if "#" not in lines[0] and not lines[0].startswith("/*") else ""
-    return lines
-
-
-@st.composite
-def trees(draw: st.DrawFn) -> str:
-    """A file of two trees."""
-    head = draw(st.sampled_from(("", "Root A\n", "Root A ()\n", "TreeNodesModel\n    Action Pick\nTreeNodesModel\n")))
-    lines = ["BehaviorTree A", *indented(draw(nodes())), 'BehaviorTree "b c"', *indented(draw(nodes(3)))]
-    return head + "".join(f"{line}\n" for line in lines)
-
-
-def indented(lines: list[str]) -> list[str]:
-    return [f"    {line}" for line in lines]
-
-
 @settings(max_examples=300)
-@given(text=trees(), version=st.sampled_from(VERSIONS), verbatim=st.booleans())
+@given(text=odd_missions(), version=st.sampled_from(VERSIONS), verbatim=st.booleans())
 def test_every_mission_gives_well_formed_xml_or_says_why_not(text: str, version: str, verbatim: bool) -> None:
     workspace = Workspace.of({"m.btq": text}, Project(engines=(version,)))
     done = export(workspace, "m.btq", verbatim=verbatim)
@@ -142,7 +74,7 @@ def test_every_mission_gives_well_formed_xml_or_says_why_not(text: str, version:
 
 
 @settings(max_examples=300)
-@given(text=trees(), at=st.integers(0, 400), torn=st.integers(0, 40))
+@given(text=odd_missions(), at=st.integers(0, 400), torn=st.integers(0, 40))
 def test_a_torn_mission_is_written_all_the_same(text: str, at: int, torn: int) -> None:
     text = text[:at] + text[at + torn :]
     workspace = Workspace.of({"m.btq": text})
