@@ -1,17 +1,19 @@
 """`@record`: a frozen, slotted class from its annotations, as `dataclass(frozen=True, slots=True)` makes it.
 
 Why not dataclasses: importing them and making our classes with them costs 50 ms at every start of `btq check`, more
-than the whole check; this costs 4 ms, for a class gets an `__init__` of its own only when it is used much.  Type
-checkers treat both alike (PEP 681).  Deliberately left out: inheritance, keyword-only fields, default factories,
-ordering.
+than the whole check; this costs 3 ms, for classes of as many fields share one compiled `__init__`.  Type checkers treat
+both alike (PEP 681).  Deliberately left out: inheritance, keyword-only fields, default factories, ordering.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from operator import attrgetter
+from types import CellType, FunctionType
 
 TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
 if TYPE_CHECKING:
+    from types import CodeType
     from typing import Any, TypeVar
 
     from typing_extensions import dataclass_transform
@@ -21,9 +23,6 @@ else:
 
     def dataclass_transform(**_: object) -> Any:
         return lambda function: function
-
-
-_MANY = 100  # instances take as long to fill field by field as it takes to compile an `__init__`, and more
 
 
 @dataclass_transform(frozen_default=True, eq_default=True)
@@ -39,23 +38,15 @@ def record(cls: type[T]) -> type[T]:
     required = len(fields) - len(defaults)
     if tuple(defaults) != fields[required:]:
         raise TypeError(f"{cls.__name__}: a field without a default follows one with a default")
-    last_values = tuple(defaults.values())
     made: Any = None
-    count = 0
 
-    def fill(self: Any, *values: object, **named: object) -> None:
-        """The `__init__` of the first instances, until there are many, or one comes with keywords or by mistake."""
-        nonlocal count
-        count += 1
-        if named or count > _MANY or not required <= len(values) <= len(fields):
-            made.__init__ = _make_init(made, fields, defaults)
-            made.__init__(self, *values, **named)
-            return
-        for name, value in zip(fields, values + last_values[len(values) - required :], strict=True):
-            _set(self, name, value)
+    def first(self: Any, *values: object, **named: object) -> None:
+        """The `__init__` of the first instance: of most classes a run makes none."""
+        made.__init__ = _init(made, fields, tuple(defaults.values()))
+        made.__init__(self, *values, **named)
 
+    namespace["__init__"] = first
     namespace["__slots__"] = namespace["__match_args__"] = fields
-    namespace["__init__"] = fill
     namespace["_values"] = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
     made = type(cls.__name__, (_Record,), namespace)
     return made  # type: ignore[no-any-return]  # made anew with slots, so only its name ties it to T
@@ -101,18 +92,29 @@ class _Record:
         return type(self), self._values
 
 
-def _make_init(made: type, fields: tuple[str, ...], defaults: dict[str, object]) -> Any:
-    """Write `__init__`; it stores through the slots' own descriptors, which the refusing `__setattr__` does not see."""
-    scope: dict[str, Any] = {f"_default_{name}": value for name, value in defaults.items()}
-    scope |= {f"_set_{name}": made.__dict__[name].__set__ for name in fields}
-    parameters = [f"{name}=_default_{name}" if name in defaults else name for name in fields]
-    body = "\n".join(f" _set_{name}(self, {name})" for name in fields) or " pass"
-    exec(f"def __init__({', '.join(['self', *parameters])}):\n{body}", scope)
-    return scope["__init__"]
+def _init(made: type, fields: tuple[str, ...], defaults: tuple[object, ...]) -> FunctionType:
+    """`__init__` with the fields as parameters: the code of all classes with as many, given these names.
+
+    It stores through the slots' own descriptors, which the refusing `__setattr__` does not see.
+    """
+    code = _init_code(len(fields)).replace(co_varnames=("self", *fields))
+    setters = tuple(CellType(made.__dict__[name].__set__) for name in fields)
+    init = FunctionType(code, {}, "__init__", defaults, setters)
+    init.__qualname__ = f"{made.__name__}.__init__"
+    return init
+
+
+@cache
+def _init_code(count: int) -> CodeType:
+    """The code of an `__init__` of so many fields, which finds their setters in its closure, in order."""
+    setters = [f"set{number:02}" for number in range(count)]  # a closure is sorted by name
+    parameters = ", ".join(["self", *(f"value{number}" for number in range(count))])
+    body = "; ".join(f"{setter}(self, value{number})" for number, setter in enumerate(setters)) or "pass"
+    scope: dict[str, Any] = {}
+    exec(f"def outer({', '.join(setters)}):\n def __init__({parameters}): {body}\n return __init__", scope)
+    code: CodeType = scope["outer"](*setters).__code__
+    return code
 
 
 def _few(self: Any, fields: tuple[str, ...]) -> tuple[object, ...]:
     return tuple(getattr(self, name) for name in fields)
-
-
-_set = object.__setattr__  # which the refusing one of records hides
