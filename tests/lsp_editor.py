@@ -51,10 +51,14 @@ class Editor:
             message = self._read()
             if "id" in message and "method" in message:
                 self.asked.append(message)
-                wanted = message["params"]["items"] if message["method"] == "workspace/configuration" else None
-                self.send(id=message["id"], result=[self.settings for _ in wanted] if wanted else None)
+                self.send(id=message["id"], result=self._answer(message))
             else:
                 return message
+
+    def _answer(self, asked: Message) -> Any:
+        if asked["method"] == "workspace/configuration":
+            return [self.settings for _ in asked["params"]["items"]]
+        return {"success": True} if asked["method"] == "window/showDocument" else None
 
     def _read(self) -> Message:
         assert self.process.stdout is not None

@@ -443,6 +443,26 @@ def test_a_lens_calls_the_command_of_an_editor_that_has_it(tmp_path: Path) -> No
     assert editor.close() == ""
 
 
+def test_a_lens_of_any_other_editor_names_or_shows_the_places(tmp_path: Path) -> None:
+    once = "QualityReq rq\n    takes at most 1 s\nBehaviorTree Main\n    Pick satisfies rq\n"
+    for capabilities in ({}, {"window": {"showDocument": {"support": True}}}):
+        editor = Editor(tmp_path, capabilities=capabilities)
+        editor.open("main.btq", once)
+        lens, unused = editor.request("textDocument/codeLens", **editor.document("main.btq"))
+        assert (unused["command"]["title"], unused["command"]["command"]) == ("0 calls", "")
+        assert (lens["command"]["title"], lens["command"]["command"]) == ("1 use", "btq.server.uses")
+        assert lens["command"]["command"] in editor.capabilities["executeCommandProvider"]["commands"]
+        editor.request("workspace/executeCommand", **{key: lens["command"][key] for key in ("command", "arguments")})
+        place = {"start": {"line": 3, "character": 19}, "end": {"line": 3, "character": 21}}
+        if capabilities:
+            (shown,) = editor.asked
+            assert (shown["params"]["uri"], shown["params"]["selection"]) == (editor.uri("main.btq"), place)
+        else:
+            told = editor.wait_for(lambda message: message.get("method") == "window/showMessage")
+            assert told["params"]["message"] == "main.btq:4"
+        assert editor.close() == ""
+
+
 def test_commands(editor: Editor) -> None:
     editor.open("main.btq", "BehaviorTree Main\n    -> First\n        Retry (num_attempts = 2)\n            Pick\n")
     place = editor.at("main.btq", 3, 13)
@@ -458,10 +478,45 @@ def test_commands(editor: Editor) -> None:
         "n2": {"line": 3, "character": 12},
     }
     assert all(f'id="{key}"' in picture["svg"] for key in picture["nodes"])
-    refused = editor.ask(
-        "workspace/executeCommand", command="btq.server.xml", arguments=[{"uri": editor.uri("nowhere.btq")}]
+    page = editor.request("workspace/executeCommand", command="btq.server.overview", arguments=[document])
+    assert page.startswith("<!DOCTYPE html>")
+    assert "Retry" in page
+    for command in ("xml", "picture", "overview", "build"):
+        arguments = [{"uri": editor.uri("nowhere.btq")}]
+        refused = editor.ask("workspace/executeCommand", command=f"btq.server.{command}", arguments=arguments)
+        assert refused["error"]["message"] == "this is no .btq file of the editor's folders"
+
+
+def test_a_build_writes_what_the_command_line_writes(tmp_path: Path) -> None:
+    (tmp_path / "skills.btq").write_text(SKILLS, encoding="utf-8")
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("main.btq", MISSION.replace("shelf", "table"))  # not saved
+    document = editor.document("main.btq")["textDocument"]
+    done = editor.request("workspace/executeCommand", command="btq.server.build", arguments=[document])
+    assert done["files"] == [editor.uri("main.xml"), editor.uri("skills.xml")]
+    assert sorted(done["said"].split()) == sorted(
+        ["wrote", str(tmp_path / "main.xml"), "wrote", f"{tmp_path}/skills.xml"]
     )
-    assert refused["error"]["message"] == "this file is in none of the editor's folders"
+    assert 'from="table"' in (tmp_path / "main.xml").read_text(encoding="utf-8")
+    (tmp_path / "main.btq").write_text(MISSION.replace("shelf", "table"), encoding="utf-8")
+    again = subprocess.run([sys.executable, "-m", "btq_lang", "build", "--check", str(tmp_path)], check=False)
+    assert again.returncode == 0
+    assert editor.close() == ""
+
+
+def test_a_build_that_is_not_done_says_why(editor: Editor) -> None:
+    editor.open("main.btq", "BehaviorTree Main\n    SubTree Dock\n")
+    document = editor.document("main.btq")["textDocument"]
+    refused = editor.ask("workspace/executeCommand", command="btq.server.build", arguments=[document])
+    line, _, last = refused["error"]["message"].splitlines()
+    assert "main.btq:2:13: error[unknown-tree] there is no tree `Dock`" in line
+    assert last == "nothing was written"
+    assert not (editor.root / "main.xml").exists()
+    uri = "untitled:Untitled-1"
+    editor.notify("textDocument/didOpen", textDocument={"uri": uri, "languageId": "btq", "version": 1, "text": RIGHT})
+    refused = editor.ask("workspace/executeCommand", command="btq.server.build", arguments=[{"uri": uri}])
+    assert refused["error"]["message"] == "this document is no file: save it first"
 
 
 # ---- the way there ----

@@ -114,6 +114,7 @@ def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("--force", action="store_true", help="write over XML that btq did not make")
     parser.add_argument("--verbose", action="store_true", help="tell of every clause how it is held")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
+    parser.set_defaults(report="full")  # editors want a line for each error
     _add_color(parser)
 
 

@@ -39,18 +39,33 @@ class Output:
     old: str | None
 
 
+@record
+class Outcome:
+    """What one run did.
+
+    Attributes:
+        code: the exit code.
+        watched: the files that another run would depend on.
+        files: what was written, or stood there already.
+    """
+
+    code: int
+    watched: tuple[str, ...]
+    files: tuple[str, ...] = ()
+
+
 def run(options: Namespace) -> int:
     """Build once, or again and again with `--watch`."""
     if problem := _usage_problem(options):
         print(f"btq build: {problem}", file=sys.stderr)
         return 2
     files = Files()
-    code, watched = _build(options, files)
+    built = build(options, files)
     if options.watch:
         from btq_lang.commands.again import run_again
 
-        run_again(lambda: _build(options, files)[1], options.paths, watched)
-    return code
+        run_again(lambda: build(options, files).watched, options.paths, built.watched)
+    return built.code
 
 
 def _usage_problem(options: Namespace) -> str | None:
@@ -61,8 +76,8 @@ def _usage_problem(options: Namespace) -> str | None:
     return usage_problem(options.paths)
 
 
-def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
-    """One run: its exit code, and the files that another run would depend on."""
+def build(options: Namespace, files: Files) -> Outcome:
+    """One run; what there is to say of it is printed."""
     groups, problems = files.groups(options.paths, options.stdin_filename)
     if options.target:
         groups = tuple(_for_target(group, options.target) for group in groups)
@@ -80,9 +95,9 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
     if nothing := nothing_below(options.paths, groups):
         print(f"btq build: {nothing}", file=sys.stderr)
     if problems or nothing:  # a file that could not be read may be part of any other
-        return 2, watched
+        return Outcome(2, watched)
     if _has_errors(groups, options):
-        return 1, watched
+        return Outcome(1, watched)
     sources = {path: None for group in groups for path in _sources(group)}
     places = _Places(options.output, tuple(sources))
     made = [
@@ -98,7 +113,7 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
         told += 1
     if told:
         print("nothing was written", file=sys.stderr)
-        return 1, watched
+        return Outcome(1, watched)
     for _, _, done in made:
         _tell(done.export.repairs, "repaired", groups)
     _tell_clauses([done for _, _, done in made], groups, options.verbose)
@@ -106,13 +121,14 @@ def _build(options: Namespace, files: Files) -> tuple[int, tuple[str, ...]]:
         for path, _, done in made:
             if path == files.stdin:
                 sys.stdout.write(_text(path, done.export.document, options))
-        return 0, watched
+        return Outcome(0, watched)
     exports = {path: done for path, _, done in made}
     outputs: list[Output] = []
     for group in groups:
         for path in _missions(group) if options.bundle else _sources(group):
             outputs += _outputs(group.workspace, path, places, exports, options)
-    return (_compare if options.check else _write)(outputs, options), watched
+    code = (_compare if options.check else _write)(outputs, options)
+    return Outcome(code, watched, tuple(output.path for output in outputs))
 
 
 def _for_target(group: Group, target: str) -> Group:
@@ -150,7 +166,7 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     report = with_paths(Report(tuple(findings), texts, tuple(path for group in groups for path in group.given)), shown)
     colour = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
-    for piece in render("full", report, colour=colour, width=120):
+    for piece in render(options.report, report, colour=colour, width=120):
         sys.stdout.write(piece)
     print("nothing was written", file=sys.stderr)
     return True

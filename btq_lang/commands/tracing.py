@@ -11,7 +11,7 @@ from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export, is_mission
 from btq_lang.checks import check
-from btq_lang.commands.files import Files, Group, nothing_below, usage_problem
+from btq_lang.commands.files import Files, nothing_below, usage_problem
 from btq_lang.commands.output import write_output
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import shown
@@ -20,7 +20,7 @@ from btq_lang.requirements import Requirements
 from btq_lang.rules import Severity
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
-from btq_lang.trace.overview import Clause
+from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.ways import declared_ways
 from btq_lang.workspace import Workspace
 
@@ -41,23 +41,33 @@ def _run(options: Namespace) -> int:
         print(f"btq trace: {nothing}", file=sys.stderr)
     if problems or nothing:
         return 2
-    errors = {path: number for group in groups for path, number in _errors(group)}
-    broken = frozenset(path for path, number in errors.items() if number)
-
-    def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
-        is_built = is_mission(workspace, path) and broken.isdisjoint(workspace.closure(path))
-        return built_ways(workspace, path, found, options.bundle) if is_built else declared_ways(workspace, path, found)
-
-    overview = collect([(group.workspace, group.given) for group in groups], ways, shown)
+    overview, errors = overview_of([(group.workspace, group.given) for group in groups], options.bundle)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
     text = write(overview, options.format, colour=colour, width=_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code
-    if number := sum(errors.values()):
-        what = "an error" if number == 1 else f"{number} errors"
+    if errors:
+        what = "an error" if errors == 1 else f"{errors} errors"
         print(f"btq trace: the missions have {what}, so something may be missing: see btq check", file=sys.stderr)
-    return int(bool(broken))
+    return int(errors > 0)
+
+
+def overview_of(parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False) -> tuple[Overview, int]:
+    """The overview of missions, and how many errors they have; where there are any something may be missing.
+
+    Args:
+        parts: workspaces, each with the paths of it that are asked for.
+        bundled: they are built with all that they include.
+    """
+    errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
+    broken = frozenset(path for path, number in errors.items() if number)
+
+    def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
+        is_built = is_mission(workspace, path) and broken.isdisjoint(workspace.closure(path))
+        return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
+
+    return collect(parts, ways, shown), sum(errors.values())
 
 
 def built_ways(
@@ -78,13 +88,10 @@ def built_ways(
     ]
 
 
-def _errors(group: Group) -> list[tuple[str, int]]:
+def _errors(workspace: Workspace, given: Sequence[str]) -> list[tuple[str, int]]:
     """How many errors each file has, those that are included too."""
-    paths = dict.fromkeys(path for each in group.given for path in group.workspace.closure(each))
-    return [
-        (path, sum(each.effective_severity is Severity.ERROR for each in check(group.workspace, path)))
-        for path in paths
-    ]
+    paths = dict.fromkeys(path for each in given for path in workspace.closure(each))
+    return [(path, sum(each.effective_severity is Severity.ERROR for each in check(workspace, path))) for path in paths]
 
 
 def _width() -> int:

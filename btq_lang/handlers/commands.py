@@ -5,14 +5,22 @@ Their names begin with `btq.server.`, so that an editor's plug-in can have comma
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from lsprotocol import types
 
 from btq_lang import features
 from btq_lang.editor import Refused, Server
 
+if TYPE_CHECKING:
+    from btq_lang.workspace import Workspace
+
 NODE_PATH = "btq.server.nodePath"
 XML = "btq.server.xml"
 PICTURE = "btq.server.picture"
+OVERVIEW = "btq.server.overview"
+BUILD = "btq.server.build"
+USES = "btq.server.uses"
 
 
 def register(server: Server) -> None:
@@ -24,13 +32,16 @@ def register(server: Server) -> None:
         asked = server.ask(place.text_document, place.position, features.path_of_node)
         return asked[2] if asked else None
 
+    def mission(document: types.TextDocumentIdentifier) -> tuple[Workspace, str]:
+        place = server.at(document)
+        if place is None:
+            raise Refused("this is no .btq file of the editor's folders")
+        return place
+
     @server.command(XML)
     def xml(document: types.TextDocumentIdentifier) -> str:
         """What `btq build` would write for a document as it is now, saved or not."""
-        path = convert.path(document.uri)
-        workspace = session.workspace_of(path)
-        if workspace is None:
-            raise Refused("this file is in none of the editor's folders")
+        workspace, path = mission(document)
         from btq_lang.btcpp.document import write  # not needed by most sessions, and large
         from btq_lang.btcpp.enforcement import enforced
         from btq_lang.btcpp.export import export
@@ -43,10 +54,7 @@ def register(server: Server) -> None:
     @server.command(PICTURE)
     def picture(document: types.TextDocumentIdentifier) -> dict[str, object]:
         """The trees of a document as SVG, and by the key of each node in it where that stands in the text."""
-        path = convert.path(document.uri)
-        workspace = session.workspace_of(path)
-        if workspace is None:
-            raise Refused("this file is in none of the editor's folders")
+        workspace, path = mission(document)
         from btq_lang.graph import draw  # as above
         from btq_lang.graph.missions import figures, keyed
 
@@ -55,3 +63,42 @@ def register(server: Server) -> None:
             for key, node in keyed(workspace, path)
         }
         return {"svg": draw(figures(workspace, path, with_qualities=True)), "nodes": places}
+
+    @server.command(OVERVIEW)
+    def overview(document: types.TextDocumentIdentifier) -> str:
+        """The page that `btq trace --format html` writes of a document as it is now, saved or not."""
+        workspace, path = mission(document)
+        from btq_lang.commands.tracing import overview_of  # as above
+        from btq_lang.trace import write as write_overview
+
+        return write_overview(overview_of([(workspace, (path,))])[0], "html")
+
+    @server.command(BUILD)
+    def build(document: types.TextDocumentIdentifier) -> dict[str, object]:
+        """Write the XML of a mission as `btq build` does; what is open counts as it is in the editor."""
+        _, path = mission(document)
+        if not document.uri.startswith("file:"):
+            raise Refused("this document is no file: save it first")
+        from btq_lang.commands.for_editors import build_open  # as above
+
+        code, files, said = build_open(path, session.open)
+        if code:
+            raise Refused(said)
+        return {"files": [convert.uri(file) for file in files], "said": said}
+
+    @server.command(USES)
+    def uses(places: list[types.Location]) -> None:
+        """Show places in an editor that has no list of its own for them: the only one, or a message that names all."""
+        capabilities = server.client_capabilities.window
+        can_show = capabilities is not None and capabilities.show_document is not None
+        if len(places) == 1 and can_show:
+            (place,) = places
+            server.window_show_document(types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range))
+            return
+        named = [f"{_shown(convert.path(place.uri), session.folders)}:{place.range.start.line + 1}" for place in places]
+        server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(named)))
+
+
+def _shown(path: str, folders: tuple[str, ...]) -> str:
+    """A path as it is called in the editor's folders."""
+    return next((path.removeprefix(f"{folder}/") for folder in folders if path.startswith(f"{folder}/")), path)

@@ -9,6 +9,7 @@ from lsprotocol import types
 from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
+from btq_lang.handlers.commands import USES
 from btq_lang.text import Span
 
 if TYPE_CHECKING:
@@ -90,7 +91,9 @@ def register(server: Server) -> None:
         for lens in features.code_lenses(workspace, path):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
-            arguments = [convert.uri(path), range_.start, uses]
-            command = SHOW_REFERENCES if server.knows_command(SHOW_REFERENCES) else ""
-            found.append(types.CodeLens(range_, types.Command(lens.title, command, arguments=arguments)))
+            if server.knows_command(SHOW_REFERENCES):
+                command = types.Command(lens.title, SHOW_REFERENCES, arguments=[convert.uri(path), range_.start, uses])
+            else:
+                command = types.Command(lens.title, USES if uses else "", arguments=[uses] if uses else None)
+            found.append(types.CodeLens(range_, command))
         return found
