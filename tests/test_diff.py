@@ -240,11 +240,14 @@ def test_longest_common_subsequences() -> None:
 
 
 def btq(*arguments: str, cwd: Path) -> tuple[int, str, str]:
+    return run("diff", *arguments, cwd=cwd)
+
+
+def run(*arguments: str, cwd: Path) -> tuple[int, str, str]:
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
-    run = subprocess.run(
-        [sys.executable, "-m", "btq_lang", "diff", *arguments], cwd=cwd, env=environment, capture_output=True, text=True
-    )
-    return run.returncode, run.stdout, run.stderr
+    command = [sys.executable, "-m", "btq_lang", *arguments]
+    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
 
 
 def test_two_files(tmp_path: Path) -> None:
@@ -274,9 +277,7 @@ def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
         'include "skills.btq"\nQualityReq rq1\n    takes at most 30 s\n'
         "Root Main\nBehaviorTree Main\n    SubTree Enough satisfies rq1\n"
     )
-    build = [sys.executable, "-m", "btq_lang", "build", "mission.btq"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
-    subprocess.run(build, cwd=tmp_path, env=environment, check=True, capture_output=True)
+    assert run("build", "mission.btq", cwd=tmp_path)[0] == 0
     assert btq("mission.xml", "mission.btq", cwd=tmp_path) == (0, "", "")
     assert btq("skills.xml", "skills.btq", cwd=tmp_path) == (0, "", "")
     built = mission.read_text()
@@ -293,6 +294,46 @@ def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
     assert (code, out.splitlines()[-1]) == (1, "1 requirement removed, 1 node changed")
     message = "it was built, and requirements cannot be seen in XML without the side file beside it"
     assert told == f"btq: mission.xml: {message}\n"
+
+
+def test_a_mission_and_what_was_built_of_it_in_another_folder(tmp_path: Path) -> None:
+    for name, text in {
+        "robot/skills.xml": '<root BTCPP_format="4"><TreeNodesModel><Action ID="Drive"/></TreeNodesModel></root>',
+        "robot/common/reqs.btq": 'include "../skills.xml"\nQualityReq rq1\n    takes at most 30 s\n',
+        "robot/common/parts.btq": "BehaviorTree Part\n    Drive\n",
+        "robot/missions/main.btq": 'include "../common/reqs.btq"\ninclude "../common/parts.btq"\nRoot Main\n'
+        "BehaviorTree Main\n    ->\n        Drive satisfies rq1\n        SubTree Part\n        Wave (arm = left)\n",
+    }.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    mission, built = "robot/missions/main.btq", "out/missions/main.xml"
+    assert run("build", mission, "-o", "out", cwd=tmp_path)[0] == 0
+    assert btq(mission, built, cwd=tmp_path) == (0, "", "")
+    reqs = tmp_path / "robot" / "common" / "reqs.btq"
+    reqs.write_text(reqs.read_text().replace("30 s", "20 s"))
+    code, out, told = btq(mission, built, cwd=tmp_path)
+    where = "out/common/reqs.qreq.json:out/common/reqs.btq:2"
+    assert (code, out.splitlines()[1], told) == (1, f"~ requirement rq1 changed  {where}", "")
+
+
+def test_models_that_a_build_made_are_no_change(tmp_path: Path) -> None:
+    mission = tmp_path / "main.btq"
+    mission.write_text(
+        "Root Main\nBehaviorTree Main\n    ->\n        Wave (arm = left)\n        Condition Free\n"
+        "        Wave (arm = {arm} times = 3)\n"
+    )
+    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    assert not (tmp_path / "main.qreq.json").exists()
+    assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
+    assert btq("main.xml", "main.btq", cwd=tmp_path) == (0, "", "")
+    built = tmp_path / "main.xml"
+    built.write_text(built.read_text().replace('"times"', '"times" type="int"'))
+    code, out, _ = btq("main.btq", "main.xml", cwd=tmp_path)  # somebody has said more of it
+    assert (code, out.splitlines()[1], out.splitlines()[-1]) == (
+        1,
+        "+ node model Wave added  main.xml:12",
+        "1 node model added",
+    )
 
 
 def test_a_missing_include_is_told(tmp_path: Path) -> None:

@@ -5,7 +5,8 @@ reader      XML text to document, as the engine reads it; `strict` says what oth
 importing   a document as a mission; `wording` spells its words, `version3` says old files as new ones, `generated`
             takes out what a build has put in
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
-            and `spelling` the parts, `fragment` looks at elements that a mission spells out
+            and `spelling` the parts, `fragment` looks at elements that a mission spells out,
+            `undeclared` makes models of what is only used
 enforcement what requirements put around nodes, and how each clause is held; `guards` what a clause needs, `conditions`
             its scripts, `keys` its names, `wrappers` the elements, in and out again
 bundle      a mission and all that it includes as one document

@@ -16,6 +16,7 @@ from btq_lang.btcpp.models import Models, model_element
 from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
+from btq_lang.btcpp.undeclared import undeclared
 from btq_lang.comments import NO_COMMENTS
 from btq_lang.garbage import NotCollecting
 from btq_lang.record import record
@@ -124,7 +125,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs) -> Document
             source.put(contents, source.raw(entry, item), around)
         else:  # what it says is in no element, and so are the comments in it
             contents += source.written(around.before)
-    contents += models.rest(source, trees.custom)
+    contents += models.rest(source, () if source.verbatim else undeclared(source, trees.custom))
     contents += end_of_block
     end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)
     has_block = any(entry.in_root for entry in entries)

@@ -6,17 +6,14 @@ what it uses but nobody declares stands behind it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
-from btq_lang.btcpp.document import Attribute, Content, Element, Text, escape
+from btq_lang.btcpp.document import Attribute, Content, Element, Text
 from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import spelt
-from btq_lang.btcpp.trees import CustomNode
-from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.record import replace
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim, Word
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -95,17 +92,15 @@ class Models:
         self.loose: Final[list[Content]] = []
         self.trees: Final[list[tuple[Entry, Tree]]] = []
 
-    def rest(self, source: Source, nodes: Mapping[str, CustomNode]) -> list[Content]:
+    def rest(self, source: Source, others: Iterable[Element]) -> list[Content]:
         """What is to be written last, in a TreeNodesModel of the file or else in one of its own.
 
         Args:
-            nodes: the nodes that the file uses and that are none of the engine's, by ID.
+            others: models that the file does not have itself.
         """
         for entry, tree in self.trees:
             self._add_ports(source, entry, tree)
-        if not source.verbatim:
-            missing = {name: node for name, node in nodes.items() if source.scope.find(Kind.MODEL, name) is None}
-            self.loose.extend(_undeclared(missing))
+        self.loose.extend(others)
         if self.palettes:
             self.palettes[0].children.extend(self.loose)
             return []
@@ -132,17 +127,3 @@ class Models:
 
 def _declares(model: Element, raw: str) -> bool:
     return model.tag == "SubTree" and any(each.name == "ID" and each.raw == raw for each in model.attributes)
-
-
-def _undeclared(nodes: Mapping[str, CustomNode]) -> Iterator[Element]:
-    """A model for each node that has none, as its uses suggest it: Groot opens no tree with a node it does not know."""
-    for name, node in sorted(nodes.items(), key=lambda item: (_ORDER[item[1].category], item[0])):
-        # A literal can only go in; what an entry is for, nobody says.
-        ports = [
-            Element("inout_port" if is_entry else "input_port", [Attribute("name", port)])
-            for port, is_entry in node.ports.items()
-        ]
-        yield Element(node.category, [Attribute("ID", escape(name))], ports)
-
-
-_ORDER: Final[dict[str, int]] = {category: index for index, category in enumerate(CATEGORIES)}

@@ -8,14 +8,16 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 
-from btq_lang.btcpp.marks import DESCRIPTION_MARK
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated
+from btq_lang.btcpp.undeclared import made_models
 from btq_lang.commands.as_built import as_built
 from btq_lang.commands.files import Files, Group
 from btq_lang.commands.git import GitTrouble, Revisions, revisions
-from btq_lang.diff import as_json, as_markdown, as_text
+from btq_lang.diff import Change, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, shown
+from btq_lang.record import replace
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.rules import Severity
 from btq_lang.workspace import File
@@ -94,7 +96,24 @@ def _of_paths(paths: list[str]) -> Iterator[Comparison]:
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
     sides = [{} if path is None else _sides(path) for path in (old, new)]
     for name in sorted(sides[0].keys() | sides[1].keys()):
-        yield compared(sides[0].get(name, NOWHERE), sides[1].get(name, NOWHERE))
+        yield _without_made_models(compared(sides[0].get(name, NOWHERE), sides[1].get(name, NOWHERE)))
+
+
+def _without_made_models(comparison: Comparison) -> Comparison:
+    """Leave out the models that a build has put into XML for nodes that nobody declares."""
+    made = {
+        (what, path, name)
+        for what, side in (("removed", comparison.old), ("added", comparison.new))
+        for path in side.paths
+        if side.workspace.files[path].origin is not None and is_generated(side.workspace.files[path].source)
+        for name in made_models(side.workspace, path)
+    }
+
+    def is_made(change: Change) -> bool:
+        place = change.new or change.old
+        return change.thing == "node model" and place is not None and (change.what, place.path, change.name) in made
+
+    return replace(comparison, changes=tuple(each for each in comparison.changes if not is_made(each)))
 
 
 def _sides(path: str) -> dict[str, Side]:
