@@ -229,6 +229,28 @@ def test_check_compares_and_writes_nothing(btq: Btq) -> None:
     assert btq.build("--check") == (1, "out of date: skills.xml\n", "")
 
 
+def test_a_side_file_that_is_not_made_any_more_goes(btq: Btq) -> None:
+    btq.write(mission="Root Main\nBehaviorTree Main\n    Pick satisfices safety\n")
+    assert btq.build() == (0, "wrote mission.xml\nwrote mission.qreq.json\n", "")
+    btq.write(mission="Root Main\nBehaviorTree Main\n    Pick\n")
+    assert btq.build("--check") == (1, "out of date: mission.xml\nleft over: mission.qreq.json\n", "")
+    assert btq.build() == (0, "wrote mission.xml\nremoved mission.qreq.json\n", "")
+    assert btq.build("--check") == (0, "", "")
+    btq.write(**{"mission.qreq.json": "{}\n"})  # somebody else's
+    assert btq.build("--check") == (0, "", "")
+    assert btq.files == ["mission.btq", "mission.qreq.json", "mission.xml"]
+
+
+def test_a_side_file_that_went_is_back_where_another_file_cannot_be_written(btq: Btq) -> None:
+    btq.write(a="BehaviorTree A\n    Pick satisfices safety\n", b="BehaviorTree B\n    Pick\n")
+    assert btq.build()[0] == 0
+    before = btq.read("a.qreq.json"), btq.read("a.xml")
+    btq.write(a="BehaviorTree A\n    Pick\n", c="BehaviorTree C\n    Pick\n")
+    (btq.folder / "c.xml").mkdir()
+    assert btq.build("--force")[0] == 2
+    assert (btq.read("a.qreq.json"), btq.read("a.xml")) == before
+
+
 def test_xml_that_somebody_else_made_is_not_written_over(btq: Btq) -> None:
     btq.write(mission=MISSION, skills=SKILLS, **{"skills.xml": "<root/>"})
     assert btq.build() == (

@@ -28,14 +28,15 @@ from btq_lang.workspace import Workspace
 
 @record
 class Output:
-    """A file to be written.
+    """A file to be written, or to be removed.
 
     Attributes:
+        text: what is to stand there; None: nothing.
         old: what stands there now; None: nothing.
     """
 
     path: str
-    text: str
+    text: str | None
     old: str | None
 
 
@@ -268,23 +269,29 @@ def _text(path: str, document: Document, options: Namespace) -> str:
 def _outputs(
     workspace: Workspace, path: str, places: _Places, exports: dict[str, Enforcement], options: Namespace
 ) -> Iterator[Output]:
-    """The XML of a mission, and its side file, where it says more than that."""
+    """The XML of a mission, and its side file, where it says more than that; one of an earlier build goes."""
     done = exports[path].export
     place = places.of(path)
     text = _text(path, done.document, options)
     yield Output(place, text, _old_text(place))
-    if options.verbatim:
-        return
-    parts: tuple[Export, ...] = (done,)
+    side = None if options.verbatim else _side_text(workspace, path, place, text, exports, options)
+    old = _old_text(side_path(place))
+    if side is not None or (old is not None and is_side_file(old)):
+        yield Output(side_path(place), side, old)
+
+
+def _side_text(
+    workspace: Workspace, path: str, place: str, text: str, exports: dict[str, Enforcement], options: Namespace
+) -> str | None:
+    """The side file of a mission's XML."""
+    parts: tuple[Export, ...] = (exports[path].export,)
     if not options.bundle:  # XML that it includes is read as this language says it
         parts = tuple(
             exports[each].export if each in exports else export(workspace, each) for each in workspace.closure(path)
         )
     elements = {key: element for part in parts for key, element in part.elements.items()}
     documents = tuple(part.document for part in parts)
-    side = side_file(workspace, Built(path, place, text, documents, elements, exports[path].held))
-    if side is not None:
-        yield Output(side_path(place), side, _old_text(side_path(place)))
+    return side_file(workspace, Built(path, place, text, documents, elements, exports[path].held))
 
 
 def _old_text(path: str) -> str | None:
@@ -292,10 +299,11 @@ def _old_text(path: str) -> str | None:
 
 
 def _compare(outputs: list[Output], options: Namespace) -> int:
-    """`--check`: name the files that are not what they would be."""
+    """`--check`: name the files that are not what they would be, or would not be."""
     stale = [output for output in outputs if output.text != output.old]
     for output in stale:
-        print(f"{'missing' if output.old is None else 'out of date'}: {shown(output.path)}")
+        state = "missing" if output.old is None else "out of date" if output.text is not None else "left over"
+        print(f"{state}: {shown(output.path)}")
     return int(bool(stale))
 
 
@@ -312,20 +320,33 @@ def _write(outputs: list[Output], options: Namespace) -> int:
     done: list[Output] = []
     for output in changed:
         try:
-            os.makedirs(os.path.dirname(output.path), exist_ok=True)
-            write_whole(output.path, output.text)
+            _put(output.path, output.text)
         except OSError as error:
-            print(f"btq: {LoadProblem(output.path, f'cannot be written: {error.strerror}')}", file=sys.stderr)
+            what = "written" if output.text is not None else "removed"
+            print(f"btq: {LoadProblem(output.path, f'cannot be {what}: {error.strerror}')}", file=sys.stderr)
             _take_back(done)
             print("nothing was written", file=sys.stderr)
             return 2
         done.append(output)
     for output in changed:
-        print(f"wrote {shown(output.path)}")
+        print(f"{'wrote' if output.text is not None else 'removed'} {shown(output.path)}")
     same = len(outputs) - len(changed)
     if same:
         print(f"{same} file{'' if same == 1 else 's'} left as {'it is' if same == 1 else 'they are'}", file=sys.stderr)
     return 0
+
+
+def _put(path: str, text: str | None) -> None:
+    """Write a file, or remove it.
+
+    Raises:
+        OSError: it cannot be.
+    """
+    if text is None:
+        os.unlink(path)
+    else:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_whole(path, text)
 
 
 def _is_foreign(text: str | None) -> bool:
@@ -336,10 +357,7 @@ def _take_back(outputs: list[Output]) -> None:
     """Put back what stood in files before, as far as the disk lets us."""
     for output in outputs:
         try:
-            if output.old is None:
-                os.unlink(output.path)
-            else:
-                write_whole(output.path, output.old)
+            _put(output.path, output.old)
         except OSError as error:
-            problem = LoadProblem(output.path, f"was written and cannot be put back: {error.strerror}")
+            problem = LoadProblem(output.path, f"was changed and cannot be put back: {error.strerror}")
             print(f"btq: {problem}", file=sys.stderr)
