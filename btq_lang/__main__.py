@@ -1,4 +1,4 @@
-from btq_lang.cli import main
+from btq_lang.cli import program
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    program()

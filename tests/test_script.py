@@ -32,9 +32,11 @@ from btq_lang.script import (
     check_script,
     children,
     parse_script,
+    tokens,
     unparse,
     variables,
 )
+from btq_lang.script.tokens import Tokens
 from btq_lang.text import Edit, Span, apply_edits
 
 # ---- what a script means: the same in every version, and without a problem in any ----
@@ -708,3 +710,24 @@ def assert_nested(nodes: tuple[Expression, ...], outer: Span) -> None:
         assert at <= node.start < node.end <= outer.end
         assert_nested(children(node), Span(node.start, node.end))
         at = node.end
+
+
+# ---- the short cut past the pattern ----
+
+SPACED = st.lists(
+    st.sampled_from("( ) ! = < > : ; ? + - * / & | ^ ~ . ' := && .. => and true x _y1 @z é 3 3. .5 0.25 'a' ''".split())
+    | st.sampled_from(["x;", "", "\t", "1e3", "0x1F", "'a", "9" * 20, "٣", "a.b", "-1", "'it's'"])
+)
+
+
+@given(SPACED.map(" ".join))
+def test_words_with_blanks_between_are_cut_as_the_pattern_cuts_them(text: str) -> None:
+    spaced, matched = tokens._spaced(text), tokens._matched(text)
+    if spaced is not None:
+        for field in Tokens.__slots__:
+            assert getattr(spaced, field) == getattr(matched, field)
+
+
+@pytest.mark.parametrize("text", ["battery < 20", "x := 0 ; y := 0.5", "state == 'idle' && ! done"])
+def test_usual_scripts_need_no_pattern(text: str) -> None:
+    assert tokens._spaced(text) is not None

@@ -85,6 +85,8 @@ def _check_integer(plain: str, text: str) -> LiteralProblem | None:
 
 def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
     """std::from_chars since 4.9; before, std::stod, which takes blanks and a `+` in front, and hexadecimal digits."""
+    if len(text) < 16 and text.isascii() and text.replace(".", "", 1).isdecimal():
+        return None  # as nearly all are
     number = re.match(_REAL if at_least(version, "4.9") else _OLD_REAL, text)
     if number is None:
         return LiteralProblem("refused", f"is no {plain}")
