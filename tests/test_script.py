@@ -715,8 +715,8 @@ def assert_nested(nodes: tuple[Expression, ...], outer: Span) -> None:
 # ---- the short cut past the pattern ----
 
 SPACED = st.lists(
-    st.sampled_from("( ) ! = < > : ; ? + - * / & | ^ ~ . ' := && .. => and true x _y1 @z é 3 3. .5 0.25 'a' ''".split())
-    | st.sampled_from(["x;", "", "\t", "1e3", "0x1F", "'a", "9" * 20, "٣", "a.b", "-1", "'it's'"])
+    st.sampled_from([*"()!=<>:;?+-*/&|^~.'", ":=", "&&", "..", "=>", "and", "true", "x", "_y1", "@z", "é", "3", "3."])
+    | st.sampled_from([".5", "0.25", "'a'", "''", "x;", "", "\t", "1e3", "0x1F", "'a", "9" * 20, "٣", "a.b", "-1"])
 )
 
 
