@@ -442,6 +442,10 @@ def test_format_of_standard_input(btq: Run) -> None:
         ("Retry", "# RetryUntilSuccessful (Decorator)"),
         ("time-behaviour", "# performance-efficiency.time-behaviour"),
         ("ManualSelector", "# ManualSelector"),
+        ("satisfies", "# satisfies (clause of a node)"),
+        ("on violation", "# on violation (clause)"),
+        ("violation", "# on violation (clause)"),
+        ("io-error", "# io-error"),
     ],
 )
 def test_explain(btq: Run, name: str, first_line: str) -> None:
@@ -459,14 +463,19 @@ def test_explain_of_several_names(btq: Run) -> None:
     )
     done = btq("explain", "Retry", "nonsense")
     assert done.stdout == btq("explain", "Retry").stdout
-    assert done.stderr == "btq explain: `nonsense` is no rule, node or quality; `btq explain` lists all there is\n"
+    assert done.stderr == (
+        "btq explain: `nonsense` is no rule, node, quality or word of the language; `btq explain` lists all there is\n"
+    )
     assert done.returncode == 2
 
 
 def test_explain_of_something_unknown(btq: Run) -> None:
     done = btq("explain", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "btq explain: `unknown-nod` is no rule, node or quality; did you mean unknown-node?\n"
+    assert (
+        done.stderr
+        == "btq explain: `unknown-nod` is no rule, node, quality or word of the language; did you mean unknown-node?\n"
+    )
 
 
 def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:

@@ -305,7 +305,7 @@ def test_hover_and_signature(editor: Editor) -> None:
     assert shown["range"]["start"] == {"line": 3, "character": 4}
     help_ = editor.request("textDocument/signatureHelp", **editor.at("main.btq", 3, 10))
     assert help_["signatures"][0]["label"] == "Pick (input from : string)"
-    assert editor.request("textDocument/hover", **editor.at("main.btq", 2, 0)) is None
+    assert editor.request("textDocument/hover", **editor.at("main.btq", 3, 2)) is None
 
 
 def test_structure(editor: Editor) -> None:

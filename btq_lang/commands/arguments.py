@@ -196,10 +196,11 @@ def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser = _command(
         commands,
         "explain",
-        "explain a rule, a node or a quality",
-        epilog="examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n",
+        "explain a rule, a node, a quality or a word of the language",
+        epilog="examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
+        "  btq explain on violation\n",
     )
-    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY", help="nothing: list them all")
+    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="nothing: list them all")
     _add_color(parser)
 
 

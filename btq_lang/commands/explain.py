@@ -1,4 +1,4 @@
-"""`btq explain`: what a rule, a node or a quality is."""
+"""`btq explain`: what a rule, a node, a quality or a word of the language is."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Iterator
 
+from btq_lang.catalog.language import PHRASES, Phrase, phrases_of
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.near import near
@@ -28,7 +29,7 @@ def run(options: Namespace) -> int:
     for name in unknown:
         likely = near(name, _names())
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all there is"
-        print(f"btq explain: `{name}` is no rule, node or quality{meant}", file=sys.stderr)
+        print(f"btq explain: `{name}` is no rule, node, quality or word of the language{meant}", file=sys.stderr)
     bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for number, text in enumerate(pages):
         print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
@@ -46,6 +47,9 @@ def _pages(name: str) -> Iterator[str]:
     match = find(tuple(name.split(".")))
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
+    yield from map(_phrase, phrases_of(name))
+    if name == "io-error":
+        yield _IO_ERROR
 
 
 def _node(kind: NodeKind) -> Iterator[str]:
@@ -87,6 +91,10 @@ def _quality(quality: Quality, name: str, explanation: str) -> Iterator[str]:
         yield f"siblings: {', '.join(sibling.id.rpartition('.')[2] for sibling in beside)}"
 
 
+def _phrase(phrase: Phrase) -> str:
+    return f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
+
+
 def _overview() -> Iterator[str]:
     yield "# Rules"
     for rule in RULES.values():
@@ -97,13 +105,24 @@ def _overview() -> Iterator[str]:
     yield "\n# Qualities"
     for quality in qualities():
         yield f"{quality.id:<58} {quality.name}"
+    yield "\n# Words of the language"
+    for phrase in PHRASES:
+        yield f"{phrase.words:<18} {phrase.part:<22} {phrase.brief}"
 
 
 def _names() -> list[str]:
     words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
-    return [*RULES, *words, *(quality.id for quality in qualities())]
+    return [*RULES, *words, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
 
 
 def _with_bold_headings(text: str) -> str:
     lines = text.split("\n")
     return "\n".join(f"\x1b[1m{line}\x1b[0m" if line.startswith("#") else line for line in lines)
+
+
+_IO_ERROR = """# io-error
+
+A file that cannot be read or written, or that is no UTF-8.
+
+It is no rule: it stands in reports that machines read (JSON, JUnit, GitHub) where a rule would stand. Nothing selects or
+silences it, and the command ends with exit code 2."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from btq_lang.catalog.language import phrases_of
 from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.features.meaning import (
@@ -257,6 +258,12 @@ def _powers(unit: Unit) -> Iterator[str]:
 def rule(name: str) -> str | None:
     """The page of a rule; None: there is no such rule."""
     return page(name).rstrip() if name in RULES else None
+
+
+def words(name: str) -> str | None:
+    """What words of the language mean, in each of the places where they may stand; None: they are none."""
+    found = (f"**{one.words}** ({one.part}) · `{one.form}`\n\n{one.sentence}" for one in phrases_of(name))
+    return "\n\n".join(found) or None
 
 
 _SI = ("s", "m", "kg", "A", "K", "rad", "bit", "m/s", "m/s^2", "rad/s", "Hz", "N", "Pa", "J", "W", "V", "ohm", "A*s")

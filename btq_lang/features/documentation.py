@@ -36,6 +36,8 @@ def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str 
         if own is not None:
             return describe.own_quality(workspace, own)
         return describe.quality(workspace, path, match.quality) if match.quality else None
+    if kind == "keyword":
+        return describe.words(name)
     if kind == "rule":
         return describe.rule(name)
     if kind == "port":

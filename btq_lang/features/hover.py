@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.language import phrase_at
 from btq_lang.features import describe
 from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
 from btq_lang.features.navigation import writes
+from btq_lang.features.place import item_tokens
 from btq_lang.features.ports import ports_of
 from btq_lang.mentions import What
 from btq_lang.record import record
 from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.tokens import NAME
+from btq_lang.workspace import File, Workspace
 
 
 @record
@@ -23,10 +26,11 @@ class Hover:
 
 def hover(workspace: Workspace, path: str, offset: int) -> Hover | None:
     """What stands at a place: a node with its ports and semantics, a requirement with its text and its nodes, a quality
-    with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page."""
+    with its definition, an entry with its readers and writers, a quantity in SI units, a rule's page, a word of the
+    language."""
     found = at(workspace, path, offset)
     if found is None:
-        return None
+        return _word_of_the_language(workspace.files[path], offset)
     markdown = _explained(workspace, found, subject(workspace, found))
     return Hover(found.span, markdown) if markdown else None
 
@@ -78,6 +82,17 @@ def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | Non
     if wanted.what in (What.INSTANCE, What.TAG, What.PARAMETER):
         return describe.used(workspace, wanted, f"{wanted.what.value.capitalize()} **{wanted.name}**") or None
     return None
+
+
+def _word_of_the_language(file: File, offset: int) -> Hover | None:
+    if not any(token.kind == NAME and token.start <= offset <= token.end for token in item_tokens(file, offset)):
+        return None
+    start = file.text.rfind("\n", 0, offset) + 1
+    found = phrase_at(file.text[start:].partition("\n")[0], offset - start)
+    markdown = describe.words(found[1]) if found is not None else None
+    if found is None or markdown is None:
+        return None
+    return Hover(Span(start + found[0], start + found[0] + len(found[1])), markdown)
 
 
 def _key(workspace: Workspace, wanted: Subject) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.language import beginning
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import qualities as standard_qualities
@@ -59,6 +60,12 @@ def words(found: Iterable[str], kind: str) -> Iterator[Proposal]:
         yield Proposal(word, kind, "", word, snippet)
 
 
+def keyword(label: str, snippet: str | None = None) -> Proposal:
+    """Words of the language that begin something."""
+    phrase = beginning(label)
+    return Proposal(label, "keyword", phrase.brief, label, snippet, "", phrase.words)
+
+
 def quoted(text: str) -> str:
     """A word in quotes, unless it is."""
     return text if text.startswith(('"', "'")) else quote(text)
@@ -79,25 +86,23 @@ def escaped(text: str) -> str:
 
 def item_words(workspace: Workspace, path: str) -> Iterator[Proposal]:
     has_root = "Root" in workspace.files[path].text
-    for word, snippet, detail in _ITEMS:
+    for word, snippet in _ITEMS:
         if not (word == "Root" and has_root):
-            yield Proposal(word, "keyword", detail, word, snippet)
+            yield keyword(word, snippet)
 
 
 def category_words() -> Iterator[Proposal]:
     for word in sorted(CATEGORIES):
-        yield Proposal(word, "keyword", "a model: the interface of a node", word, f"{word} ${{1:Name}}\n    $0")
+        yield keyword(word, f"{word} ${{1:Name}}\n    $0")
 
 
 def node_clause_words() -> Iterator[Proposal]:
-    yield Proposal("satisfies", "keyword", "attach a requirement", "satisfies")
-    yield Proposal("satisfices", "keyword", "mark a concern: a quality", "satisfices")
-    yield Proposal("tags", "keyword", "mark the node for `apply`", "tags")
+    yield from (keyword(word) for word in ("satisfies", "satisfices", "tags"))
 
 
 def port_heads() -> Iterator[Proposal]:
     for word in ("input", "output", "inout"):
-        yield Proposal(word, "keyword", "a port", word, f'{word} ${{1:name}} : ${{2:string}} "$0"')
+        yield keyword(word, f'{word} ${{1:name}} : ${{2:string}} "$0"')
 
 
 def port_words(place: Place) -> Iterator[Proposal]:
@@ -107,10 +112,10 @@ def port_words(place: Place) -> Iterator[Proposal]:
 
 def clauses(given: tuple[str, ...]) -> Iterator[Proposal]:
     """Verbs and heads of clauses, in the order in which a requirement is written; what stands once is left out."""
-    for word, snippet, detail in _CLAUSES:
+    for word, snippet in _CLAUSES:
         head = word.split()[0]
         if head not in _ONCE or head not in given:
-            yield Proposal(word, "keyword", detail, word, snippet)
+            yield keyword(word, snippet)
 
 
 # ---- names ----
@@ -456,51 +461,51 @@ _SWITCH = (
     "    ${0:Otherwise}"
 )
 _ITEMS = (
-    ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->\n        $0", "a tree"),
-    ("QualityReq", 'QualityReq ${1:id} : ${2:quality} "${3:text}"\n    $0', "a requirement"),
-    ("include", 'include "$0"', "another file's names"),
-    ("Root", "Root ${0:Main}", "the main tree"),
-    ("signal", "signal ${1:name} : ${2:unit} from {${0:key}\\}", "what is measured"),
-    ("context", "context ${1:name} : $0", "a condition with a name"),
-    ("apply", "apply ${1:requirement} to $0", "a requirement for many nodes"),
-    ("quality", 'quality ${1:name} : ${2:parent} "$0"', "a quality of one's own"),
-    ("qualities", "qualities ${0:iso25010-2023}", "the edition of the quality model"),
-    ("Action", "Action ${1:Name}\n    $0", "a model: the interface of a node"),
-    ("Condition", "Condition ${0:Name}", "a model: the interface of a node"),
-    ("Decorator", "Decorator ${1:Name}\n    $0", "a model: the interface of a node"),
-    ("Control", "Control ${1:Name}\n    $0", "a model: the interface of a node"),
-    ("SubTree", "SubTree ${1:Name}\n    $0", "a model: the ports of a tree"),
-    ("TreeNodesModel", "TreeNodesModel\n    $0", "models, where the element stands"),
+    ("BehaviorTree", "BehaviorTree ${1:Name}\n    ->\n        $0"),
+    ("QualityReq", 'QualityReq ${1:id} : ${2:quality} "${3:text}"\n    $0'),
+    ("include", 'include "$0"'),
+    ("Root", "Root ${0:Main}"),
+    ("signal", "signal ${1:name} : ${2:unit} from {${0:key}\\}"),
+    ("context", "context ${1:name} : $0"),
+    ("apply", "apply ${1:requirement} to $0"),
+    ("quality", 'quality ${1:name} : ${2:parent} "$0"'),
+    ("qualities", "qualities ${0:iso25010-2023}"),
+    ("Action", "Action ${1:Name}\n    $0"),
+    ("Condition", "Condition ${0:Name}"),
+    ("Decorator", "Decorator ${1:Name}\n    $0"),
+    ("Control", "Control ${1:Name}\n    $0"),
+    ("SubTree", "SubTree ${1:Name}\n    $0"),
+    ("TreeNodesModel", "TreeNodesModel\n    $0"),
 )
 _ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
 _CLAUSES = (
-    ("takes at most", "takes at most ${0:30 s}", "duration"),
-    ("takes at least", "takes at least ${0:1 s}", "duration"),
-    ("succeeds", None, "result"),
-    ("succeeds within", "succeeds within ${0:30 s}", "result, and when"),
-    ("needs", None, "a condition when it starts"),
-    ("keeps", None, "a condition while it runs"),
-    ("never", None, "what must not be while it runs"),
-    ("leaves", None, "a condition when it has succeeded"),
-    ("uses at most", "uses at most ${1:1 Wh} of ${0:signal}", "a resource"),
-    ("tries at most", "tries at most ${0:3}", "attempts"),
-    ("runs every", "runs every ${0:1 s}", "period"),
-    ("runs at least", "runs at least ${1:1} per ${0:1 s}", "rate"),
-    ("starts within", "starts within ${1:1 s} after $0", "reaction"),
-    ("ends within", "ends within ${1:1 s} after $0", "reaction"),
-    ("follows", None, "order"),
-    ("mission", None, "subject: the whole run"),
-    ("every", None, "subject: each node of a kind"),
-    ("from", "from ${1:A} starts to ${2:B} succeeds $0", "subject: between two events"),
-    ("sum of", None, "subject: several nodes together"),
-    ("while", None, "only while a condition holds"),
-    ("when", None, "only when a condition holds"),
-    ("in at least", "in at least ${1:95 %} of ${0:runs}", "how often"),
-    ("with probability", "with probability >= ${1:95 %} of ${0:runs}", "how often"),
-    ("confidence", "confidence ${0:95 %}", "how sure"),
-    ("over last", "over last ${1:100} ${0:runs}", "window"),
-    ("on violation", "on violation ${0:fail}", "what happens: fail, halt, warn or log"),
-    ("goal", "goal ${0:10 s}", "what would be better still"),
-    ("because", 'because "$0"', "the reason"),
-    ("verified by", "verified by ${0:test}", "monitor, analysis, test or review"),
+    ("takes at most", "takes at most ${0:30 s}"),
+    ("takes at least", "takes at least ${0:1 s}"),
+    ("succeeds", None),
+    ("succeeds within", "succeeds within ${0:30 s}"),
+    ("needs", None),
+    ("keeps", None),
+    ("never", None),
+    ("leaves", None),
+    ("uses at most", "uses at most ${1:1 Wh} of ${0:signal}"),
+    ("tries at most", "tries at most ${0:3}"),
+    ("runs every", "runs every ${0:1 s}"),
+    ("runs at least", "runs at least ${1:1} per ${0:1 s}"),
+    ("starts within", "starts within ${1:1 s} after $0"),
+    ("ends within", "ends within ${1:1 s} after $0"),
+    ("follows", None),
+    ("mission", None),
+    ("every", None),
+    ("from", "from ${1:A} starts to ${2:B} succeeds $0"),
+    ("sum of", None),
+    ("while", None),
+    ("when", None),
+    ("in at least", "in at least ${1:95 %} of ${0:runs}"),
+    ("with probability", "with probability >= ${1:95 %} of ${0:runs}"),
+    ("confidence", "confidence ${0:95 %}"),
+    ("over last", "over last ${1:100} ${0:runs}"),
+    ("on violation", "on violation ${0:fail}"),
+    ("goal", "goal ${0:10 s}"),
+    ("because", 'because "$0"'),
+    ("verified by", "verified by ${0:test}"),
 )

@@ -320,7 +320,26 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         ("signal v : <hover>km$0h</hover>\n", "**kmh** · speed · 1 kmh = 0.2777777778 m/s"),
         ("signal v : <hover>$0m/s</hover>\n", "**m/s** · speed"),
         ("$0\n", None),
-        ("Behavior$0Tree Main\n", None),
+        ("# on vio$0lation\n", None),
+        ('QualityReq r "on vio$0lation"\n', None),
+        (
+            "<hover>Behavior$0Tree</hover> Main\n",
+            "**BehaviorTree** (item) · `BehaviorTree Deliver`\n\nA tree: its ports, and one node with all below it.",
+        ),
+        (
+            "QualityReq r\n    <hover>lea$0ves</hover> v > 3 m\n",
+            "**leaves** (claim) · `leaves battery >= 3 %`\n\nViolated when it is false when the node has succeeded.",
+        ),
+        (
+            "QualityReq r\n    takes at most 3 s\n    <hover>on viol$0ation</hover> fail\n",
+            "**on violation** (clause) · `on violation fail`\n\n"
+            "What the robot does: `fail` the node, `halt` the mission, `warn`, `log`; else it is only monitored.",
+        ),
+        (
+            "BehaviorTree Main\n    Pick <hover>satis$0fies</hover> r\n",
+            "**satisfies** (clause of a node) · `satisfies in_time`\n\n"
+            "Late design: a requirement, which can be measured, holds for the node.",
+        ),
     ],
 )
 def test_hover(text: str, markdown: str | None) -> None:

@@ -1,0 +1,305 @@
+"""The words of the language: how each is written, what it does in a few words, and what it means.
+
+One invariant: every word that the grammar knows stands in a row, alone or in the phrase that it belongs to.  It does
+not know how a parser reads them.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from btq_lang.record import record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+@record
+class Phrase:
+    """A word of the language, or several that go together.
+
+    Attributes:
+        part: what it is.
+        form: how it is written.
+        brief: what stands beside it in a list.
+        meaning: what it means; of a claim, when that is violated.
+    """
+
+    words: str
+    part: str
+    form: str
+    brief: str
+    meaning: str
+
+    @property
+    def sentence(self) -> str:
+        """What it means."""
+        meaning = f"violated when {self.meaning}" if self.part == "claim" else self.meaning
+        return f"{meaning[0].upper()}{meaning[1:]}."
+
+
+def phrases_of(words: str) -> tuple[Phrase, ...]:
+    """What goes by some words, or by one of several that go together: `violation`."""
+    wanted = words.split()
+    exact = tuple(phrase for phrase in PHRASES if phrase.words.split() == wanted)
+    if exact or len(wanted) != 1:
+        return exact
+    return tuple(phrase for phrase in PHRASES if wanted[0] in phrase.words.split())
+
+
+def phrase_at(line: str, at: int) -> tuple[int, str] | None:
+    """Where a phrase begins that a place in a line is in, and its words; of several the longest."""
+    return next(
+        ((match.start(), match[0]) for match in _words().finditer(line) if match.start() <= at <= match.end()), None
+    )
+
+
+def beginning(words: str) -> Phrase:
+    """The longest phrase that words of a clause begin with: of `takes at most` it is `takes`.
+
+    Raises:
+        ValueError: they begin with none.
+    """
+    return max(
+        (phrase for phrase in PHRASES if f"{words} ".startswith(f"{phrase.words} ")), key=lambda each: len(each.words)
+    )
+
+
+_MODEL: Final = "a model: the interface of a node"
+_PLACE: Final = "at the start of a line of the file, the interface of {}; in a tree, the category of the node behind it"
+_SPAN: Final = "from FindPart succeeds to Sort succeeds takes at most 12 s"
+
+_TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
+    "item": (
+        ("BehaviorTree", "BehaviorTree Deliver", "a tree", "a tree: its ports, and one node with all below it"),
+        ("Root", "Root Deliver", "the main tree", "which tree is the mission, the one that the engine runs"),
+        (
+            *("include", 'include "skills.btq"', "another file's names"),
+            "the trees, models and requirements of another file, a .btq or XML of BehaviorTree.CPP, are known here",
+        ),
+        (
+            *("QualityReq", 'QualityReq rq1 : reliability "In time"', "a requirement"),
+            "a requirement: its ID, its quality, a title, and clauses that say what is demanded",
+        ),
+        (
+            *("signal", "signal battery : % from {battery_level} level initially 100 %", "what is measured"),
+            "a value on the robot's blackboard, with its unit, for conditions to speak of",
+        ),
+        (
+            "context",
+            "context humans_near : distance < 2 m",
+            "a condition with a name",
+            "a situation that conditions can name",
+        ),
+        (
+            *("apply", "apply slow to every MoveBase except ToDock", "a requirement for many nodes"),
+            "attaches a requirement to nodes, wherever they are",
+        ),
+        (
+            *("quality", 'quality hygiene : safety "Nothing is carried along"', "a quality of one's own"),
+            "a quality of your own, under one that is known",
+        ),
+        (
+            *("qualities", "qualities iso25010-2011", "the edition of the quality model"),
+            "the edition of ISO/IEC 25010 whose names the file uses",
+        ),
+        (
+            *("TreeNodesModel", "TreeNodesModel", "models, where the element stands"),
+            "models that the XML has in this place; without it they stand last",
+        ),
+        ("Action", "Action MoveBase", _MODEL, _PLACE.format("an action")),
+        ("Condition", "Condition BatteryLow", _MODEL, _PLACE.format("a condition")),
+        ("Control", "Control RoundRobin", _MODEL, _PLACE.format("a node with children")),
+        ("Decorator", "Decorator RateController", _MODEL, _PLACE.format("a node with one child")),
+        ("SubTree", "SubTree PickPlace", "a model: the ports of a tree", _PLACE.format("a tree")),
+        ("xml", "xml '<Extra/>'", "XML as it is", "one XML element, built as it is"),
+    ),
+    "part of a signal": (
+        ("level", "signal charge : % level", "it runs down", "uses of it are the value before less that after"),
+        ("counter", "signal energy : Wh counter", "it counts up", "uses of it are the value after less that before"),
+        ("gauge", "signal speed : m/s gauge", "just a value", "a value that nothing uses up"),
+        ("fresh within", "signal speed : m/s fresh within 200 ms", "its age", "an older reading counts as unknown"),
+        (
+            *("initially", "signal speed : m/s initially 0 m/s", "before the first reading"),
+            "its value before the first reading, which an enforced mission begins with",
+        ),
+    ),
+    "part of a model": (
+        ("input", "input goal : Pose", "a port", "a port that the node reads"),
+        ("output", "output path : Path", "a port", "a port that the node writes"),
+        ("inout", "inout queue : Queue", "a port", "a port that the node reads and writes"),
+        ("metadata", 'metadata (author = "me")', "for other tools", "values for other tools: `<Metadata>`"),
+    ),
+    "clause of a node": (
+        (
+            *("satisfices", "satisfices safety, comfort", "mark a concern: a quality"),
+            "early design: the node matters for a quality, and nobody says yet how much",
+        ),
+        (
+            *("satisfies", "satisfies in_time", "attach a requirement"),
+            "late design: a requirement, which can be measured, holds for the node",
+        ),
+        (
+            *("tags", "tags driving, indoor", "mark the node for `apply`"),
+            "the node is one of those that `every node tagged driving` means",
+        ),
+        ("parameters", "parameters station = home", "ports, as the published tool has them", "the node's ports"),
+    ),
+    "subject": (
+        ("mission", "mission takes at most 1 h", "subject: the whole run", "the whole run: the main tree"),
+        ("every", "every MoveArm takes at most 8 s", "subject: each node of a kind", "each node of an ID or a kind"),
+        ("from", _SPAN, "subject: between two events", "the time from an event to the next one behind `to`"),
+        ("to", _SPAN, "the later event", "the event that ends the time"),
+        (
+            *("sum of", "sum of ToBox, ToHome takes at most 120 s", "subject: several nodes together"),
+            "the durations of several nodes in one run, added up",
+        ),
+    ),
+    "claim": (
+        ("takes", "takes at most 30 s", "duration", "the node needs longer"),
+        ("succeeds", "succeeds within 30 s", "result, and when", "it fails, or succeeds later"),
+        ("needs", "needs rear_is_clear", "a condition when it starts", "the condition is false when the node starts"),
+        ("keeps", "keeps battery >= 15 %", "a condition while it runs", "it is false at any time while the node runs"),
+        (
+            *("never", "never lamp_on and humans_near", "what must not be while it runs"),
+            "it is true at any time while the node runs",
+        ),
+        (
+            *("leaves", "leaves battery >= 3 %", "a condition when it has succeeded"),
+            "it is false when the node has succeeded",
+        ),
+        ("uses", "uses at most 20 Wh of energy", "a resource", "the signal changes by more while the node runs"),
+        (
+            *("tries", "tries at most 3 per PickTray", "attempts"),
+            "the node starts more often within one activation of the other",
+        ),
+        ("runs every", "runs every 500 ms", "period", "two starts are further apart"),
+        ("runs", "runs at least 9 per 10 s", "rate", "there are fewer starts in any such time"),
+        (
+            *("starts", "starts within 2 s after Batch succeeds", "reaction"),
+            "it starts (ends) later than that, or not at all",
+        ),
+        (
+            *("ends", "ends within 2 s after Batch succeeds", "reaction"),
+            "it starts (ends) later than that, or not at all",
+        ),
+        (
+            *("follows", "follows SlotFree succeeds", "order"),
+            "it starts although the event has not happened since its previous start",
+        ),
+    ),
+    "bound": (
+        ("at most", "takes at most 30 s", "an upper bound", "this or less"),
+        ("at least", "takes at least 1 s", "a lower bound", "this or more"),
+        ("less than", "takes less than 30 s", "an upper bound", "less than this"),
+        ("more than", "takes more than 1 s", "a lower bound", "more than this"),
+        (
+            "between",
+            "takes between 0.2 s and 1 s",
+            "a lower and an upper bound",
+            "the first or more, the second or less",
+        ),
+        ("within", "succeeds within 30 s", "an upper bound", "not later than this"),
+        ("if", "takes at most 6 min if night else 8 min", "a value for a situation", "the value while that holds"),
+        ("else", "takes at most 6 min if night else 8 min", "the value otherwise", "the value in all other situations"),
+        ("per", "tries at most 3 per PickTray", "counted in", "what is counted in: a node's activation, or a time"),
+        ("of", "uses at most 20 Wh of energy", "of what", "the signal that is used, or what odds are counted in"),
+        ("after", "starts within 2 s after Batch succeeds", "since when", "the event that a time begins with"),
+    ),
+    "event": (
+        ("starts", "follows Pick starts", "it leaves IDLE", "the node leaves IDLE"),
+        ("succeeds", "follows Pick succeeds", "SUCCESS", "the node returns SUCCESS"),
+        ("fails", "follows Pick fails", "FAILURE", "the node returns FAILURE"),
+        ("finishes", "follows Pick finishes", "SUCCESS or FAILURE", "the node returns SUCCESS or FAILURE"),
+        ("halts", "follows Pick halts", "it is stopped while it runs", "somebody stops the node while it runs"),
+        ("when", "starts within 1 s after when humans_near", "a condition", "a condition becomes true"),
+    ),
+    "clause": (
+        (
+            *("while", "while humans_near", "only while a condition holds"),
+            "only the time (or the activations) in which the condition holds counts",
+        ),
+        (
+            *("when", "when fragile", "only when a condition holds"),
+            "only activations at whose start the condition holds count",
+        ),
+        (
+            *("in at least", "in at least 98 % of activations", "how often"),
+            "it may fail now and then; also `of runs`, also `with probability >= 98 %`",
+        ),
+        ("with probability", "with probability >= 98 % of runs", "how often", "it may fail now and then"),
+        ("activations", "in at least 98 % of activations", "from its start to its end", "each time that the node runs"),
+        ("runs", "in at least 98 % of runs", "whole missions", "each time that the mission runs"),
+        ("confidence", "confidence 95 %", "how sure", "how sure the verdict about the odds has to be"),
+        ("over last", "over last 200 activations", "window", "older ones do not count; also `over last 7 d`"),
+        (
+            *("on violation", "on violation fail", "what happens: fail, halt, warn or log"),
+            "what the robot does: `fail` the node, `halt` the mission, `warn`, `log`; else it is only monitored",
+        ),
+        (
+            "goal",
+            "goal 20 s",
+            "what would be better still",
+            "what would be better than the bound; never changes a verdict",
+        ),
+        ("because", 'because "visitors do not know the robot"', "the reason", "the reason"),
+        (
+            *("verified by", "verified by review", "monitor, analysis, test or review"),
+            "how it is verified: `monitor`, `test`, `analysis` or `review`",
+        ),
+    ),
+    "action": (
+        ("fail", "on violation fail", "stop the node", "the node is stopped and fails; its parent goes on as always"),
+        (
+            "halt",
+            "on violation halt",
+            "stop the mission",
+            "the mission is halted at the next tick, whoever swallows it",
+        ),
+        ("warn", "on violation warn", "tell somebody", "those who watch are told; nothing is stopped"),
+        ("log", "on violation log", "write it down", "it is written to the log; nothing is stopped"),
+    ),
+    "method": (
+        ("monitor", "verified by monitor", "from logs", "tools judge it from logs; so it is where nothing is said"),
+        ("analysis", "verified by analysis", "by people", "somebody works it out; no tool computes it"),
+        ("test", "verified by test", "by people", "a test shows it; no tool computes it"),
+        ("review", "verified by review", "by people", "people judge it; no tool computes it"),
+    ),
+    "selector": (
+        ("every", "apply slow to every MoveBase", "all nodes of a kind", "all nodes of an ID or a kind"),
+        ("under", "apply slow to every MoveBase under Dock", "below a node", "only those below another node"),
+        ("every node tagged", "apply slow to every node tagged driving", "by a tag", "all nodes with a tag"),
+        ("except", "apply slow to every MoveBase except ToDock", "all but these", "these are left out"),
+    ),
+    "part of a condition": (
+        ("and", "needs calm and battery > 10 %", "both", "both sides hold"),
+        ("or", "needs calm or battery > 10 %", "one of them", "one of the sides holds"),
+        ("not", "needs not calm", "it does not hold", "what follows does not hold"),
+        ("node", "keeps calm or not node FollowPath", "a node runs", "that node is running"),
+        ("true", "keeps door == true", "a value of bool", "a value of a signal of bool"),
+        ("false", "keeps door == false", "a value of bool", "a value of a signal of bool"),
+        *(
+            (name, f"leaves {name}(force) < 8 N", what, f"{what}, over the node's activation")
+            for name, what in (
+                ("max", "the largest value"),
+                ("min", "the smallest value"),
+                ("mean", "the mean"),
+                ("p95", "the 95th percentile"),
+                ("stddev", "the standard deviation"),
+                ("change", "how much it changes"),
+                ("count", "how many readings there are"),
+            )
+        ),
+    ),
+}
+PHRASES: Final = tuple(
+    Phrase(words, part, form, brief, meaning) for part, rows in _TABLE.items() for words, form, brief, meaning in rows
+)
+
+
+@cache
+def _words() -> re.Pattern[str]:
+    words = sorted({phrase.words for phrase in PHRASES}, key=len, reverse=True)
+    return re.compile(rf"(?<![\w-])(?:{'|'.join(words)})(?![\w-])")
