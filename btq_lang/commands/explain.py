@@ -124,5 +124,5 @@ _IO_ERROR = """# io-error
 
 A file that cannot be read or written, or that is no UTF-8.
 
-It is no rule: it stands in reports that machines read (JSON, JUnit, GitHub) where a rule would stand. Nothing selects or
-silences it, and the command ends with exit code 2."""
+It is no rule: it stands in reports that machines read (JSON, JUnit, GitHub) where a rule would stand. Nothing
+selects or silences it, and the command ends with exit code 2."""
