@@ -41,11 +41,13 @@ ROWS: tuple[frozenset[str], ...] = (
             "convert",
             "editor",
             "handlers",
+            "preview",
         }
     ),
 )
 ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
-READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog"})  # the rules' pages and the catalog's data too
+# The rules' pages, the catalog's data and the page of the preview too.
+READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog", "preview"})
 READS_SIBLINGS = {
     "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
     "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours

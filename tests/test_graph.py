@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 from btq_lang.cli import main
 from btq_lang.graph import DIRECTIONS, FORMATS, draw
+from btq_lang.graph.folding import foldable
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.missions import figures
+from btq_lang.graph.picture import picture, places
 from btq_lang.graph.placing import Drawing, Rectangle, place
 from btq_lang.graph.widths import shortened, width, wrapped
 from btq_lang.loader import open_workspace
@@ -302,3 +304,57 @@ def test_every_prefix_of_a_mission_can_be_drawn() -> None:
     for end in ends:
         drawn = draw(figures(Workspace.of({"a.btq": MISSION[:end]}), "a.btq", with_qualities=True))
         assert ElementTree.fromstring(drawn).tag == f"{SVG}svg"
+
+
+# ---- folding --------------------------------------------------------------------------------------------------------
+
+
+def shown(text: str, *folded: str) -> list[str]:
+    """Each box of the first tree: its name, and what is written on it."""
+    figure = foldable(figures(Workspace.of({"main.btq": text}), "main.btq")[0], folded)
+    below = [box.parent for box in figure.boxes]
+    assert all(parent is None or parent < number for number, parent in enumerate(below))
+    return [f"{box.name}: {', '.join((box.title, *box.lines))}" for box in figure.boxes]
+
+
+def test_a_folded_subtree_is_one_box_that_says_how_much_it_hides() -> None:
+    assert shown(MISSION) == [
+        "Main/->: ->",
+        "Main/->/Ready: Ready",
+        "Main/->/RetryUntilSuccessful Again: RetryUntilSuccessful, Again, num_attempts = 3",
+        "Main/->/RetryUntilSuccessful Again/Drive ToDock: Drive, ToDock",
+        "Main/->/Rest: Rest",
+    ]
+    assert shown(MISSION, "Main/->/RetryUntilSuccessful Again", "Main/->/Ready", "Main/no such node") == [
+        "Main/->: ->",
+        "Main/->/Ready: Ready",
+        "Main/->/RetryUntilSuccessful Again: RetryUntilSuccessful, Again, num_attempts = 3, … 1 node",
+        "Main/->/Rest: Rest",
+    ]
+    assert shown(MISSION, "Main/->", "Main/->/RetryUntilSuccessful Again") == ["Main/->: ->, … 4 nodes"]
+
+
+def test_an_edit_elsewhere_leaves_a_fold_where_it_is() -> None:
+    before = "BehaviorTree Main\n    ->\n        ?\n            A\n        ?\n            B\n"
+    after = before.replace("    ->\n", "    ->\n        Retry (num_attempts = 2)\n            Z\n")
+    assert shown(before, "Main/->/?#2")[-1] == "Main/->/?#2: ?, … 1 node"
+    assert shown(after, "Main/->/?#2")[-1] == "Main/->/?#2: ?, … 1 node"
+
+
+def test_a_picture_tells_where_its_nodes_stand() -> None:
+    workspace = Workspace.of({"main.btq": MISSION})
+    whole = places(workspace, "main.btq")
+    assert [MISSION[span.start : span.end] for span in whole.values()] == [
+        *("->", "Ready", "Retry", "Drive", "Rest", "Sleep")
+    ]
+    assert picture(workspace, "main.btq").places == whole
+    folded = picture(workspace, "main.btq", {"Main/->"})
+    assert folded.places == {key: whole[key] for key in ("n0", "n5")}
+    root = ElementTree.fromstring(folded.svg)
+    boxes = {box.get("id"): box for box in root.iter(f"{SVG}g") if "box" in (box.get("class") or "")}
+    assert {key: (box.get("data-parent"), box.get("data-hidden")) for key, box in boxes.items()} == {
+        "n0": ("", "4"),
+        "n5": ("", "0"),
+    }
+    title = boxes["n0"].findtext(f"{SVG}title")
+    assert title == "->; folded: Ready, Retry Again (num_attempts = 3), Drive ToDock, Rest"

@@ -478,6 +478,9 @@ def test_commands(editor: Editor) -> None:
         "n2": {"line": 3, "character": 12},
     }
     assert all(f'id="{key}"' in picture["svg"] for key in picture["nodes"])
+    asked = [document, "Main/-> First"]
+    folded = editor.request("workspace/executeCommand", command="btq.server.picture", arguments=asked)
+    assert set(folded["nodes"]) == {"n0"}
     page = editor.request("workspace/executeCommand", command="btq.server.overview", arguments=[document])
     assert page.startswith("<!DOCTYPE html>")
     assert "Retry" in page

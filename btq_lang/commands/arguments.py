@@ -27,6 +27,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_import(commands)
     _add_trace(commands)
     _add_graph(commands)
+    _add_preview(commands)
     _add_diff(commands)
     _add_explain(commands)
     _add_init(commands)
@@ -170,6 +171,25 @@ def _add_graph(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("--direction", choices=DIRECTIONS, default="down", help="where children stand; default: down")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
+
+
+def _add_preview(commands: _SubParsersAction[ArgumentParser]) -> None:
+    parser = _command(
+        commands,
+        "preview",
+        "show a mission's trees in a browser, drawn again whenever a file is saved",
+        epilog="exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"
+        "examples:\n  btq preview mission.btq --open\n"
+        "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
+    )
+    parser.add_argument("file", metavar="FILE", help="the mission")
+    parser.add_argument(
+        "--port", type=int, default=0, metavar="N", help="of this machine alone; default: one that is free"
+    )
+    parser.add_argument("--open", action="store_true", help="show it in the browser")
+    parser.add_argument(
+        "--on-click", metavar="COMMAND", help="run for a click on a node, with {file}, {line} and {column}; no shell"
+    )
 
 
 def _add_diff(commands: _SubParsersAction[ArgumentParser]) -> None:

@@ -4,10 +4,12 @@ One invariant: the same mission gives the same bytes.  It knows no disk and star
 
     figure.py    what is drawn: boxes, and what is attached to them
     missions.py  a mission's trees as figures
+    folding.py   figures without what is folded away
     layout.py    where the boxes stand: a tidy tree in linear time
     widths.py    how wide a text is
     placing.py   a figure with the place of everything in it
     svg.py, dot.py, mermaid.py   the writers
+    picture.py   all of it for the page beside a text
 """
 
 from __future__ import annotations

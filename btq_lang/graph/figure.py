@@ -51,6 +51,8 @@ class Box:
         lines: its instance name, and values worth seeing.
         text: all of it.
         link: where a page leads from it.
+        name: the names on the way to it, where subtrees can be folded: the same after an edit elsewhere.
+        hidden: how many nodes are folded away below it.
     """
 
     key: str
@@ -61,6 +63,8 @@ class Box:
     text: str = ""
     notes: tuple[Note, ...] = ()
     link: str = ""
+    name: str = ""
+    hidden: int = 0
 
 
 @record

@@ -109,16 +109,19 @@ def _drawn(drawing: Drawing) -> Iterator[str]:
         if box.ties:
             yield f'<path class="tie" d="{_path(box.ties)}"/>'
     for box in drawing.boxes:
-        yield from _box(box)
+        above = drawing.boxes[box.box.parent].box.key if box.box.parent is not None else ""
+        yield from _box(box, above)
         for note in box.notes:
             yield from _note(note)
 
 
-def _box(placed: PlacedBox) -> Iterator[str]:
+def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     box, at = placed.box, placed.at
     x = at.middle[0]
     names = " ".join(dict.fromkeys(note.note.key for note in placed.notes))
     told = f' data-notes="{escape(names)}"' if names else ""
+    if box.name:  # what a page needs to fold it
+        told += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
     yield f'<g class="box {box.outline}" id="{escape(box.key)}"{told}>'
     yield f"<title>{escape(box.text or box.title)}</title>"
     yield from _opened(box.link)

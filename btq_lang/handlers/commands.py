@@ -52,17 +52,14 @@ def register(server: Server) -> None:
         return write(enforced(workspace, path, done).export.document)
 
     @server.command(PICTURE)
-    def picture(document: types.TextDocumentIdentifier) -> dict[str, object]:
+    def picture(document: types.TextDocumentIdentifier, *folded: str) -> dict[str, object]:
         """The trees of a document as SVG, and by the key of each node in it where that stands in the text."""
         workspace, path = mission(document)
-        from btq_lang.graph import draw  # as above
-        from btq_lang.graph.missions import figures, keyed
+        from btq_lang.graph.picture import picture as drawn  # as above
 
-        places = {
-            key: convert.range(workspace, path, node.node.head.span.shifted(node.entry.start)).start
-            for key, node in keyed(workspace, path)
-        }
-        return {"svg": draw(figures(workspace, path, with_qualities=True)), "nodes": places}
+        found = drawn(workspace, path, folded)
+        places = {key: convert.range(workspace, path, span).start for key, span in found.places.items()}
+        return {"svg": found.svg, "nodes": places}
 
     @server.command(OVERVIEW)
     def overview(document: types.TextDocumentIdentifier) -> str:

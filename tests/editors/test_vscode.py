@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,8 +34,19 @@ def window(vsix: Path, node: Path, artifacts: Path, tmp_path_factory: pytest.Tem
     there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code")
     scratch = tmp_path_factory.mktemp("vscode")
     files = ROOT / "examples" / "hospital"
-    with workbench(store=STORE, node=node, vsix=vsix, scratch=scratch, files=files, settings=ENVIRONMENT) as window:
+    programs = scratch / "programs"
+    programs.mkdir()
+    program(programs / "btq-lsp")
+    with workbench(
+        store=STORE, node=node, vsix=vsix, scratch=scratch, files=files, settings=ENVIRONMENT, programs=programs
+    ) as window:
         yield window
+
+
+def program(path: Path) -> None:
+    """This checkout's `btq-lsp`, as an installation puts it on the PATH."""
+    path.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m btq_lang.server "$@"\n')
+    path.chmod(0o755)
 
 
 @pytest.fixture
@@ -234,6 +246,25 @@ def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Wo
     assert symbol.evaluate("e => getComputedStyle(e).color") == keyword.evaluate("e => getComputedStyle(e).color")
 
 
+def test_the_tree_beside_is_folded_and_saved_as_it_is_shown(code: Workbench) -> None:
+    code.write("tree.btq", "BehaviorTree Main\n    ->\n        ? Way\n            Dock\n        Charge\n")
+    code.open("tree.btq")
+    code.command("btq: Show Tree Beside")
+    frame = code.page.frame_locator("iframe.webview.ready").frame_locator("#active-frame")
+    frame.locator(".box", has_text="Way").locator(".fold").click()
+    frame.locator(".box", has_text="… 1 node").wait_for(state="attached")
+    assert frame.locator(".box").count() == 3
+    code.focus()
+    code.cursor(4, 13)  # in what is folded away
+    frame.locator(".box.here", has_text="Way").wait_for(state="attached")
+    frame.get_by_role("button", name="Save SVG").click()
+    code.answer_path(code.folder / "tree.svg")
+    code.until((code.folder / "tree.svg").exists, lambda: "no tree.svg")
+    saved = (code.folder / "tree.svg").read_text(encoding="utf-8")
+    assert (saved.count('class="box'), "… 1 node" in saved) == (3, True)
+    (code.folder / "tree.svg").unlink()
+
+
 def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
     code.settings(**{**ENVIRONMENT, "btq.buildOnSave": True})
     code.write("built.btq", "BehaviorTree Main\n    Dock\n")
@@ -246,13 +277,44 @@ def test_saving_writes_the_xml_where_that_is_asked_for(code: Workbench) -> None:
     code.settings(**ENVIRONMENT)
 
 
-def test_the_copy_in_the_package_serves_as_well(code: Workbench) -> None:
-    code.settings(**{**ENVIRONMENT, "btq.importStrategy": "useBundled"})
+def serves(code: Workbench, origin: str) -> None:
+    """Wait until the status item says which server runs, and that one finds a mistake."""
     code.write("wrong.btq", WRONG)
     code.open("wrong.btq")
-    code.see(".statusbar-item[id='status.languageStatus'] a").hover()
-    code.see(".hover-language-status:has-text('the copy in the extension, Python 3.')")
     code.see(".squiggly-warning, .squiggly-error")
+    code.see(".statusbar-item[id='status.languageStatus'] a").hover()
+    code.see(f".hover-language-status:has-text('{origin}')")
+    code.focus()
+
+
+def test_the_environment_of_the_python_extension_serves(code: Workbench, tmp_path: Path) -> None:
+    """The extension is one of ours with the same API; which environment is active is a setting of it."""
+    settings = {name: value for name, value in ENVIRONMENT.items() if name != "btq.interpreter"}
+    for name in ("one", "other"):
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / name], check=True)
+        (packages,) = (tmp_path / name).glob("lib/python*/site-packages")
+        (packages / "all.pth").write_text(
+            "\n".join([str(ROOT), *(path for path in sys.path if "site-packages" in path)])
+        )
+        python = tmp_path / name / "bin" / "python"
+        code.settings(**settings, **{"python.activeEnvironment": str(python)})
+        serves(code, f"btq of {python}")
+        assert code.page.locator(".notification-toast").all_inner_texts() == []
+    code.settings(**ENVIRONMENT)
+
+
+def test_what_is_on_the_path_serves_where_the_environment_has_none(code: Workbench, tmp_path: Path) -> None:
+    settings = {name: value for name, value in ENVIRONMENT.items() if name != "btq.interpreter"}
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "bare"], check=True)
+    for active in ({}, {"python.activeEnvironment": str(tmp_path / "bare" / "bin" / "python")}):
+        code.settings(**settings, **active)
+        serves(code, f"{code.programs}/btq-lsp")
+    code.settings(**ENVIRONMENT)
+
+
+def test_the_copy_in_the_package_serves_as_well(code: Workbench) -> None:
+    code.settings(**{**ENVIRONMENT, "btq.importStrategy": "useBundled"})
+    serves(code, "the copy in the extension, Python 3.")
     code.settings(**ENVIRONMENT)
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
 # Without a network, without a graphics card, and with nothing of its own to say.
-_FLAGS = [
+FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update"),
 ]
@@ -31,10 +31,10 @@ _WAIT = 40_000  # milliseconds; what takes longer on the busiest machine is brok
 
 
 class Workbench:
-    """One window.  Its files are in `folder`."""
+    """One window.  Its files are in `folder`, and `programs` is on its PATH."""
 
-    def __init__(self, page: Page, origin: str, folder: Path, machine_settings: Path) -> None:
-        self.page, self.origin, self.folder = page, origin, folder
+    def __init__(self, page: Page, origin: str, folder: Path, machine_settings: Path, programs: Path) -> None:
+        self.page, self.origin, self.folder, self.programs = page, origin, folder, programs
         self._machine_settings = machine_settings
         self._written: list[Path] = []
 
@@ -100,6 +100,15 @@ class Workbench:
         self.until(lambda: box.input_value() != "" and rows.count() > 0, lambda: "the dialog shows nothing")
         box.fill(f"{folder}/")
         self.until(lambda: rows.all_inner_texts() == [".."], lambda: f"not empty: {rows.all_inner_texts()}")
+        self.page.locator(".quick-input-action a, .quick-input-action .monaco-button").first.click()
+        self.gone(".quick-input-widget")
+
+    def answer_path(self, path: Path) -> None:
+        """Answer the dialog that asks where to save."""
+        box = self._quick_input()
+        # It writes what it proposes when the folder is read, over whatever was typed before.
+        self.until(lambda: box.input_value() != "", lambda: "the dialog proposes nothing")
+        box.fill(str(path))
         self.page.locator(".quick-input-action a, .quick-input-action .monaco-button").first.click()
         self.gone(".quick-input-widget")
 
@@ -217,7 +226,7 @@ class Workbench:
 
 @contextmanager
 def workbench(
-    *, store: Path, node: Path, vsix: Path, scratch: Path, files: Path | None, settings: dict[str, Any]
+    *, store: Path, node: Path, vsix: Path, scratch: Path, files: Path | None, settings: dict[str, Any], programs: Path
 ) -> Iterator[Workbench]:
     """A server with the package installed, and one window on a folder.
 
@@ -226,6 +235,7 @@ def workbench(
         scratch: an empty folder for all that it writes.
         files: a folder whose files the window's folder begins with.
         settings: of the machine: those of the user reach a window late now and then.
+        programs: a folder that goes before all others on its PATH.
     """
     from playwright.sync_api import sync_playwright
 
@@ -236,31 +246,34 @@ def workbench(
         archive.extractall(scratch / "unpacked")
     extension.parent.mkdir()
     shutil.move(scratch / "unpacked" / "extension", extension)
+    shutil.copytree(Path(__file__).parent / "python_extension", extension.with_name("ms-python.python-1.0.0"))
     machine = scratch / "user" / "Machine" / "settings.json"
     machine.parent.mkdir(parents=True)
     machine.write_text(json.dumps(settings))
-    with _server(store, node, scratch) as origin, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=_FLAGS, env=_home(scratch))
+    with _server(store, node, scratch, programs) as origin, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS, env=_home(scratch))
         page = browser.new_page(viewport={"width": 1400, "height": 900})
         page.set_default_timeout(_WAIT)
         page.goto(f"{origin}/?folder={urllib.parse.quote(str(folder))}")
         page.wait_for_selector(".monaco-workbench .part.editor", timeout=_WAIT)
         page.wait_for_selector(".explorer-folders-view .monaco-list-row, .explorer-folders-view .monaco-list-rows")
         try:
-            yield Workbench(page, origin, folder, machine)
+            yield Workbench(page, origin, folder, machine, programs)
         finally:
             page.goto("about:blank")  # ends the extension host and its server at once; closing waits for hours
             browser.close()
 
 
 @contextmanager
-def _server(store: Path, node: Path, scratch: Path) -> Iterator[str]:
+def _server(store: Path, node: Path, scratch: Path, programs: Path) -> Iterator[str]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     config = scratch / "config.yaml"
     config.write_text(f"bind-addr: 127.0.0.1:{port}\nauth: none\ncert: false\n")
     places = ("--config", config, "--user-data-dir", scratch / "user", "--extensions-dir", scratch / "extensions")
+    # A login shell is asked for the environment, and sets a PATH of its own before it reads this.
+    (scratch / ".profile").write_text(f'PATH="{programs}:$PATH"\n')
     flags = (
         *("--disable-telemetry", "--disable-update-check", "--disable-workspace-trust"),
         *("--disable-getting-started-override", "--reconnection-grace-time", "5"),
@@ -268,7 +281,11 @@ def _server(store: Path, node: Path, scratch: Path) -> Iterator[str]:
     entry = store / "vscode/node_modules/code-server/out/node/entry.js"
     with (scratch / "server.log").open("wb") as log:
         process = subprocess.Popen(
-            [str(node), str(entry), *map(str, places), *flags], stdout=log, stderr=log, env=_home(scratch), cwd=scratch
+            [str(node), str(entry), *map(str, places), *flags],
+            stdout=log,
+            stderr=log,
+            env={**_home(scratch), "PATH": f"{programs}:{os.environ['PATH']}", "SHELL": "/bin/bash"},
+            cwd=scratch,
         )
         try:
             origin = f"http://127.0.0.1:{port}"

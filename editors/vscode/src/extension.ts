@@ -13,6 +13,8 @@ import { type Ask, XmlView } from "./xml";
 let client: LanguageClient | undefined;
 let server: Server | undefined;
 let turn: Promise<void> = Promise.resolve();
+/** Starts that are asked for and whose predecessor is not yet stopped. */
+let waiting = 0;
 
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
   const log = vscode.window.createOutputChannel("btq", { log: true });
@@ -29,7 +31,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const tree = new TreeView(context, ask);
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
-  const restart = (): Promise<void> => (turn = turn.then(() => start(context, log, status)));
+  const restart = (): Promise<void> => {
+    waiting += 1;
+    return (turn = turn.then(() => start(context, log, status)));
+  };
 
   context.subscriptions.push(
     log,
@@ -98,6 +103,7 @@ async function start(
 ): Promise<void> {
   await client?.dispose().catch((error: unknown) => log.warn(`the server did not stop: ${error}`));
   client = undefined;
+  waiting -= 1;
   await vscode.commands.executeCommand("setContext", "btq.serverRuns", false);
   status.text = "btq";
   status.detail = "starting";
@@ -118,6 +124,10 @@ async function start(
         outputChannel: log,
         synchronize: { configurationSection: "btq" },
         diagnosticCollectionName: "btq",
+        // A setting that asks for another server is nothing to tell the one that is about to stop.
+        middleware: {
+          workspace: { didChangeConfiguration: async (sections, next) => (waiting ? undefined : next(sections)) },
+        },
       },
     );
     client.registerFeature({

@@ -1,6 +1,8 @@
 // The tree beside the text: drawn by the server, following the edits and the cursor; a click goes to the node.
-// One invariant: what is drawn was said by the server and stands in a page that loads nothing and runs one script of ours.
+// One invariant: what is drawn was said by the server, and the page is the one that `btq preview` serves, too.
 import { randomBytes } from "node:crypto";
+import { readFile } from "node:fs/promises";
+import path from "node:path";
 import * as vscode from "vscode";
 
 import type { Ask } from "./xml";
@@ -11,12 +13,14 @@ interface Picture {
   readonly nodes: Record<string, { readonly line: number; readonly character: number }>;
 }
 
-type FromPage = { readonly go: string } | { readonly ready: true };
+/** The names of the nodes that are folded; the key of a node; a picture. */
+type FromPage = { readonly draw: string[] } | { readonly go: string } | { readonly save: string };
 
 export class TreeView {
   private panel: vscode.WebviewPanel | undefined;
   private document: vscode.TextDocument | undefined;
   private picture: Picture | undefined;
+  private folded: string[] = [];
   private timer: NodeJS.Timeout | undefined;
 
   constructor(
@@ -44,6 +48,7 @@ export class TreeView {
       void vscode.window.showInformationMessage("Open a mission first: its tree is drawn beside it.");
       return;
     }
+    if (document !== this.document) this.folded = [];
     this.document = document;
     if (!this.panel) {
       const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
@@ -52,8 +57,9 @@ export class TreeView {
         retainContextWhenHidden: true,
         localResourceRoots: [],
       });
-      this.panel.webview.html = page(randomBytes(16).toString("hex"));
-      this.panel.webview.onDidReceiveMessage((message: FromPage) => ("go" in message ? this.go(message.go) : this.draw()));
+      const page = await readFile(path.join(this.context.extensionPath, "python/btq_lang/preview/page.html"), "utf8");
+      this.panel.webview.onDidReceiveMessage((message: FromPage) => this.asks(message));
+      this.panel.webview.html = page.replaceAll("NONCE", randomBytes(16).toString("hex"));
       this.panel.onDidDispose(() => (this.panel = undefined), undefined, this.context.subscriptions);
     } else {
       await this.draw();
@@ -61,14 +67,27 @@ export class TreeView {
     this.panel.title = `Tree of ${document.uri.path.split("/").pop()}`;
   }
 
-  /** Write the picture to a file. */
+  /** Write the picture to a file: as it is shown, or of the active editor's mission if that is another. */
   async save(): Promise<void> {
     const document = vscode.window.activeTextEditor?.document ?? this.document;
     if (document?.languageId !== "btq") return;
-    const { svg } = await this.asked(document);
+    const folded = document === this.document && this.panel ? this.folded : [];
+    await this.write(document, (await this.asked(document, folded)).svg);
+  }
+
+  private async write(document: vscode.TextDocument, svg: string): Promise<void> {
     const defaultUri = document.uri.with({ path: document.uri.path.replace(/\.\w+$/, ".svg") });
     const target = await vscode.window.showSaveDialog({ defaultUri, filters: { SVG: ["svg"] } });
     if (target) await vscode.workspace.fs.writeFile(target, new TextEncoder().encode(svg));
+  }
+
+  private async asks(message: FromPage): Promise<void> {
+    if ("go" in message) await this.go(message.go);
+    else if ("save" in message && this.document) await this.write(this.document, message.save);
+    else if ("draw" in message) {
+      this.folded = message.draw;
+      await this.draw();
+    }
   }
 
   private soon(): void {
@@ -80,8 +99,8 @@ export class TreeView {
     const { document } = this;
     if (!document || !this.panel) return;
     try {
-      this.picture = await this.asked(document);
-      await this.panel.webview.postMessage({ svg: this.picture.svg });
+      this.picture = await this.asked(document, this.folded);
+      await this.panel?.webview.postMessage({ svg: this.picture.svg, title: document.uri.path.split("/").pop() });
       const editor = vscode.window.visibleTextEditors.find((one) => one.document === document);
       if (editor) this.mark(editor.selection.active);
     } catch (error) {
@@ -89,8 +108,8 @@ export class TreeView {
     }
   }
 
-  private async asked(document: vscode.TextDocument): Promise<Picture> {
-    return (await this.ask("btq.server.picture", { uri: document.uri.toString() })) as Picture;
+  private async asked(document: vscode.TextDocument, folded: string[]): Promise<Picture> {
+    return (await this.ask("btq.server.picture", { uri: document.uri.toString() }, ...folded)) as Picture;
   }
 
   /** The node that the cursor is in: the last that begins before it. */
@@ -106,103 +125,4 @@ export class TreeView {
     const viewColumn = vscode.window.visibleTextEditors.find((one) => one.document === this.document)?.viewColumn;
     await vscode.window.showTextDocument(this.document, { selection, viewColumn: viewColumn ?? vscode.ViewColumn.One });
   }
-}
-
-function page(nonce: string): string {
-  return `<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-${nonce}'">
-<title>Tree</title>
-<style>
-body { padding: 0; }
-header { position: sticky; top: 0; padding: 6px; background: var(--vscode-editor-background); }
-input { font: inherit; color: var(--vscode-input-foreground); background: var(--vscode-input-background);
-  border: 1px solid var(--vscode-input-border, transparent); padding: 2px 6px; width: 14em; }
-#trouble { color: var(--vscode-errorForeground); padding: 0 6px; }
-svg { transform-origin: 0 0; }
-.box { cursor: pointer; }
-/* Over the picture's own rules, which are more particular. */
-svg .ground { fill: transparent !important; }
-.box.here .outline, .box:focus-visible .outline { stroke: var(--vscode-focusBorder) !important; stroke-width: 3 !important; }
-.box:focus { outline: none; }
-.box.other { opacity: 0.25; }
-</style>
-</head>
-<body>
-<header><input id="search" type="search" placeholder="Find a node" aria-label="Find a node"></header>
-<p id="trouble" role="status"></p>
-<main id="tree"></main>
-<script nonce="${nonce}">
-const editor = acquireVsCodeApi();
-const tree = document.getElementById("tree");
-const search = document.getElementById("search");
-let zoom = 1;
-let here;
-const boxes = () => [...tree.querySelectorAll(".box")];
-function draw(svg) {
-  // The picture follows the reader's system; here it follows the editor's theme.
-  const themed = svg.replace("@media (prefers-color-scheme: dark) {", ".vscode-dark, .vscode-high-contrast {");
-  tree.innerHTML = themed;
-  for (const box of boxes()) {
-    box.tabIndex = 0;
-    box.setAttribute("role", "button");
-    box.setAttribute("aria-label", box.querySelector("title")?.textContent ?? "");
-  }
-  scale(zoom);
-  mark(here);
-  find();
-}
-function mark(key) {
-  here = key;
-  for (const box of boxes()) box.classList.toggle("here", box.id === key);
-  document.getElementById(key)?.scrollIntoView({ block: "nearest", inline: "nearest" });
-}
-function find() {
-  const wanted = search.value.toLowerCase();
-  for (const box of boxes()) {
-    box.classList.toggle("other", wanted !== "" && !box.textContent.toLowerCase().includes(wanted));
-  }
-}
-function scale(to) {
-  zoom = Math.min(4, Math.max(0.2, to));
-  const svg = tree.querySelector("svg");
-  if (svg) svg.style.transform = "scale(" + zoom + ")";
-}
-addEventListener("message", ({ data }) => {
-  document.getElementById("trouble").textContent = data.trouble ?? "";
-  if (data.svg !== undefined) draw(data.svg);
-  if ("here" in data) mark(data.here);
-});
-tree.addEventListener("click", ({ target }) => {
-  const box = target.closest(".box");
-  if (box) editor.postMessage({ go: box.id });
-});
-addEventListener("wheel", (event) => {
-  if (!event.ctrlKey) return;
-  event.preventDefault();
-  scale(zoom * (event.deltaY < 0 ? 1.1 : 1 / 1.1));
-}, { passive: false });
-addEventListener("keydown", (event) => {
-  const all = boxes();
-  const at = all.indexOf(document.activeElement);
-  if (event.target === search) {
-    if (event.key === "Enter") all.find((box) => !box.classList.contains("other"))?.focus();
-    return;
-  }
-  if (event.key === "Enter" && at >= 0) editor.postMessage({ go: all[at].id });
-  else if (event.key === "ArrowDown" || event.key === "ArrowRight") all[Math.min(at + 1, all.length - 1)]?.focus();
-  else if (event.key === "ArrowUp" || event.key === "ArrowLeft") all[Math.max(at - 1, 0)]?.focus();
-  else if (event.key === "+") scale(zoom * 1.1);
-  else if (event.key === "-") scale(zoom / 1.1);
-  else if (event.key === "0") scale(1);
-  else return;
-  event.preventDefault();
-});
-search.addEventListener("input", find);
-editor.postMessage({ ready: true });
-</script>
-</body>
-</html>`;
 }

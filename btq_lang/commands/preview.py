@@ -1,0 +1,110 @@
+"""`btq preview`: a mission's trees in a browser, drawn again whenever a file changes."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Sequence
+from threading import Lock
+
+from btq_lang.commands.files import Files, usage_problem
+from btq_lang.graph.picture import picture, places
+from btq_lang.loader import absolute, shown, stamp
+from btq_lang.preview.server import Preview
+from btq_lang.watch import watch
+from btq_lang.workspace import Workspace
+
+
+def run(options: Namespace) -> int:
+    """Serve one file until Ctrl+C."""
+    if problem := usage_problem([options.file]) or _no_file(options.file):
+        print(f"btq preview: {problem}", file=sys.stderr)
+        return 2
+    mission = _Mission(absolute(options.file), shlex.split(options.on_click or ""))
+    try:
+        preview = Preview(options.port, mission.drawn, mission.went)
+    except (OSError, OverflowError) as error:
+        print(f"btq preview: port {options.port}: {error}", file=sys.stderr)
+        return 2
+    print(f"{shown(mission.path)} is shown at {preview.url}", flush=True)
+    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+    if options.open:
+        import webbrowser
+
+        webbrowser.open(preview.url)
+    try:
+        for _ in watch(mission.watched, stamp, time.sleep, time.monotonic):
+            preview.changed()
+    except KeyboardInterrupt:
+        print(file=sys.stderr)
+    preview.close()
+    return 0
+
+
+def _no_file(path: str) -> str | None:
+    return None if os.path.isfile(path) else f"{path}: {'a folder' if os.path.isdir(path) else 'no such file'}"
+
+
+class _Mission:
+    """The file as it is on the disk whenever somebody asks; several pages may ask at once."""
+
+    def __init__(self, path: str, on_click: Sequence[str]) -> None:
+        self.path = path
+        self._on_click = on_click
+        self._files = Files()
+        self._lock = Lock()
+        self._watched: tuple[str, ...] = (path,)
+        self._read()  # so that everything it depends on is watched from the start
+
+    def drawn(self, folded: Sequence[str]) -> dict[str, object]:
+        """The picture for the page, or what is in the way."""
+        workspace = self._read()
+        title = os.path.basename(self.path)
+        if isinstance(workspace, str):
+            return {"title": title, "trouble": workspace}
+        return {"title": title, "svg": picture(workspace, self.path, folded).svg}
+
+    def went(self, key: str) -> dict[str, object]:
+        """Say where a node stands, for terminals that make links of it, and hand it to the user's editor."""
+        workspace = self._read()
+        span = None if isinstance(workspace, str) else places(workspace, self.path).get(key)
+        if span is None or isinstance(workspace, str):
+            return {"trouble": "this node is no longer there"}
+        file = workspace.files[self.path]
+        span = file.origin.places.origin(span) if file.origin else span
+        line, column = (number + 1 for number in file.source_lines.position(span.start))
+        place = f"{shown(self.path)}:{line}:{column}"
+        print(place, flush=True)
+        values = {"file": self.path, "line": str(line), "column": str(column)}
+        try:
+            if self._on_click:
+                subprocess.Popen([_filled(word, values) for word in self._on_click], stdin=subprocess.DEVNULL)
+        except OSError as error:
+            return {"trouble": f"{self._on_click[0]}: {error.strerror}"}
+        return {"said": place}
+
+    def watched(self) -> tuple[str, ...]:
+        """All that the picture depends on, as far as it is known."""
+        return self._watched
+
+    def _read(self) -> Workspace | str:
+        """The mission with what it includes, or why it cannot be read."""
+        with self._lock:
+            groups, problems = self._files.groups([self.path])
+        for group in groups:
+            if self.path in group.given:
+                on_disk = (self.path, *group.workspace.files, *group.absent, group.project_file)
+                self._watched = tuple(path for path in on_disk if path)
+                return group.workspace
+        return "; ".join(map(str, problems))
+
+
+def _filled(word: str, values: dict[str, str]) -> str:
+    """`+{line}` with the line in it; every other brace stays, for commands of editors have them."""
+    for name, value in values.items():
+        word = word.replace(f"{{{name}}}", value)
+    return word

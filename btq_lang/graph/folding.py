@@ -1,0 +1,57 @@
+"""Folded figures: a subtree becomes the one box at its top, which says how much is below it.
+
+One invariant: a fold names its node by the names on the way to it, so an edit elsewhere in the mission neither opens
+it nor folds another.  Nothing is known of pages and keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+from btq_lang.graph.figure import Box, Figure
+from btq_lang.record import replace
+
+
+def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
+    """A figure whose boxes have their `name`, without what is below those that are folded.
+
+    Args:
+        folded: names of boxes; what is the name of none, or of a leaf, folds nothing.
+    """
+    names = _names(figure)
+    below: list[list[Box]] = [[] for _ in figure.boxes]
+    top: list[int | None] = []  # of each box the folded one that it is below
+    for box in figure.boxes:
+        hiding = None
+        if box.parent is not None:
+            hiding = top[box.parent]
+            if hiding is None and names[box.parent] in folded:
+                hiding = box.parent
+        if hiding is not None:
+            below[hiding].append(box)
+        top.append(hiding)
+    kept = [number for number, hiding in enumerate(top) if hiding is None]
+    now = {number: place for place, number in enumerate(kept)}
+    return replace(figure, boxes=tuple(_kept(figure.boxes[each], names[each], below[each], now) for each in kept))
+
+
+def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:
+    parent = None if box.parent is None else now[box.parent]
+    if not below:
+        return replace(box, name=name, parent=parent)
+    count = f"{len(below)} node{'s' if len(below) > 1 else ''}"
+    # Who looks for a node that is folded away finds the box that hides it.
+    text = f"{box.text or box.title}; folded: {', '.join(each.text or each.title for each in below)}"
+    return replace(box, name=name, parent=parent, hidden=len(below), lines=(*box.lines, f"… {count}"), text=text)
+
+
+def _names(figure: Figure) -> list[str]:
+    """Of each box the titles and instance names from the top of its tree; equal siblings are counted."""
+    found: list[str] = []
+    seen: dict[str, int] = {}
+    for box in figure.boxes:
+        above = figure.title if box.parent is None else found[box.parent]
+        name = f"{above}/{' '.join((box.title, *box.lines[:1]))}"
+        seen[name] = seen.get(name, 0) + 1
+        found.append(name if seen[name] == 1 else f"{name}#{seen[name]}")
+    return found

@@ -1,0 +1,46 @@
+"""A mission as a page shows it beside the text: its trees with all that is attached, and where each node stands.
+
+One invariant: every key of `places` is the id of a group in the picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+
+from btq_lang.graph import draw
+from btq_lang.graph.folding import foldable
+from btq_lang.graph.missions import figures, keyed
+from btq_lang.record import record
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
+
+
+@record
+class Picture:
+    """The SVG, and of each node in it the word that says what it is, in the order of the text."""
+
+    svg: str
+    places: Mapping[str, Span]
+
+
+def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Picture:
+    """The trees of a file.
+
+    Args:
+        folded: the names of the nodes whose subtrees are not shown, as `data-name` in the SVG has them.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    shown = [foldable(figure, folded) for figure in figures(workspace, path, with_qualities=True)]
+    keys = {box.key for figure in shown for box in figure.boxes}
+    return Picture(draw(shown), {key: span for key, span in places(workspace, path).items() if key in keys})
+
+
+def places(workspace: Workspace, path: str) -> dict[str, Span]:
+    """Where each node of a file stands, folded or not.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    return {key: node.node.head.span.shifted(node.entry.start) for key, node in keyed(workspace, path)}

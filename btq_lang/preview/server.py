@@ -1,0 +1,138 @@
+"""The server of `btq preview`: the page, pictures when it asks for them, and a word when they have changed.
+
+One invariant: only pages that it served itself are answered.  It listens on the loopback interface alone, but every
+page in a browser on this machine can send requests there: a foreign one has another Origin, and one that was led here
+by a name of its own (DNS rebinding) another Host.  Not known here: missions and files; answers are handed in.
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Callable, Sequence
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Condition, Thread
+from typing import Any
+
+from btq_lang.preview import page
+
+ADDRESS = "127.0.0.1"
+_ALIVE = 15.0  # seconds after which a page that hears nothing is told so, and one that is gone is noticed
+_LONGEST = 1_000_000  # bytes that a page may send
+
+
+class Preview:
+    """A server in a thread of its own.
+
+    Args:
+        port: 0: one that is free.
+        draw: what the page shows, given the names of the nodes that are folded.
+        go: what happens on a click on a node, given its key; the answer is shown to who clicked.
+
+    Raises:
+        OSError: the port is taken.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        draw: Callable[[Sequence[str]], dict[str, object]],
+        go: Callable[[str], dict[str, object]],
+    ) -> None:
+        self._changed = Condition()
+        self._version = 0
+        handler = type("Handler", (_Handler,), {"preview": self, "draw_": staticmethod(draw), "go_": staticmethod(go)})
+        self._server = ThreadingHTTPServer((ADDRESS, port), handler)
+        self._server.daemon_threads = True
+        self.port: int = self._server.server_address[1]
+        Thread(target=self._server.serve_forever, daemon=True).start()
+
+    @property
+    def url(self) -> str:
+        return f"http://{ADDRESS}:{self.port}/"
+
+    def changed(self) -> None:
+        """Every page asks for its picture again."""
+        with self._changed:
+            self._version += 1
+            self._changed.notify_all()
+
+    def wait(self, seen: int) -> int:
+        """The number of changes so far, when it is another than was seen, or after a while."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._version != seen, _ALIVE)
+            return self._version
+
+    def close(self) -> None:
+        self._server.shutdown()
+        self._server.server_close()
+
+
+class _Handler(BaseHTTPRequestHandler):
+    preview: Preview
+    draw_: Callable[[Sequence[str]], dict[str, object]]
+    go_: Callable[[str], dict[str, object]]
+
+    def do_GET(self) -> None:
+        if not self._is_ours():
+            self._refuse(HTTPStatus.FORBIDDEN)
+        elif self.path == "/":
+            self._answer("text/html; charset=utf-8", page(secrets.token_hex(16)).encode())
+        elif self.path == "/events":
+            self._tell()
+        else:
+            self._refuse(HTTPStatus.NOT_FOUND)
+
+    def do_POST(self) -> None:
+        length = self.headers.get("Content-Length", "")
+        if not self._is_ours():
+            return self._refuse(HTTPStatus.FORBIDDEN)
+        if not length.isdigit() or int(length) > _LONGEST:
+            return self._refuse(HTTPStatus.BAD_REQUEST)
+        try:
+            asked = json.loads(self.rfile.read(int(length)))
+            if self.path == "/picture":
+                answer = self.draw_([str(name) for name in asked["folded"]])
+            elif self.path == "/go":
+                answer = self.go_(str(asked["key"]))
+            else:
+                return self._refuse(HTTPStatus.NOT_FOUND)
+        except (ValueError, KeyError, TypeError):
+            return self._refuse(HTTPStatus.BAD_REQUEST)
+        self._answer("application/json", json.dumps(answer).encode())
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing: the terminal says where the user clicked, not what a browser asks."""
+
+    def _is_ours(self) -> bool:
+        own = {f"{name}:{self.preview.port}" for name in (ADDRESS, "localhost")}
+        origin = self.headers.get("Origin")
+        return self.headers.get("Host") in own and (origin is None or origin in {f"http://{name}" for name in own})
+
+    def _answer(self, kind: str, body: bytes) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(body)
+
+    def _tell(self) -> None:
+        """Until the page is gone; the format: https://html.spec.whatwg.org/multipage/server-sent-events.html"""
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", "text/event-stream")
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        seen = -1
+        try:
+            while True:
+                now = self.preview.wait(seen)
+                self.wfile.write(b": still here\n\n" if now == seen else b"data: changed\n\n")
+                self.wfile.flush()
+                seen = now
+        except OSError:
+            return
+
+    def _refuse(self, status: HTTPStatus) -> None:
+        self.send_error(status)
