@@ -25,6 +25,7 @@ PACKAGE = "btq_lang"
 COMPILED = (
     "characters",
     "words",
+    "node_clauses",
     "scan",
     "plain",
     "blocks",

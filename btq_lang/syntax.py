@@ -11,6 +11,13 @@ import re
 from collections.abc import Callable, Iterator
 
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.node_clauses import Quality as Quality
+from btq_lang.node_clauses import QualityPath as QualityPath
+from btq_lang.node_clauses import ReqRef as ReqRef
+from btq_lang.node_clauses import Requirement as Requirement
+from btq_lang.node_clauses import Satisfices as Satisfices
+from btq_lang.node_clauses import Satisfies as Satisfies
+from btq_lang.node_clauses import Tags as Tags
 from btq_lang.record import fields_of, record
 from btq_lang.text import Span
 from btq_lang.tokens import QUANTITY, STRING
@@ -26,33 +33,7 @@ if TYPE_CHECKING:
 
 # ---- Qualities and requirements on nodes ----------------------------------------------------------------------------
 
-
-@record
-class QualityPath:
-    """`performance-efficiency.time-behaviour`, or as the paper prints it: `performance <time-behavior>`."""
-
-    names: tuple[Word, ...]
-
-    @property
-    def span(self) -> Span:
-        return Span(self.names[0].start, self.names[-1].end)
-
-
-@record
-class Quality:
-    """A quality in a satisfices list, with the requirements it encloses in the classic form."""
-
-    path: QualityPath
-    requirements: tuple[Requirement, ...] = ()
-
-
-@record
-class Satisfices:
-    """`satisfices Quality, …`: a concern, not yet measured."""
-
-    start: int
-    end: int
-    qualities: tuple[Quality, ...]
+NodeClause: TypeAlias = Satisfices | Satisfies | Tags
 
 
 @record
@@ -64,66 +45,12 @@ class Argument:
 
 
 @record
-class ReqRef:
-    """A requirement named, not defined: `rq1`, `slow(limit = 0.1 m/s)`."""
-
-    name: Word
-    arguments: tuple[Argument, ...] = ()
-
-
-@record
-class Satisfies:
-    """`satisfies rq1, QualityReq rq2 …`: requirements attached to the node."""
-
-    start: int
-    end: int
-    uses: tuple[Requirement | ReqRef, ...]
-
-
-@record
-class Tags:
-    """`tags heavy, indoor`."""
-
-    start: int
-    end: int
-    names: tuple[Word, ...]
-
-
-NodeClause: TypeAlias = Satisfices | Satisfies | Tags
-
-
-@record
 class Parameter:
     """`limit : m/s = 0.25 m/s` of a parameterised requirement."""
 
     name: Word
     unit: Word | None
     default: Bounded | None = None
-
-
-@record
-class Requirement:
-    """A requirement, defined in place, or at file level, where it is an item.
-
-    Attributes:
-        name: its ID; None where it is missing.
-        classic: written `QualityReq ID = … description = …`.
-        text: its title, or the classic description.
-    """
-
-    start: int
-    end: int
-    name: Word | None
-    classic: bool
-    parameters: tuple[Parameter, ...]
-    quality: QualityPath | None
-    text: Word | None
-    clauses: tuple[Clause, ...]
-
-    @property
-    def is_reference(self) -> bool:
-        """`QualityReq ID = "rq3"` alone names a requirement that is defined elsewhere."""
-        return self.text is None and self.quality is None and not self.clauses and not self.parameters
 
 
 # ---- Clauses of a requirement ---------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "garbage", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
-        {"tokens", "characters", "scan", "lexer", "words", "syntax", "cursor"}
+        {"tokens", "characters", "scan", "lexer", "words", "node_clauses", "syntax", "cursor"}
         | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain"}
         | {"parser", "comments", "script"}
     ),

@@ -1,0 +1,146 @@
+"""What stands at nodes about quality: satisfices, satisfies and tags, and what they list.
+
+One invariant: as in `words`, they are plain classes without decorators, so that they may be compiled, and `syntax` has
+them too.  What a requirement demands, its clauses, is rarer and stands there.
+"""
+
+from __future__ import annotations
+
+from btq_lang.text import Span
+from btq_lang.words import Word
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import ClassVar, Final
+
+    from btq_lang.syntax import Argument, Clause, Parameter
+
+
+class _Part:
+    """What all of them do alike: they are equal if their fields are."""
+
+    __slots__ = ()
+    __match_args__: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def _values(self) -> tuple[object, ...]:
+        return tuple([getattr(self, field) for field in self.__match_args__])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Part) and type(other) is type(self) and self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}{self._values!r}"
+
+
+class QualityPath(_Part):
+    """`performance-efficiency.time-behaviour`, or as the paper prints it: `performance <time-behavior>`."""
+
+    __slots__ = ("names",)
+    __match_args__: ClassVar = ("names",)
+
+    def __init__(self, names: tuple[Word, ...]) -> None:
+        self.names: Final = names
+
+    @property
+    def span(self) -> Span:
+        return Span(self.names[0].start, self.names[-1].end)
+
+
+class Quality(_Part):
+    """A quality in a satisfices list, with the requirements it encloses in the classic form."""
+
+    __slots__ = ("path", "requirements")
+    __match_args__: ClassVar = ("path", "requirements")
+
+    def __init__(self, path: QualityPath, requirements: tuple[Requirement, ...] = ()) -> None:
+        self.path: Final = path
+        self.requirements: Final = requirements
+
+
+class Satisfices(_Part):
+    """`satisfices Quality, …`: a concern, not yet measured."""
+
+    __slots__ = ("end", "qualities", "start")
+    __match_args__: ClassVar = ("start", "end", "qualities")
+
+    def __init__(self, start: int, end: int, qualities: tuple[Quality, ...]) -> None:
+        self.start: Final = start
+        self.end: Final = end
+        self.qualities: Final = qualities
+
+
+class ReqRef(_Part):
+    """A requirement named, not defined: `rq1`, `slow(limit = 0.1 m/s)`."""
+
+    __slots__ = ("arguments", "name")
+    __match_args__: ClassVar = ("name", "arguments")
+
+    def __init__(self, name: Word, arguments: tuple[Argument, ...] = ()) -> None:
+        self.name: Final = name
+        self.arguments: Final = arguments
+
+
+class Satisfies(_Part):
+    """`satisfies rq1, QualityReq rq2 …`: requirements attached to the node."""
+
+    __slots__ = ("end", "start", "uses")
+    __match_args__: ClassVar = ("start", "end", "uses")
+
+    def __init__(self, start: int, end: int, uses: tuple[Requirement | ReqRef, ...]) -> None:
+        self.start: Final = start
+        self.end: Final = end
+        self.uses: Final = uses
+
+
+class Tags(_Part):
+    """`tags heavy, indoor`."""
+
+    __slots__ = ("end", "names", "start")
+    __match_args__: ClassVar = ("start", "end", "names")
+
+    def __init__(self, start: int, end: int, names: tuple[Word, ...]) -> None:
+        self.start: Final = start
+        self.end: Final = end
+        self.names: Final = names
+
+
+class Requirement(_Part):
+    """A requirement, defined in place, or at file level, where it is an item.
+
+    Attributes:
+        name: its ID; None where it is missing.
+        classic: written `QualityReq ID = … description = …`.
+        text: its title, or the classic description.
+    """
+
+    __slots__ = ("classic", "clauses", "end", "name", "parameters", "quality", "start", "text")
+    __match_args__: ClassVar = ("start", "end", "name", "classic", "parameters", "quality", "text", "clauses")
+
+    def __init__(
+        self,
+        start: int,
+        end: int,
+        name: Word | None,
+        classic: bool,
+        parameters: tuple[Parameter, ...],
+        quality: QualityPath | None,
+        text: Word | None,
+        clauses: tuple[Clause, ...],
+    ) -> None:
+        self.start: Final = start
+        self.end: Final = end
+        self.name: Final = name
+        self.classic: Final = classic
+        self.parameters: Final = parameters
+        self.quality: Final = quality
+        self.text: Final = text
+        self.clauses: Final = clauses
+
+    @property
+    def is_reference(self) -> bool:
+        """`QualityReq ID = "rq3"` alone names a requirement that is defined elsewhere."""
+        return self.text is None and self.quality is None and not self.clauses and not self.parameters
