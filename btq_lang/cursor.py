@@ -244,8 +244,10 @@ class Cursor:
             return None
         start, raw = self.starts[before], self.raws[before]
         end = line_end(self.text, start)
+        if end >= start + len(raw):
+            return None
         opens = raw[-2] in " \t=(," and raw[line_start(raw, 0, len(raw)) : -1].strip()
-        if end >= start + len(raw) or not (opens or self.adjacent(self.index)):
+        if not (opens or self.adjacent(self.index)):
             return None
         message = f"a closing {raw[0]} is probably missing: this string ends at the next one, on another line"
         at = start + len(raw) - 1

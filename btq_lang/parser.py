@@ -14,6 +14,7 @@ from btq_lang.garbage import NotCollecting
 from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import NodeParser
+from btq_lang.plain import plain_head
 from btq_lang.record import replace
 from btq_lang.scan import name_end, path_end
 from btq_lang.syntax import (
@@ -140,6 +141,10 @@ class Parser(NodeParser):
         """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""
         self.base = self.lexer.line_start
         found_at = self.lexer.level
+        if found_at == level and (tree := self.plain_tree(found_at)):
+            self.stray_level = -1
+            self.entry(tree, in_root)
+            return
         self.scan()
         if found_at > level and found_at != self.stray_level:
             self.complain("syntax-error", self.here(), "this line is indented, but no block is open above it")
@@ -173,7 +178,7 @@ class Parser(NodeParser):
             item = self.verbatim()
         else:
             item = self.skipped(found_at)
-        if not self.begins_item():
+        if self.deeper(found_at) and not self.begins_item():
             self.no_block(found_at)
         self.entry(item, in_root)
 
@@ -390,6 +395,17 @@ class Parser(NodeParser):
         end = self.end_line()
         ports, clauses, children = self.tree_block(level)
         return Tree(start, end, name, attributes, ports, clauses, children)
+
+    def plain_tree(self, level: int) -> Tree | None:
+        """A tree whose first line says its name and nothing else"""
+        lexer = self.lexer
+        start = lexer.position
+        if lexer.ended_early or (head := plain_head(self.text, start, self.base)) is None:
+            return None
+        name, lexer.position = head
+        self.more = lexer.open_line()
+        ports, clauses, children = self.tree_block(level)
+        return Tree(start - self.base, name.end, name, (), ports, clauses, children)
 
     def skipped(self, level: int) -> Skipped:
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""

@@ -40,63 +40,82 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-def read_attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair]) -> tuple[int, str | None]:
-    """{ Pair [ "," ] } and what follows them, if it is `)` or a word that begins a clause
+def read_attributes(
+    text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]
+) -> tuple[int, bool]:
+    """{ Attribute [ "," ] } ")"
 
     Returns:
-        Where that ends and `)`, or where the clause begins and its word; or where something is written in another way,
-        and None.
+        Where that ends and True; or where something is written in another way, and False.
     """
     while match := _ATTRIBUTE(text, at):
-        line, key, value, closing, word = match.groups()
+        line, key, value, closing = match.groups()
         if line is not None and not line.startswith(blanks):
             break
-        if key is None:
-            return (match.end(), ")") if closing else (match.start(5), word)
-        pairs.append(
-            Pair(
-                Word(NAME, match.start(2) - base, key),
-                Word(value_kind(value[0], NAME), match.start(3) - base, value),
+        if key is not None:
+            pairs.append(
+                Pair(
+                    Word(NAME, match.start(2) - base, key),
+                    Word(value_kind(value[0], NAME), match.start(3) - base, value),
+                )
             )
-        )
-        at = match.end()
-    return at, None
+            at = match.end()
+        elif closing is not None:
+            return match.end(), True
+        else:
+            clause, end = _last_clause(text, match.end(), blanks, base)
+            if clause is None:
+                break
+            clauses.append(clause)
+            return end, True
+    return at, False
 
 
-def read_clause(text: str, start: int, blanks: str | None, base: int) -> tuple[NodeClause, int] | None:
-    """ "satisfices" … | "satisfies" …, where nothing more follows in the brackets or, without `blanks`, on the line:
-    the clause, and where it ends"""
-    match = (_line_list() if blanks is None else _bracketed_list()).match(text, start)
+def read_list(text: str, start: int, base: int) -> NodeClause | None:
+    """ "satisfices" QualityPath { "," QualityPath } | "satisfies" Name { "," Name }, at the end of a line"""
+    match = _line_list().match(text, start)
+    return None if match is None else _listed(match, base)
+
+
+def _last_clause(text: str, start: int, blanks: str, base: int) -> tuple[NodeClause | None, int]:
+    """The clause with which the brackets end, and where they do"""
+    match = _bracketed_list().match(text, start)
     if match is not None:
-        end = match.end()
-        if match[1] is not None:
-            qualities = tuple(Quality(_path(path.start(1) - base, path[1])) for path in _PATHS(text, *match.span(1)))
-            return Satisfices(start - base, end - base, qualities), end
-        uses = tuple(ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES(text, *match.span(2)))
-        return Satisfies(start - base, end - base, uses), end
+        return _listed(match, base), match.end()
     match = _definition().match(text, start)
     if match is None:
-        return None
-    quality, bracket_line, name, line, description = match.group(1, 2, 4, 5, 6)
-    end = match.end()
-    if blanks is None or (bracket_line is not None and not bracket_line.startswith(blanks)):
-        return None
+        return None, start
+    quality, bracket_line, name, line, description = match.group(2, 3, 5, 6, 7)
+    if bracket_line is not None and not bracket_line.startswith(blanks):
+        return None, start
     inner = blanks if quality is None else bracket_line
     if line is not None and (inner is None or not line.startswith(inner)):
-        return None
+        return None, start
     requirement = Requirement(
-        match.start(3) - base,
-        (match.end(4) if description is None else match.end(6)) - base,
-        Word(value_kind(name[0], NAME), match.start(4) - base, name),
+        match.start(4) - base,
+        (match.end(5) if description is None else match.end(7)) - base,
+        Word(value_kind(name[0], NAME), match.start(5) - base, name),
         True,
         (),
         None,
-        None if description is None else Word(value_kind(description[0], NAME), match.start(6) - base, description),
+        None if description is None else Word(value_kind(description[0], NAME), match.start(7) - base, description),
         (),
     )
+    end = match.end(1) - base
     if quality is None:
-        return Satisfies(start - base, end - base, (requirement,)), end
-    return Satisfices(start - base, end - base, (Quality(_path(match.start(1) - base, quality), (requirement,)),)), end
+        return Satisfies(start - base, end, (requirement,)), match.end()
+    qualities = (Quality(_path(match.start(2) - base, quality), (requirement,)),)
+    return Satisfices(start - base, end, qualities), match.end()
+
+
+def _listed(match: re.Match[str], base: int) -> NodeClause:
+    start, end = match.span(1)
+    text = match.string
+    if match[2] is not None:
+        qualities = [Quality(_path(path.start(1) - base, path[1])) for path in _PATHS(text, *match.span(2))]
+        return Satisfices(start - base, end - base, tuple(qualities))
+    uses = [ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES(text, *match.span(3))]
+    return Satisfies(start - base, end - base, tuple(uses))
 
 
 def read_tokens(text: str, at: int, kinds: list[int], starts: list[int], raws: list[str]) -> int:
@@ -132,15 +151,16 @@ _LABEL: Final = rf"(?: (?!satisfi|tags)({_NAME}|{_STRING})|)"
 _VALUE: Final = rf"{_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=)"
 _PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})(?:,? |(?=\)))"
 _REMARK: Final = r"(?:\#|//)[^\r\n]*"
+_COMMENT: Final = rf"{_REMARK}|/\*[^*]*(?:\*+[^*/][^*]*)*\*+/[ \t]*"
 _LISTED: Final = rf"(?!satisfi|tags|parameters|Quality){_NAME}(?:-\w+)*"
 _PATH: Final = rf"{_LISTED}(?:\.{_NAME}(?:-\w+)*)*"
 _QUALITY: Final = rf"(?:Quality ?= ?|){_PATH}"
-_LIST: Final = rf"satisfi(?:ces ({_QUALITY}(?:, {_QUALITY})*)|es ({_LISTED}(?:, {_LISTED})*))"
+_LIST: Final = rf"(satisfi(?:ces ({_QUALITY}(?:, {_QUALITY})*)|es ({_LISTED}(?:, {_LISTED})*)))"
 _TEXT: Final = r"\"[^\"\\\r\n]*(?:[\r\n]+[ \t][^\"\\\r\n]*)*\""  # a string of several lines, none at the margin
 _REQUIREMENT: Final = (
     rf"(QualityReq) ID ?= ?({_NAME}|{_STRING})(?:,?(?: |\r?\n([ \t]+))description ?= ?({_TEXT}|{_NAME})|)"
 )
-_BRACKETS_END: Final = r"(?=\)|\r?\n[ \t]*\))"
+_BRACKETS_END: Final = r"(?:\)|\r?\n[ \t]*\))"
 _LINE_END: Final = r"(?=[\r\n]| (?:\#|//))"
 
 # ---- patterns -------------------------------------------------------------------------------------------------------
@@ -154,10 +174,10 @@ read_line: Final = re.compile(
     rf"((?: +{_REMARK}|)\r?\n|)"
 ).match
 # Blank lines and comments between two lines.
-read_between: Final = re.compile(rf"(?:[ \t]*(?:{_REMARK}|)\r?\n)+").match
-# 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket  5 the word of a clause
+read_between: Final = re.compile(rf"(?:[ \t]*(?:{_COMMENT}|)\r?\n)+").match
+# 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket; none of them: a clause follows
 _ATTRIBUTE: Final = re.compile(
-    rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(satisfices|satisfies|tags)(?= ))"
+    rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(?=satisfi))"
 ).match
 _NAMES: Final = re.compile(rf"{_NAME}(?:-\w+)*").finditer
 _PATHS: Final = re.compile(rf"(?:Quality ?= ?|)({_PATH})").finditer
@@ -173,23 +193,23 @@ _TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups o
 
 @cache
 def _line_list() -> re.Pattern[str]:
-    """1 qualities, or 2 names of requirements"""
+    """1 the clause, 2 its qualities or 3 its names of requirements"""
     return re.compile(_LIST + _LINE_END)
 
 
 @cache
 def _bracketed_list() -> re.Pattern[str]:
-    """1 qualities, or 2 names of requirements"""
+    """As of a line, and the closing bracket"""
     return re.compile(_LIST + _BRACKETS_END)
 
 
 @cache
 def _definition() -> re.Pattern[str]:
-    """1 the quality that encloses it, if one does, and 2 the blanks of the line that its bracket begins, if it does;
-    3 to 6 the requirement: its first word, its name, the blanks of the line that its description begins, if it does,
-    and the description"""
+    """1 the clause; 2 the quality that encloses the requirement, if one does, and 3 the blanks of the line that its
+    bracket begins, if it does; 4 to 7 the requirement: its first word, its name, the blanks of the line that its
+    description begins, if it does, and the description; the closing bracket"""
     return re.compile(
-        rf"satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(1)\)){_BRACKETS_END}"
+        rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(2)\))){_BRACKETS_END}"
     )
 
 

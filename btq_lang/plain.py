@@ -53,11 +53,33 @@ from btq_lang.syntax import (
 from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, NUMBER, STRING, SYMBOL
 
 if not COMPILED:
-    from btq_lang.patterns import read_attributes, read_clause
+    from btq_lang.patterns import read_attributes, read_list
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
+
+
+def plain_head(text: str, start: int, base: int) -> tuple[Word, int] | None:
+    """ "BehaviorTree" [ "ID" "=" ] Name NL: the line that begins a tree, and no brackets in it
+
+    Args:
+        start: where the line's first word begins.
+        base: where the item begins; offsets in the tree count from there.
+
+    Returns:
+        The tree's name, and where the next line begins.
+    """
+    if not text.startswith("BehaviorTree ", start):
+        return None
+    try:
+        at = start + len("BehaviorTree ")
+        if text.startswith("ID", at) and (value := _behind_equals(text, at + len("ID"))) >= 0:
+            at = value
+        name = _name(text, at, base)
+        return name, _next_line(text, _behind_word(text, at + len(name.raw)))
+    except (Unusual, IndexError):
+        return None
 
 
 def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int] | None:
@@ -232,14 +254,9 @@ def attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], cl
     """{ Attribute [ "," ] } ")", from behind the `(`"""
     while True:
         if not COMPILED:
-            at, word = read_attributes(text, at, blanks, base, pairs)
-            if word == ")":
+            at, closed = read_attributes(text, at, blanks, base, pairs, clauses)
+            if closed:
                 return at
-            if word is not None:
-                at = _clause(text, at, word, blanks, base, clauses)
-                if text[at] == ",":
-                    at += 1
-                continue
         code = ord(text[at])
         if code == CLOSING:
             return at + 1
@@ -308,9 +325,15 @@ def _comment_end(text: str, at: int) -> int:
 def line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
     """{ NodeClause } NL, outside brackets; returns where the next line begins"""
     at = _gap(text, at, None)
-    while begins_name(code := ord(text[at])):
+    while begins_name(ord(text[at])):
         word = text[at : name_end(text, at)]
         at = _clause(text, at, word, None, base, clauses)
+    return _next_line(text, at)
+
+
+def _next_line(text: str, at: int) -> int:
+    """NL, and the comment before it"""
+    code = ord(text[at])
     if code in (HASH, SLASH):
         at = _comment_end(text, at)
         code = ord(text[at])
@@ -325,9 +348,9 @@ def _clause(text: str, start: int, word: str, blanks: str | None, base: int, cla
     """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
     if word not in NODE_CLAUSES:
         raise Unusual
-    if not COMPILED and (read := read_clause(text, start, blanks, base)) is not None:
-        clauses.append(read[0])
-        return _gap(text, read[1], blanks)
+    if not COMPILED and blanks is None and (read := read_list(text, start, base)) is not None:
+        clauses.append(read)
+        return _gap(text, read.end + base, blanks)
     qualities: list[Quality] = []
     uses: list[Requirement | ReqRef] = []
     tags: list[Word] = []

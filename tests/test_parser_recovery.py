@@ -316,3 +316,12 @@ def test_a_quote_that_is_missing_is_one_mistake(text: str, problem: str, mended:
 def test_a_string_over_lines_that_is_closed_is_not_to_blame() -> None:
     text = 'BehaviorTree A\n  B (p = "a\n  b" c)\n'
     assert_parse(text, None, "3:6 syntax-error «c» expected an attribute: key = value, found `c`")
+
+
+def test_a_quote_alone_at_the_end_of_a_line_is_no_string_that_ends_further_down() -> None:
+    text = "BehaviorTree A\n  B (\n    satisfies QualityReq ID = x '\n    a b\n  )\n"
+    problems = show_problems(text, parse(text).diagnostics)
+    assert problems == (
+        "3:33 unclosed-string «'» this string has no closing '\n"
+        "4:5 syntax-error «a» expected a verb behind `'` (takes, succeeds, needs, keeps, …), found `a`"
+    )

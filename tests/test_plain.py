@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from missions import mission
 
-from btq_lang import lexer, lines, nodes, plain, scan
+from btq_lang import lexer, lines, nodes, parser, plain, scan
 from btq_lang.parser import Parsed, parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -38,6 +38,7 @@ def parse_in_full(text: str) -> Parsed:
     with pytest.MonkeyPatch.context() as patch:
         for module in (lexer, nodes, plain, scan):
             patch.setattr(module, "COMPILED", True)
+        patch.setattr(parser, "plain_head", lambda *_: None)
         patch.setattr(nodes, "plain_node", lambda *_: None)
         patch.setattr(nodes, "plain_clauses", lambda *_: None)
         return parse(text)
