@@ -4,7 +4,7 @@ show."""
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, fixes, problems
 
 TREE = "BehaviorTree Main\n    X satisfies rq1\n"
 
@@ -225,3 +225,63 @@ def test_an_action_without_a_claim() -> None:
             f"1:12 warning requirement-without-text «rq1» {told.replace('{}', action)}",
         )
     assert_clean(text.replace("{}", "takes at most 30 s on violation fail"))
+
+
+# ---- what can be said once only ----
+
+USER = "BehaviorTree X\n    Action A\n"
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        ("\n    goal 2 s\n    goal 1 s\n", "a goal already: `goal 2 s`"),
+        ("\n    confidence 90 %\n    confidence 95 %\n", "a confidence already: `confidence 90 %`"),
+        ("\n    over last 9 runs\n    over last 3 d\n", "a window already: `over last 9 runs`"),
+        (
+            "\n    in at least 9 % of runs\n    with probability > 9 %\n",
+            "how often it is to hold already: `in at least 9 % of runs`",
+        ),
+        (" verified by test verified by review\n", "how it is verified already: `verified by test`"),
+    ],
+)
+def test_a_clause_of_a_kind_that_is_said_once(clauses: str, expected: str) -> None:
+    text = f'QualityReq a "t"\n    A takes at most 3 s{clauses}{USER}'
+    (found,) = problems(text, "duplicate-clause")
+    assert found.message == f"the requirement says {expected}"
+    assert [related.message for related in found.related] == ["this one counts"]
+    assert [fix.safe for fix in found.fixes] == [False, False]
+
+
+def test_clauses_that_can_be_said_again() -> None:
+    text = (
+        f'QualityReq a "t"\n    A takes at most 3 s\n    A takes at least 1 s\n    because "x"\n    because "y"\n{USER}'
+    )
+    assert problems(text, "duplicate-clause") == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after_"),
+    [
+        ("\n    on violation fail\n    on  violation fail\n", "\n    on violation fail\n"),
+        ("\n    on violation fail on violation fail\n", "\n    on violation fail\n"),
+        ("\n    on violation fail\n    on violation fail  # so be it\n", "\n    on violation fail\n    # so be it\n"),
+        ("\r\n    goal 1 s\r\n    goal 1 s\r\n    because 'y'\r\n", "\r\n    goal 1 s\r\n    because 'y'\r\n"),
+        ("\n    goal 1 s\n    goal 1 s because 'y'\n", "\n    goal 1 s\n    because 'y'\n"),
+    ],
+)
+def test_one_that_says_the_same_goes(before: str, after_: str) -> None:
+    text = f'QualityReq a "t"\n    A takes at most 3 s{before}{USER}'
+    ((_, safe, fixed),) = fixes(text, "duplicate-clause")
+    assert safe
+    assert fixed == f'QualityReq a "t"\n    A takes at most 3 s{after_}{USER}'
+
+
+def test_clauses_of_a_requirement_at_its_node() -> None:
+    text = (
+        "BehaviorTree X\n    A\n        satisfies QualityReq a takes at most 3 s on violation fail on violation log\n"
+    )
+    assert fixes(text, "duplicate-clause") == [
+        ("Remove `on violation log`", False, text.replace(" on violation log", "")),
+        ("Remove `on violation fail`", False, text.replace(" on violation fail", "")),
+    ]

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 
 from btq_lang.checks import (
     children,
+    clauses,
     conditions,
     constants,
     demands,
@@ -100,6 +101,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.unknown_requirement,
         requirements.conflicting_requirement,
         requirements.requirement_without_text,
+        clauses.duplicate_clause,
         qualities.unknown_quality,
         qualities.old_quality_name,
         qualities.ambiguous_quality,
@@ -136,6 +138,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.conflicting_requirement,
         requirements.unused_requirement,
         requirements.requirement_without_text,
+        clauses.duplicate_clause,
         qualities.unknown_quality,
         qualities.old_quality_name,
         qualities.ambiguous_quality,

@@ -112,6 +112,7 @@ _TABLE = (
     Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
     Rule("unused-requirement", _W, "a requirement that nothing refers to"),
     Rule("requirement-without-text", _W, "a requirement that says nothing, or nothing that could be violated"),
+    Rule("duplicate-clause", _E, "a second clause of a kind that can be said once only"),
     Rule("unknown-quality", _W, "a quality name that no model of ISO/IEC 25010 has"),
     Rule("old-quality-name", _H, "an alias or a name of another edition"),
     Rule("ambiguous-quality", _W, "a quality name that means several things"),

@@ -1,0 +1,63 @@
+"""Clauses of one requirement that can be said once only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Clause, Confidence, Entry, Goal, How, Odds, OnViolation, Requirement, Window
+from btq_lang.text import Span
+
+_ONCE: dict[type, str] = {
+    Odds: "how often it is to hold",
+    Confidence: "a confidence",
+    Window: "a window",
+    OnViolation: "what happens on violation",
+    Goal: "a goal",
+    How: "how it is verified",
+}
+
+
+def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A second clause of a kind of which the first counts; one that says the same can go."""
+    for symbol in view.file.summary_of(entry).symbols:
+        requirement = symbol.target
+        if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
+            continue
+        first: dict[type, Clause] = {}
+        for clause in requirement.clauses:
+            if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
+                yield _duplicate(view, entry, counts, clause)
+
+
+def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diagnostic:
+    text = view.file.text[entry.start :]
+    said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
+    removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
+    return Diagnostic(
+        "duplicate-clause",
+        Span(clause.start, clause.end),
+        f"the requirement says {_ONCE[type(clause)]} already: `{said}`",
+        related=(Related(Place(Span(counts.start, counts.end)), "this one counts"),),
+        fixes=tuple(
+            replace_fix(f"Remove `{words}`", _with_blanks(text, each), "", safe=said == again)
+            for words, each in removals
+        ),
+    )
+
+
+def _with_blanks(text: str, clause: Clause) -> Span:
+    """A clause with the blanks that would be left over, and with its line where nothing else stands there."""
+    start, end = clause.start, clause.end
+    while start and text[start - 1] in " \t":
+        start -= 1
+    is_first = start == 0 or text[start - 1] in "\r\n"
+    is_last = text[end : end + 1] in ("", "\r", "\n")
+    if is_first and is_last:
+        start -= 2 if text[:start].endswith("\r\n") else 1
+    elif is_first:
+        start = clause.start
+        end += len(text[end:]) - len(text[end:].lstrip(" \t"))
+    return Span(start, end)
