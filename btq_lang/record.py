@@ -54,8 +54,9 @@ def record(cls: type[T]) -> type[T]:
 
 def replace(instance: T, **changes: object) -> T:
     """A copy of a record with some fields changed."""
-    values = dict(zip(fields_of(instance), instance._values, strict=True)) | changes  # type: ignore[attr-defined]  # as above
-    return type(instance)(*values.values())
+    before: Any = instance._values  # type: ignore[attr-defined]  # as above
+    values = [*map(changes.pop, fields_of(instance), before)]
+    return type(instance)(*values, **changes)  # what is left over is no field: a TypeError
 
 
 def fields_of(part: object) -> tuple[str, ...]:

@@ -155,7 +155,7 @@ class Node:
     @property
     def nodes(self) -> tuple[Node, ...]:
         """The children that are nodes."""
-        return tuple(child for child in self.children if isinstance(child, Node))
+        return tuple([child for child in self.children if isinstance(child, Node)]) if self.children else ()
 
     @property
     def head(self) -> Word:
@@ -189,7 +189,8 @@ class Node:
         while stack:
             node = stack.pop()
             yield node
-            stack += [child for child in reversed(node.children) if isinstance(child, Node)]
+            if node.children:
+                stack += [child for child in reversed(node.children) if isinstance(child, Node)]
 
     def __eq__(self, other: object) -> bool:
         """Equal in everything, compared without recursion: trees are deep."""

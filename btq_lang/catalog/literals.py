@@ -9,6 +9,7 @@ Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
 from btq_lang.record import record
@@ -148,6 +149,7 @@ def _refuse_constant(word: str) -> None:
     raise ValueError(word)
 
 
+@lru_cache(500)
 def _plain(port_type: str) -> str:
     """One name for a type that has several: `std::int32_t` and `int`, `unsigned` and `unsigned int`."""
     name = " ".join(port_type.split())
@@ -156,6 +158,7 @@ def _plain(port_type: str) -> str:
     return _SYNONYMS.get(short, short if short in _INTEGERS else name)
 
 
+@lru_cache(500)
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items, or None for what is no list the engine can read."""
     found = re.match(_LIST, " ".join(port_type.split())) if "<" in port_type else None

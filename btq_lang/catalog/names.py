@@ -42,10 +42,10 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the `name` of a node; None: it does not.  Only control characters are refused."""
-    if not at_least(version, _RULES_SINCE):
+    if _UNPRINTABLE.isdisjoint(name) or not at_least(version, _RULES_SINCE):
         return None
-    control = next((character for character in name if character in _CONTROLS and character not in "\t\n\r"), None)
-    return None if control is None else f"it contains the control character {_code(control)}"
+    control = next(character for character in name if character in _UNPRINTABLE)
+    return f"it contains the control character {_code(control)}"
 
 
 def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
@@ -95,4 +95,5 @@ _RULES_SINCE: Final = "4.8"
 _FORBIDDEN: Final = " <>&\"'/\\:*?|."
 _CONTROLS: Final = "".join(map(chr, range(32))) + "\x7f"
 _REFUSED: Final = frozenset(_FORBIDDEN + _CONTROLS)
+_UNPRINTABLE: Final = frozenset(_CONTROLS) - frozenset("\t\n\r")
 _LETTERS: Final = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")

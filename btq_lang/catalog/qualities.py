@@ -12,6 +12,7 @@ is understood is an alias (another word, or another word in front), another edit
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
@@ -77,6 +78,7 @@ class QualityMatch:
     near: tuple[str, ...] = ()
 
 
+@lru_cache(1000)
 def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
     """What the parts of a QualityPath mean in an edition.
 

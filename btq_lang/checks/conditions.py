@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, replace_fix
@@ -34,13 +34,15 @@ def _operands(view: View, entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
         clauses = (item.clauses, *(seen.node.clauses for seen in view.nodes(entry) if seen.node.clauses))
-        roots: tuple[object, ...] = tuple(requirement for each in clauses for requirement in requirements_at(each))
+        roots: Iterable[object] = (requirement for each in clauses for requirement in requirements_at(each))
     elif isinstance(item, Requirement | Context):
         roots = (item,)
     else:
         return
     for root in roots:
-        for part in walk(root):
+        # Else a requirement is words: its name, its quality, its text.
+        parts = (root.parameters, root.clauses) if isinstance(root, Requirement) else root
+        for part in walk(parts):
             if isinstance(part, Operand):
                 yield part
 

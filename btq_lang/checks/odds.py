@@ -70,7 +70,7 @@ def _ensured(budgets: Budgets, claim: Claim, node: SourceNode) -> tuple[float, l
         return success.probability, list(success.parts)
     if claim.verb == "takes" and most is not None:
         budget = budgets.composed(node)
-        if budget.running.high > limit or budget.running.high == inf:
+        if not budget.is_bounded or budget.running.high > limit:
             return None
         shares = [(child, 1.0 - budgets.of(child).probability) for child in node.children]
         return budget.probability, shares

@@ -31,9 +31,10 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         known = _ports(view, seen)
         if known is None:
             continue
-        names = ", ".join(f"`{port.name}`" for port in known)
+        meant = _meant(seen, known)
+        names = ", ".join(f"`{port.name}`" for port in known) if meant else ""
         required = {port.name for port in known if port.required}
-        for key, likely in _meant(seen, known).items():
+        for key, likely in meant.items():
             # The engine takes any port of a SubTree, and a model without ports is often one that nobody finished.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
             fixes = tuple(replace_fix(f"Replace `{key.text}` by `{port}`", key.span, written(port)) for port in likely)
@@ -235,7 +236,8 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
     if isinstance(item, Tree):
         yield item.attributes, {"ID": item.name}
         for port in item.ports:
-            yield port.attributes, _said(port)
+            if port.attributes:
+                yield port.attributes, _said(port)
         for node in item.walk():
             if len(node.attributes) > 1 or (node.attributes and (node.label or node.category)):
                 yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
@@ -248,7 +250,7 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
             if isinstance(model, Model):
                 yield model.attributes, {"ID": model.name}
                 for part in model.body:
-                    if isinstance(part, Port):
+                    if isinstance(part, Port) and part.attributes:
                         yield part.attributes, _said(part)
                     elif isinstance(part, Meta):
                         yield part.attributes, {}

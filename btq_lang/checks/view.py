@@ -140,7 +140,7 @@ class View:
         """What the catalog says of a quality's name; None for a quality that a file in scope declares."""
         if name not in self._qualities:
             words = tuple(name.split("."))
-            is_own = fold(words[-1]) in self._own_qualities
+            is_own = bool(self._own_qualities) and fold(words[-1]) in self._own_qualities
             self._qualities[name] = None if is_own else find(words, EDITIONS[self.edition])
         return self._qualities[name]
 
@@ -314,7 +314,8 @@ class View:
             node, parent, index = waiting.pop()
             seen = self._look_up(node, tree, parent, index)
             yield seen
-            waiting += [(child, seen, number) for number, child in reversed(_numbered(node.children))]
+            if node.children:
+                waiting += [(child, seen, number) for number, child in reversed(_numbered(node.children))]
 
     def _look_up(self, node: Node, tree: Tree, parent: SeenNode | None, index: int) -> SeenNode:
         category: str | None = node.category.raw if node.category else None

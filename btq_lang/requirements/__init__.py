@@ -83,7 +83,7 @@ def requirements(workspace: Workspace, path: str) -> Requirements:
         if isinstance(signal := definition.symbol.target, WrittenSignal):
             reader.signals[definition.symbol.name] = read_signal(reader, definition, signal)
     _read_contexts(reader, scope)
-    qualities = _enclosing_qualities(workspace, scope)
+    qualities = _enclosing_qualities(workspace, scope, nodes)
     found: dict[str, Requirement] = {}
     for definition in _definitions(scope, Kind.REQUIREMENT):
         if isinstance(written := definition.symbol.target, WrittenRequirement):
@@ -142,14 +142,14 @@ def _names_in(context: Context) -> list[str]:
     return [word.text for word in operands if word.kind == NAME]
 
 
-def _enclosing_qualities(workspace: Workspace, scope: Scope) -> dict[int, str]:
+def _enclosing_qualities(workspace: Workspace, scope: Scope, nodes: Nodes) -> dict[int, str]:
     """The quality that encloses a requirement in `Quality = performance (QualityReq …)`."""
     found: dict[int, str] = {}
     for path in scope.paths:
         for entry in workspace.files[path].parsed.entries:
             if not isinstance(entry.item, Tree):
                 continue
-            clauses = [*entry.item.clauses, *(clause for node in entry.item.walk() for clause in node.clauses)]
+            clauses = [*entry.item.clauses, *(clause for node in nodes.within(entry) for clause in node.node.clauses)]
             for clause in clauses:
                 for quality in clause.qualities if isinstance(clause, Satisfices) else ():
                     _note(quality, found)

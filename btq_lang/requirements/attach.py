@@ -148,7 +148,7 @@ def _at_nodes(
     mentioned: set[str],
 ) -> None:
     places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(reader.nodes.root_of(entry), tree.clauses)]
-    places += [(reader.nodes.of(node), node.clauses) for node in tree.walk() if node.clauses]
+    places += [(node, node.node.clauses) for node in reader.nodes.within(entry) if node.node.clauses]
     for node, clauses in places:
         for written in requirements_at(clauses):
             word = written.name

@@ -151,14 +151,14 @@ class Budgets:
         claims = self._claims.get(id(node), ())
         sure = [claim for applied, claim in claims if applied.requirement.odds is None]
         held = _all_narrowed(composed if composed.probability == 1.0 else _opened(composed), sure)
-        if _is_bounded(held):
+        if held.is_bounded:
             return replace(held, gaps=())
         choices = [_all_narrowed(composed, sure)] if composed.probability < 1.0 else []
         for applied, claim in claims:
             odds = applied.requirement.odds
             if odds is not None and claim.verb == "takes":
                 choices.append(replace(_narrowed(held, claim), probability=odds.probability))
-        choices = [replace(each, gaps=()) for each in choices if _is_bounded(each)]
+        choices = [replace(each, gaps=()) for each in choices if each.is_bounded]
         return max(choices, key=lambda each: each.probability, default=held)
 
     # ---- the likelihood of success ----
@@ -248,10 +248,6 @@ def _opened(budget: Budget) -> Budget:
         ANY if each is not None else None for each in (budget.success, budget.failure, budget.skip)
     )
     return Budget(success, failure, skip, budget.waits, 1.0, budget.gaps, budget.endless)
-
-
-def _is_bounded(budget: Budget) -> bool:
-    return budget.running.high < inf
 
 
 def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:

@@ -75,8 +75,14 @@ class Budget:
     @property
     def running(self) -> Range:
         """For how long it may run when it is interrupted, or asked whether it still does."""
-        longest = hull(self.success, self.failure, self.skip)
+        longest = self.anything
         return ANY if self.endless or longest is None else replace(longest, low=0.0)
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether there is a bound on how long it may run."""
+        longest = None if self.endless else self.anything
+        return longest is not None and longest.high < inf
 
 
 def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -97,7 +103,7 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
     if found is None:
         return unknown(node, "has children that do not fit it")
     waits = found.waits or (node.kind is not None and node.kind.execution == "asynchronous")
-    if found.running.high < inf:
+    if found.is_bounded:
         return replace(found, waits=waits, gaps=())
     inner = tuple(gap for child in children for gap in child.gaps)
     return replace(found, waits=waits, gaps=tuple(dict.fromkeys((*found.gaps, *inner)))[:_MOST_GAPS])

@@ -52,11 +52,16 @@ def plus(first: Range | None, second: Range | None) -> Range | None:
 
 def hull(*ranges: Range | None) -> Range | None:
     """The one or the other."""
-    found = [each for each in ranges if each is not None]
-    if not found:
-        return None
-    longest = max(found, key=lambda each: each.high)
-    return Range(min(each.low for each in found), longest.high, longest.terms)
+    longest: Range | None = None
+    low = inf
+    for each in ranges:
+        if each is not None:
+            low = min(low, each.low)
+            if longest is None or each.high > longest.high:
+                longest = each
+    if longest is None or longest.low == low:
+        return longest
+    return Range(low, longest.high, longest.terms)
 
 
 def times(count: int, each: Range | None) -> Range | None:

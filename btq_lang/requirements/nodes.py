@@ -52,6 +52,10 @@ class Nodes:
         tops = [node for node in self._of_entry.get(id(entry), ()) if node.parent is None]
         return tops[0] if len(tops) == 1 else None
 
+    def within(self, entry: Entry) -> Sequence[SourceNode]:
+        """The nodes of the tree that stands in an entry, in the order of its text."""
+        return self._of_entry.get(id(entry), ())
+
     def of(self, node: Node) -> SourceNode | None:
         """A node of the syntax as one of these."""
         return self._of_node.get(id(node))
@@ -110,8 +114,9 @@ class Nodes:
                 parent.children.append(found)
             mine.append(found)
             yield found
-            children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
-            waiting += reversed(children)
+            if node.children:
+                children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
+                waiting += reversed(children)
         definition = scope.find(Kind.TREE, name) if name is not None else None
         if name is not None and definition is not None and definition.entry is entry:
             root = self.root_of(entry)
@@ -209,13 +214,16 @@ def _kind(scope: Scope, node: Node) -> tuple[NodeKind | None, str | None]:
 
 
 def _names(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
-    found = {word.text for word in (node.id, node.name) if word is not None}
+    name, label = node.id, node.name
+    found = {name.text} if name is not None else set()
     if kind is not None:
         found.update(spellings(kind))
     if category == "SubTree":
         found.add("SubTree")
-    if node.name is not None and is_placeholder(node):
-        found.add(legal_name(node.name.text))
+    if label is not None:
+        found.add(label.text)
+        if is_placeholder(node):
+            found.add(legal_name(label.text))
     return frozenset(found)
 
 
