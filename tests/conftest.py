@@ -29,6 +29,7 @@ def shared() -> Path:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update", action="store_true", help="write the golden files as they come out today")
+    parser.addoption("--every-key", action="store_true", help="compare after every key of the editing hour")
 
 
 @pytest.fixture(scope="session")

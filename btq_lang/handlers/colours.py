@@ -34,7 +34,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
     def delta(params: types.SemanticTokensDeltaParams) -> types.SemanticTokens | types.SemanticTokensDelta:
-        known, before = server.tokens.get(convert.path(params.text_document.uri), ("", []))
+        known, before = server.tokens.get(convert.path(params.text_document.uri), (None, []))
         data = coloured(params.text_document)
         result = remembered(params.text_document, data)
         if known != params.previous_result_id:
