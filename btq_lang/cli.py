@@ -48,12 +48,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _plain_check(given[1:])
     if given[:1] == ["explain"]:  # `->` is a node, not an option
         given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
-    options = build_parser().parse_args(given)
+    parser = build_parser()
+    options, unknown = parser.parse_known_args(given)
     try:
-        run = options.run
+        run, command = options.run, options.parser
     except AttributeError:
-        build_parser().print_help()
+        parser.print_help()
         return TROUBLE
+    if unknown:
+        command.error(f"unrecognized arguments: {' '.join(unknown)}")
     return _finish(run, options)
 
 
@@ -87,11 +90,11 @@ def _finish(run: Callable[[Any], int], options: object) -> int:
 
 def build_parser() -> ArgumentParser:
     """The commands and their options; shell completion and the documentation are made from it."""
-    from argparse import ArgumentParser, RawDescriptionHelpFormatter
+    from argparse import RawDescriptionHelpFormatter
 
-    from btq_lang.commands.arguments import add_commands
+    from btq_lang.commands.arguments import Parser, add_commands
 
-    parser = ArgumentParser(
+    parser = Parser(
         prog="btq",
         description="Quality-aware behavior trees for BehaviorTree.CPP: check, build and understand .btq files.",
         epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",

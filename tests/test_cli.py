@@ -73,8 +73,14 @@ def test_usage_errors(btq: Run, arguments: tuple[str, ...], message: str) -> Non
 
 def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     assert btq().returncode == 2
-    assert btq("chekc").returncode == 2
+    done = btq("chekc")
+    assert (done.returncode, done.stderr.endswith("; did you mean check?\n")) == (2, True)
+    done = btq("check", "--output-format", "jsno")
+    assert (done.returncode, done.stderr.endswith("; did you mean json?\n")) == (2, True)
     assert btq("check", "--output-format", "yaml").returncode == 2
+    done = btq("format", "--chekc")
+    assert (done.returncode, done.stderr.splitlines()[-1]) == (2, "btq format: error: unrecognized arguments: --chekc")
+    assert done.stderr.startswith("usage: btq format ")
     done = btq("check", "--select", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
     assert "unknown-node" in done.stderr

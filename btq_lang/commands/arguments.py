@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
+from btq_lang.near import near
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
 
@@ -19,7 +21,18 @@ SEVERITIES = ("error", "warning", "info", "hint")
 _MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose own name cannot be a module's
 
 
-def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
+class Parser(ArgumentParser):
+    """Of a word that is no choice, it says what was probably meant; argparse does since Python 3.14."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program with the usage and what is wrong."""
+        if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
+            close = near(wrong[1], wrong[2].replace("'", "").split(", "), limit=1)
+            message += f"; did you mean {close[0]}?" if close else ""
+        super().error(message)
+
+
+def add_commands(commands: _SubParsersAction[Parser]) -> None:
     """Add every command to the parser."""
     _add_check(commands)
     _add_format(commands)
@@ -35,7 +48,7 @@ def add_commands(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_lsp(commands)
 
 
-def _command(commands: _SubParsersAction[ArgumentParser], name: str, help: str, **more: Any) -> ArgumentParser:
+def _command(commands: _SubParsersAction[Parser], name: str, help: str, **more: Any) -> ArgumentParser:
     parser = commands.add_parser(
         name,
         help=help,
@@ -43,7 +56,7 @@ def _command(commands: _SubParsersAction[ArgumentParser], name: str, help: str, 
         formatter_class=RawDescriptionHelpFormatter,
         **more,
     )
-    parser.set_defaults(run=lambda options: _run(_MODULES.get(name, name), options))
+    parser.set_defaults(run=lambda options: _run(_MODULES.get(name, name), options), parser=parser)
     return parser
 
 
@@ -63,7 +76,7 @@ def _add_paths(parser: ArgumentParser) -> None:
     )
 
 
-def _add_check(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_check(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "check",
@@ -85,15 +98,24 @@ def _add_check(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
 
 
-def _add_format(commands: _SubParsersAction[ArgumentParser]) -> None:
-    parser = _command(commands, "format", "settle indentation, blanks and the order of clauses")
+def _add_format(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "format",
+        "settle indentation, blanks and the order of clauses",
+        epilog="exit codes: 0 formatted; 1 files with syntax errors, left as they are, or changes to make\n"
+        "(--check, --diff); 2 usage or I/O\n\n"
+        "examples:\n  btq format                   the project in this folder\n"
+        "  btq format --check           in CI: is everything formatted?\n"
+        "  btq format - < mission.btq   to standard output\n",
+    )
     _add_paths(parser)
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
     parser.add_argument("--diff", action="store_true", help="write nothing, show the changes; exit 1 if there are any")
     _add_color(parser)
 
 
-def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_build(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "build",
@@ -119,7 +141,7 @@ def _add_build(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_import(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_import(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "import",
@@ -136,7 +158,7 @@ def _add_import(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_trace(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_trace(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "trace",
@@ -153,7 +175,7 @@ def _add_trace(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_graph(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_graph(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "graph",
@@ -173,7 +195,7 @@ def _add_graph(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_preview(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "preview",
@@ -192,7 +214,7 @@ def _add_preview(commands: _SubParsersAction[ArgumentParser]) -> None:
     )
 
 
-def _add_diff(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_diff(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "diff",
@@ -203,7 +225,7 @@ def _add_diff(commands: _SubParsersAction[ArgumentParser]) -> None:
         "  btq diff --git main...HEAD --format markdown mission.btq\n",
     )
     parser.add_argument(
-        "paths", nargs="*", metavar="PATH", help="two files or folders; with --git any number, default: ."
+        "paths", nargs="*", metavar="PATH", help="two files or folders, not `-`; with --git any number, default: ."
     )
     parser.add_argument(
         "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"
@@ -212,7 +234,7 @@ def _add_diff(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_explain(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "explain",
@@ -224,12 +246,18 @@ def _add_explain(commands: _SubParsersAction[ArgumentParser]) -> None:
     _add_color(parser)
 
 
-def _add_init(commands: _SubParsersAction[ArgumentParser]) -> None:
-    parser = _command(commands, "init", "begin a project that checks clean")
+def _add_init(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "init",
+        "begin a project that checks clean",
+        epilog="exit codes: 0 begun; 2 usage or I/O, a project that is there already included\n\n"
+        "example:\n  btq init my-robot && btq check my-robot\n",
+    )
     parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")
 
 
-def _add_completion(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_completion(commands: _SubParsersAction[Parser]) -> None:
     from btq_lang.shell import SHELLS
 
     parser = _command(
@@ -242,7 +270,7 @@ def _add_completion(commands: _SubParsersAction[ArgumentParser]) -> None:
     parser.add_argument("shell", choices=SHELLS)
 
 
-def _add_lsp(commands: _SubParsersAction[ArgumentParser]) -> None:
+def _add_lsp(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(commands, "lsp", "serve an editor: the language server, also called btq-lsp")
     add_server_options(parser)
 
