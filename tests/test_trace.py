@@ -140,6 +140,7 @@ def test_qualities_and_what_measures_them() -> None:
 
 def test_gaps() -> None:
     overview = overview_of(MISSION)
+    assert [each.name for each in overview.unenforced] == ["rq1"]
     assert [each.name for each in overview.unattached] == ["tidy", "forgotten"]
     assert [tree.name for tree in overview.bare_trees] == ["Pause", "Bare"]
     assert [(node.tree, node.name) for node in overview.bare_nodes] == [("Main", "Wait"), ("Bare", "Wait")]
@@ -239,6 +240,7 @@ def test_csv() -> None:
         ("requirement", "trip", "Drive", ""),
         ("requirement without node", "tidy", "", ""),
         ("requirement without node", "forgotten", "", ""),
+        ("hard requirement not enforced", "rq1", "", ""),
         ("concern", "interaction-capability", "'-> Rest", ""),
         ("quality without requirement", "interaction-capability", "", ""),
         ("concern", "performance-efficiency", "'-> Rest", ""),
@@ -286,6 +288,7 @@ def test_json() -> None:
         }
     ]
     assert document["gaps"] == {
+        "hard_requirements_not_enforced": ["r1"],
         "qualities_without_requirements": ["q2"],
         "requirements_without_nodes": ["r4", "r5"],
         "nodes_without_qualities": ["n6", "n9"],
@@ -519,6 +522,21 @@ def test_what_the_build_enforces(tmp_path: Path, capfd: pytest.CaptureFixture[st
     assert held(tmp_path, capfd, "--bundle") == [("enforced", ""), ("enforced", "")]
     (tmp_path / "main.btq").write_text(INCLUDING + "        Drive satisfies rq9\n")
     assert {how for how, _ in held(tmp_path, capfd)} == {"monitored"}
+
+
+def test_a_hard_requirement_that_is_not_enforced_everywhere_is_a_gap(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "shared.btq").write_text(SHARED)
+    (tmp_path / "main.btq").write_text(INCLUDING)
+    for more, gap in (((), ["r1"]), (("--bundle",), [])):
+        assert main(["trace", str(tmp_path), "--format", "json", *more]) == 0
+        assert json.loads(capfd.readouterr().out)["gaps"]["hard_requirements_not_enforced"] == gap
+    heading = "Hard requirements that are not enforced everywhere"
+    for form in ("table", "markdown", "html"):
+        for more, count in (((), 1), (("--bundle",), 0)):
+            assert main(["trace", str(tmp_path), "--format", form, *more]) == 0
+            assert capfd.readouterr().out.count(heading) == count
 
 
 def test_it_says_of_each_node_where_they_are_not_held_alike(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

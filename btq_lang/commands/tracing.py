@@ -83,7 +83,7 @@ def built_ways(
         return declared
     # A requirement without measurable clauses has none that is held.
     return [
-        tuple(Clause(each.clause, each.way, each.why) for each in clauses) or said
+        tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or said
         for clauses, said in zip(held, declared, strict=True)
     ]
 

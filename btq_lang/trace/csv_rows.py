@@ -55,6 +55,9 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             held = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
             for clause in use.clauses or (None,):
                 yield {"kind": "requirement", **held, **_clause(clause), **_source(use.at)}
+    for each in overview.unenforced:
+        row = _requirement(each, characteristics.get(each.quality_key or "", ""))
+        yield {"kind": "hard requirement not enforced", **row}
     for quality in overview.qualities:
         named = {"quality": quality.id or quality.name, "characteristic": quality.characteristic or ""}
         named |= {"defined": quality.at.path, "defined_line": str(quality.at.line)}

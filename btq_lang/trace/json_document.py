@@ -16,8 +16,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "trees": [{"name": NAME, "at": PLACE, "nodes": [KEY], "without_quality": BOOL}],
      "totals": [{"characteristic": NAME | null, "name": TEXT, "concerns": N, "requirements": N,
                  "enforced": N, "monitored": N, "reviewed": N}],
-     "gaps": {"qualities_without_requirements": [KEY], "requirements_without_nodes": [KEY],
-              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
+     "gaps": {"hard_requirements_not_enforced": [KEY], "qualities_without_requirements": [KEY],
+              "requirements_without_nodes": [KEY], "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
      "skills": {"own": N, "above": N, "none": N}}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
@@ -79,6 +79,7 @@ def json_text(overview: Overview) -> str:
             for each in overview.totals
         ],
         "gaps": {
+            "hard_requirements_not_enforced": [each.key for each in overview.unenforced],
             "qualities_without_requirements": [each.key for each in overview.unmeasured],
             "requirements_without_nodes": [each.key for each in overview.unattached],
             "nodes_without_qualities": [each.key for each in overview.bare_nodes],

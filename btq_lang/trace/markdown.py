@@ -65,6 +65,7 @@ def _requirement(each: RequirementRow) -> tuple[str, ...]:
 
 def _gaps(overview: Overview) -> Iterator[str]:
     found = {
+        "unenforced": [f"{_escaped(each.name)} ({each.at})" for each in overview.unenforced],
         "unmeasured": [f"{_escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
         "unattached": [f"{_escaped(each.name)} ({each.at})" for each in overview.unattached],
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],

@@ -39,11 +39,13 @@ class Clause:
 
     Attributes:
         why: why no more is done about it; empty where there is nothing to say.
+        asked: the engine is to enforce it.
     """
 
     text: str
     way: Way
     why: str = ""
+    asked: bool = False
 
 
 @record
@@ -194,6 +196,15 @@ class Overview:
     def unattached(self) -> tuple[RequirementRow, ...]:
         """Requirements without a node or another subject."""
         return tuple(requirement for requirement in self.requirements if not requirement.uses)
+
+    @property
+    def unenforced(self) -> tuple[RequirementRow, ...]:
+        """Hard requirements, some clause of which is only monitored somewhere."""
+        return tuple(
+            requirement
+            for requirement in self.requirements
+            if any(clause.asked and clause.way == "monitored" for use in requirement.uses for clause in use.clauses)
+        )
 
     @property
     def bare_nodes(self) -> tuple[NodeRow, ...]:

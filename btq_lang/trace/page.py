@@ -172,6 +172,7 @@ def _node_list(nodes: Sequence[NodeRow]) -> str:
 def _gaps(overview: Overview) -> Iterator[str]:
     yield '<section id="gaps" aria-labelledby="h-gaps"><h2 id="h-gaps">Gaps</h2>'
     found = {
+        "unenforced": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.unenforced],
         "unmeasured": [
             f'<a href="#{each.key}">{escape(shown_quality(each))}</a> {_at(each.at)}' for each in overview.unmeasured
         ],
@@ -182,7 +183,7 @@ def _gaps(overview: Overview) -> Iterator[str]:
         "bare_nodes": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_nodes],
     }
     if not any(found.values()):
-        yield "<p>Every quality has a requirement, and every tree and skill a quality.</p>"
+        yield "<p>Every hard requirement is enforced, every quality has a requirement, every skill a quality.</p>"
     for gap, lines in found.items():
         if lines:
             yield f"<h3>{GAPS[gap]} ({len(lines)})</h3>"

@@ -66,7 +66,7 @@ small { color: var(--soft); }
 .key { padding: 0 .5rem; margin-right: .35rem; border: 1.5px dashed #a8650f; border-radius: 3px; }
 .key.enforced { border-style: solid; border-width: 2.5px; } .key.reviewed { border-style: dotted; }
 .key.quality { border-color: #2f7d4f; border-radius: 99px; }
-figure { margin: 0 0 1rem; }
+figure { margin: 0 0 1rem; content-visibility: auto; contain-intrinsic-size: auto 20rem; }
 .scroll { overflow: auto; border: 1px solid var(--line); border-radius: 6px; background: var(--ground); }
 .given { display: inline-block; }
 svg.tree { display: block; max-width: 100%; height: auto; }
@@ -82,7 +82,8 @@ tr.chosen > th:first-child, tr:target > th:first-child { border-left-color: var(
 .live { position: absolute; left: -99rem; }
 @media print { @page { margin: 14mm; } body { font-size: 10.5pt; } .filter, nav, .skip { display: none; }
   .beside { display: block; } .trees { position: static; max-height: none; overflow: visible; }
-  tr, figure { break-inside: avoid; } thead { display: table-header-group; } .scroll { overflow: visible; border: 0; }
+  tr, figure { break-inside: avoid; } figure { content-visibility: visible; }
+  thead { display: table-header-group; } .scroll { overflow: visible; border: 0; }
   svg.tree { max-width: 100%; height: auto; } a { color: inherit; text-decoration: none; }
   .choosing .box, .choosing .note { opacity: 1 !important; } }
 @media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }

@@ -41,6 +41,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         yield from _table(("Concern", "Nodes"), concerns, paint, width)
         yield ""
     gaps = {
+        "unenforced": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unenforced],
         "unmeasured": [f"{shown_quality(each)}, {_at(each.at, folder)}" for each in overview.unmeasured],
         "unattached": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unattached],
         "bare_trees": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_trees],

@@ -34,4 +34,4 @@ def _clauses(applied: Applied) -> tuple[Clause, ...]:
         return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
     asked = requirement.action in ("fail", "halt")
     why = f"nothing enforces `on violation {requirement.action}`" if asked else ""
-    return tuple(Clause(claim.text, "monitored", why) for claim in requirement.claims)
+    return tuple(Clause(claim.text, "monitored", why, asked) for claim in requirement.claims)

@@ -45,6 +45,7 @@ def told(requirement: RequirementRow, use: Use) -> str:
 
 
 GAPS: Final = {
+    "unenforced": "Hard requirements that are not enforced everywhere",
     "unmeasured": "Qualities without a requirement",
     "unattached": "Requirements without a node",
     "bare_trees": "Trees without any quality",
