@@ -1,0 +1,438 @@
+"""How long the language server takes, driven over standard input and output as an editor drives it.
+
+One invariant: a message is sent when all answers to the one before have come, and what counts is the time to the last
+answer that it asks for: diagnostics are those of the version that was sent.  Processor time is that of the server's
+process and of nobody else, so it tells little of what else the machine does; time by the clock tells all of it.  The
+typing is drawn from a seed, so every run types the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import random
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import missions
+
+FILES, NODES_A_FILE, LARGE = 100, 500, 10_000
+MANY, NODES_OF_MANY = 1_000, 50
+
+BTQ = (sys.executable, "-c", "from btq_lang.server import main; main(['--stdio'])")
+BARE = (
+    sys.executable,
+    "-c",
+    "from pygls.lsp.server import LanguageServer; LanguageServer('bare', '1').start_io()",
+)
+
+Message = dict[str, Any]
+
+
+@dataclass(eq=False)
+class Series:
+    """What one kind of message took, in seconds: by the clock, and of the server's processor time."""
+
+    name: str
+    wall: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A figure that the server must reach, with the figure reached."""
+
+    text: str
+    reached: float
+    met: bool
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Measure and print; the exit code says nothing about speed."""
+    options = _options(arguments)
+    measured: list[Series] = []
+    goals: list[Goal] = []
+    parts: dict[str, Callable[[], tuple[list[Series], list[Goal]]]] = {
+        "start": lambda: starts(options.starts),
+        "edits": lambda: typing(FILES, NODES_A_FILE, options),
+        "large": lambda: typing(1, LARGE, options),
+        "many": lambda: many_files(options.spelling),
+    }
+    for part, measure in parts.items():
+        if options.only in (None, part):
+            series, reached = measure()
+            measured += series
+            goals += reached
+    print(json.dumps(as_data(measured, goals), indent=2) if options.json else as_text(measured, goals))
+
+
+# ---- what is measured -----------------------------------------------------------------------------------------------
+
+
+def starts(rounds: int) -> tuple[list[Series], list[Goal]]:
+    """From the start of the process to the answer to `initialize`, beside a server of pygls without features."""
+    bare, btq = Series("start, pygls alone"), Series("start, btq-lsp")
+    with tempfile.TemporaryDirectory() as folder:
+        for turn in range(rounds + 1):
+            for series, command in ((bare, BARE), (btq, BTQ)):
+                begun = time.perf_counter()
+                server = Server(command, Path(folder))
+                if turn:  # the first one of each fills the caches of the disk
+                    series.wall.append(time.perf_counter() - begun)
+                    series.cpu.append(server.processor_time())
+                server.end()
+    quotient = statistics.median(ours / theirs for ours, theirs in zip(btq.cpu, bare.cpu, strict=True))
+    return [bare, btq], [Goal("start in times of pygls alone, processor <= 1.15", quotient, quotient <= 1.15)]
+
+
+def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
+    """What an author does in one file of a folder: type, and ask."""
+    size = f"{nodes:,} nodes".replace(",", " ")
+    edits, completion, hover, definition, full, delta = (
+        Series(f"{what}, {size}")
+        for what in ("edit to diagnostics", "completion", "hover", "definition", "all tokens", "token delta")
+    )
+    draw = random.Random(options.seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for number in range(files):
+            text = missions.mission(nodes, number + 1, options.spelling)
+            (folder / f"mission{number:03}.btq").write_text(text, encoding="utf-8")
+        server = Server(BTQ, folder)
+        document = server.open(folder / "mission000.btq")
+        server.wait_for(is_about(folder / "mission000.btq"))
+        if files > 1:
+            server.wait_for(is_end_of_progress)
+        memory = server.memory() - _memory_of_bare(folder)
+        full_id = server.request("textDocument/semanticTokens/full", textDocument=document.name)["resultId"]
+        for _ in range(options.rounds):
+            for edit in strokes(document, draw):
+                with server.measuring(edits):
+                    server.change(document, edit)
+            at = document.position(draw.choice(document.words()))
+            place = {"textDocument": document.name, "position": at}
+            with server.measuring(delta):
+                answer = server.request(
+                    "textDocument/semanticTokens/full/delta", textDocument=document.name, previousResultId=full_id
+                )
+            full_id = answer["resultId"]
+            for series, method in (
+                (completion, "textDocument/completion"),
+                (hover, "textDocument/hover"),
+                (definition, "textDocument/definition"),
+            ):
+                with server.measuring(series):
+                    server.request(method, **place)
+            with server.measuring(full):
+                server.request("textDocument/semanticTokens/full", textDocument=document.name)
+            full_id = server.request("textDocument/semanticTokens/full", textDocument=document.name)["resultId"]
+        server.end()
+    allowed = {edits: 5 if nodes < LARGE else 16, completion: 10, hover: 10, definition: 10}
+    if nodes >= LARGE:
+        allowed |= {full: 40, delta: 10}
+    goals = [
+        Goal(
+            f"{series.name}: p99 ms of processor <= {limit}",
+            1000 * percentile(series.cpu, 99),
+            percentile(series.cpu, 99) <= limit / 1000,
+        )
+        for series, limit in allowed.items()
+    ]
+    if nodes < LARGE:
+        goals.append(Goal(f"memory above pygls alone, {files} files of {nodes} nodes: MB <= 25", memory, memory <= 25))
+    return [edits, completion, hover, definition, full, delta], goals
+
+
+def many_files(spelling: missions.Spelling) -> tuple[list[Series], list[Goal]]:
+    """A folder of 1 000 files: when what is open is told, and when all is, with progress meanwhile."""
+    first, whole = Series(f"first diagnostics, {MANY:,} files"), Series(f"all diagnostics, {MANY:,} files")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for number in range(MANY):
+            text = missions.mission(NODES_OF_MANY, number, spelling)
+            (folder / f"mission{number:04}.btq").write_text(text, encoding="utf-8")
+        server = Server(BTQ, folder)
+        begun, cpu = time.perf_counter(), server.processor_time()
+        opened = folder / "mission0500.btq"
+        server.open(opened)
+        server.wait_for(is_about(opened))
+        first.wall.append(time.perf_counter() - begun)
+        first.cpu.append(server.processor_time() - cpu)
+        reports = 0
+        while server.wait_for(is_progress)["params"]["value"]["kind"] != "end":
+            reports += 1
+        whole.wall.append(time.perf_counter() - begun)
+        whole.cpu.append(server.processor_time() - cpu)
+        server.end()
+    quotient = first.wall[0] / whole.wall[0]
+    return [first, whole], [
+        Goal(f"{MANY} files: what is open is told, in times of the whole, < 0.5", quotient, quotient < 0.5),
+        Goal(f"{MANY} files: all, s of processor <= 10", whole.cpu[0], whole.cpu[0] <= 10),
+        Goal(f"{MANY} files: reports of progress >= 3", reports, reports >= 3),
+    ]
+
+
+# ---- typing ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Document:
+    """An open file as the editor has it."""
+
+    uri: str
+    text: str
+    version: int = 1
+
+    @property
+    def name(self) -> Message:
+        return {"uri": self.uri}
+
+    def position(self, offset: int) -> Message:
+        start = self.text.rfind("\n", 0, offset) + 1
+        return {"line": self.text.count("\n", 0, offset), "character": offset - start}
+
+    def words(self) -> list[int]:
+        """Offsets inside names, of nodes, trees and requirements."""
+        return [match.start() + 1 for match in _WORD.finditer(self.text)]
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """What one change of the text is: so much gone at an offset, and something else there."""
+
+    offset: int
+    gone: int
+    text: str
+
+
+def strokes(document: Document, draw: random.Random) -> Iterator[Stroke]:
+    """What an author types in one go: a new node behind another, letter by letter, and a value; sometimes the name of
+    a tree, or the bound of a requirement.  In the end all of it is taken back, so that the file stays as large."""
+    before = document.text
+    line = draw.choice(list(_LEAF.finditer(before)))
+    typed = f"\n{line['blanks']}Charge (level = 80)"
+    for index, letter in enumerate(typed):
+        yield Stroke(line.end() + index, 0, letter)
+    yield Stroke(line.end(), len(typed), "")
+    for pattern in (_VALUE, _BOUND, _TREE):
+        place = draw.choice([match.span("it") for match in pattern.finditer(before)] or [(0, 0)])
+        if place[1]:
+            yield Stroke(place[1], 0, "1")
+            yield Stroke(place[1], 1, "")
+
+
+_LEAF = re.compile(r"^(?P<blanks>[ \t]{8,})[A-Z]\w+(?: \([^()\n]*\))?(?=\n)", re.MULTILINE)
+_VALUE = re.compile(r" = (?P<it>[0-9]+)")
+_BOUND = re.compile(r" at most (?P<it>[0-9]+)")
+_TREE = re.compile(r"^BehaviorTree (?P<it>\w+)", re.MULTILINE)
+_WORD = re.compile(r"\b[A-Z]\w{3,}")
+
+
+# ---- the server at the other end ------------------------------------------------------------------------------------
+
+
+class Server:
+    """A server and the editor's end of it: the editor takes whatever the server offers, and answers what it asks."""
+
+    def __init__(self, command: tuple[str, ...], root: Path) -> None:
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=_ENVIRONMENT)
+        assert self.process.stdin is not None, "it is a pipe"
+        assert self.process.stdout is not None, "as above"
+        self._to, self._from = self.process.stdin, self.process.stdout
+        self._count = 0
+        self._kept: list[Message] = []
+        capabilities = {
+            "window": {"workDoneProgress": True},
+            "textDocument": {"completion": {"completionItem": {"snippetSupport": True}}},
+        }
+        answer = self.request("initialize", capabilities=capabilities, rootUri=root.as_uri(), processId=None)
+        sync = answer["capabilities"].get("textDocumentSync", 1)
+        self.takes_parts = (sync["change"] if isinstance(sync, dict) else sync) == 2
+        self.notify("initialized")
+
+    def open(self, path: Path) -> Document:
+        document = Document(path.as_uri(), path.read_text(encoding="utf-8"))
+        item = {"uri": document.uri, "languageId": "btq", "version": 1, "text": document.text}
+        self.notify("textDocument/didOpen", textDocument=item)
+        return document
+
+    def change(self, document: Document, stroke: Stroke) -> None:
+        """Type, and wait for the diagnostics of what is typed."""
+        end = stroke.offset + stroke.gone
+        change: Message = {"text": stroke.text}
+        if self.takes_parts:
+            change["range"] = {"start": document.position(stroke.offset), "end": document.position(end)}
+        document.text = document.text[: stroke.offset] + stroke.text + document.text[end:]
+        document.version += 1
+        if not self.takes_parts:
+            change["text"] = document.text
+        name = {"uri": document.uri, "version": document.version}
+        self.notify("textDocument/didChange", textDocument=name, contentChanges=[change])
+        self.wait_for(
+            lambda message: (
+                message.get("method") == _DIAGNOSTICS
+                and (message["params"]["uri"], message["params"].get("version")) == (document.uri, document.version)
+            )
+        )
+
+    def request(self, method: str, **params: Any) -> Any:
+        self._count += 1
+        self._send(id=self._count, method=method, params=params)
+        while (message := self._receive()).get("id") != self._count:
+            self._kept.append(message)
+        if "error" in message:
+            raise SystemExit(f"{method} is refused: {message['error']}")
+        return message["result"]
+
+    def notify(self, method: str, **params: Any) -> None:
+        self._send(method=method, params=params)
+
+    def wait_for(self, is_wanted: Callable[[Message], bool]) -> Message:
+        for index, message in enumerate(self._kept):
+            if is_wanted(message):
+                del self._kept[: index + 1]
+                return message
+        self._kept.clear()
+        while not is_wanted(message := self._receive()):
+            pass
+        return message
+
+    @contextmanager
+    def measuring(self, series: Series) -> Iterator[None]:
+        cpu, wall = self.processor_time(), time.perf_counter()
+        yield
+        series.wall.append(time.perf_counter() - wall)
+        series.cpu.append(self.processor_time() - cpu)
+
+    def processor_time(self) -> float:
+        """Seconds of processor that the process has had, to the nanosecond, of all its threads (Linux)."""
+        tasks = Path(f"/proc/{self.process.pid}/task").iterdir()
+        return sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) / 1e9
+
+    def memory(self) -> float:
+        """The megabytes that the process has resident (Linux)."""
+        pages = int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+    def end(self) -> None:
+        self.request("shutdown")
+        self.notify("exit")
+        self.process.wait(timeout=30)
+        self._to.close()
+        self._from.close()
+
+    def _send(self, **message: Any) -> None:
+        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        self._to.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+        self._to.flush()
+
+    def _receive(self) -> Message:
+        """The next message that is not a request of the server's; those are answered."""
+        while True:
+            length = 0
+            while (line := self._from.readline()) not in (b"\r\n", b""):
+                if line.lower().startswith(b"content-length:"):
+                    length = int(line.split(b":")[1])
+            if not length:
+                raise SystemExit("the server has gone")
+            message: Message = json.loads(self._from.read(length))
+            if "id" not in message or "method" not in message:
+                return message
+            self._send(id=message["id"], result=None)
+
+
+_DIAGNOSTICS = "textDocument/publishDiagnostics"
+
+# An installed btq has its bytecode beside it; where writing it is switched off, every start would compile all modules.
+_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def is_about(path: Path) -> Callable[[Message], bool]:
+    """Whether a message tells the diagnostics of a file."""
+    uri = path.as_uri()
+    return lambda message: message.get("method") == _DIAGNOSTICS and message["params"]["uri"] == uri
+
+
+def is_progress(message: Message) -> bool:
+    return message.get("method") == "$/progress"
+
+
+def is_end_of_progress(message: Message) -> bool:
+    return is_progress(message) and message["params"]["value"]["kind"] == "end"
+
+
+def _memory_of_bare(folder: Path) -> float:
+    server = Server(BARE, folder)
+    memory = server.memory()
+    server.end()
+    return memory
+
+
+# ---- the report -----------------------------------------------------------------------------------------------------
+
+
+def percentile(times: Sequence[float], percent: int) -> float:
+    """The time that so many percent of the others do not exceed."""
+    ordered = sorted(times)
+    return ordered[min(len(ordered) - 1, len(ordered) * percent // 100)]
+
+
+def as_text(measured: Sequence[Series], goals: Sequence[Goal]) -> str:
+    """A table in Markdown."""
+    load = ", ".join(f"{one:.1f}" for one in os.getloadavg())
+    lines = [
+        f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.system()}, load {load}",
+        "",
+        "| message | processor ms, p50 | p99 | by the clock ms, p50 | p99 | messages |",
+        "|---|---|---|---|---|---|",
+    ]
+    for series in measured:
+        figures = (
+            *(percentile(series.cpu, percent) for percent in (50, 99)),
+            *(percentile(series.wall, percent) for percent in (50, 99)),
+        )
+        shown = " | ".join(f"{1000 * figure:.1f}" for figure in figures)
+        lines.append(f"| {series.name} | {shown} | {len(series.cpu)} |")
+    lines.append("")
+    lines += [f"{'met   ' if goal.met else 'MISSED'}  {goal.text}: {goal.reached:,.2f}" for goal in goals]
+    return "\n".join(lines)
+
+
+def as_data(measured: Sequence[Series], goals: Sequence[Goal]) -> dict[str, object]:
+    """Everything that was measured, for machines."""
+    return {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "cores": os.cpu_count(),
+        "load": os.getloadavg(),
+        "series": [{"name": one.name, "wall_seconds": one.wall, "cpu_seconds": one.cpu} for one in measured],
+        "goals": [{"goal": goal.text, "reached": goal.reached, "met": goal.met} for goal in goals],
+    }
+
+
+def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", choices=("start", "edits", "large", "many"), help="measure one part")
+    parser.add_argument(
+        "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"
+    )
+    parser.add_argument("--starts", type=int, default=10, help="how often a server is started (default 10)")
+    parser.add_argument("--spelling", choices=("short", "classic"), default="short")
+    parser.add_argument("--seed", type=int, default=1, help="another number, other typing")
+    parser.add_argument("--json", action="store_true", help="print JSON with every single time")
+    return parser.parse_args(arguments)
+
+
+if __name__ == "__main__":
+    main()
