@@ -51,6 +51,7 @@ class Cursor:
         self.inside_out = len(text) + 1
         self._silent_from = self._silent_to = -1  # the last line of text with a complaint
         self.known = 0
+        self._line_start = 0  # of the logical line
         self._said: list[int] | None = None  # where it found a mistake in it
         self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
         self._unclosed = len(text)  # the first of its brackets that is not closed
@@ -63,6 +64,7 @@ class Cursor:
         self.known = len(lexer.problems)
         self._in_wake = self._makes_wake() and not self.text[self._line_end() : lexer.line_start].strip()
         self._would_complain = False
+        self._line_start = lexer.line_start
         lexer.scan()
         self.kinds, self.starts, self.raws = lexer.kinds, lexer.starts, lexer.raws
         self.index = 0
@@ -78,6 +80,10 @@ class Cursor:
         if self._in_wake:
             return self._would_complain
         return len(self.kinds) > 1 and self.kinds[-2] == CLOSE and not self.raws[-2]
+
+    def is_in_wake(self) -> bool:
+        """Whether a mistake on the line just read may hide one on the next."""
+        return self._in_wake or self._makes_wake()
 
     def _line_end(self) -> int:
         return self.starts[-1] + len(self.raws[-1])
@@ -291,7 +297,7 @@ class Cursor:
                 return
         if self._silent_from <= at <= self._silent_to:
             return
-        lower = self._silent_to if 0 <= self._silent_to < at else min(self.starts[0], at)
+        lower = self._silent_to if 0 <= self._silent_to < at else min(self._line_start, at)
         self._silent_from, self._silent_to = line_start(self.text, lower, at), line_end(self.text, at)
         if not (in_line and self._lexer_complained(at)):
             self.problems.append(diagnostic)

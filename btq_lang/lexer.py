@@ -167,6 +167,22 @@ class Lexer:
         self.position = position
         return self.open_line()
 
+    def state(self) -> tuple[tuple[str, ...], int] | None:
+        """The blanks of the open blocks and the level of an open Root's items, where they and the text from here on
+        are all that tells what follows; else None."""
+        searched = min(self._no_double, self._no_single, self._no_comment_end) <= self.size
+        if searched or self.problems or self.adopted or self.ended_early:
+            return None
+        return tuple(self.columns), self._root_level
+
+    def begin_at(self, start: int, state: tuple[tuple[str, ...], int]) -> None:
+        """Stand before the line that starts there, in such a state."""
+        columns, self._root_level = state
+        self.columns = list(columns)
+        self._aliases = [()] * len(columns)
+        self.level = len(columns) - 1
+        self.position = start
+
     def _indent(self, blanks: str) -> None:
         """Open a block, close blocks, or adopt a column that no open block has."""
         columns, aliases = self.columns, self._aliases
@@ -201,7 +217,7 @@ class Lexer:
         """The block that a line belongs to whose indentation fits none: for an item that of the items, else the
         deepest whose opener stands further left."""
         if _top_line().match(self.text, self.position):
-            return max(self._root_level, 0)
+            return max(0, min(self._root_level, len(self.columns) - 1))  # a Root may have no block
         level = len(self.columns) - 1
         while not _extends(blanks, self.columns[level - 1], self._aliases[level - 1]):
             level -= 1

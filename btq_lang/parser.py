@@ -7,6 +7,9 @@ and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
+from operator import attrgetter
+
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
@@ -16,7 +19,7 @@ from btq_lang.near import near
 from btq_lang.nodes import NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.record import replace
-from btq_lang.scan import name_end, path_end
+from btq_lang.scan import line_end, name_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -38,10 +41,11 @@ from btq_lang.syntax import (
     Tree,
     Verbatim,
     Word,
+    moved_by,
     quote,
     unquote,
 )
-from btq_lang.text import Span
+from btq_lang.text import Span, changed
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
@@ -57,8 +61,12 @@ from btq_lang.tokens import (
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from typing import Final, TypeAlias
 
+# What an item begins in: the state of the lexer, the levels of the open Roots, and whether there was a Root.
+Start: TypeAlias = "tuple[tuple[tuple[str, ...], int], tuple[int, ...], bool]"
+
+_start_of: Final = attrgetter("start")
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 
 
@@ -68,13 +76,15 @@ class Parsed:
     Attributes:
         text: the file.
         entries: its items in order; those in the block of a `Root` follow their Root.
+        starts: for each entry, what the parser stood in when it began; None where it cannot begin again there.
     """
 
-    __slots__ = ("_diagnostics", "_tokens", "entries", "text")
+    __slots__ = ("_diagnostics", "_tokens", "entries", "starts", "text")
 
-    def __init__(self, text: str, entries: tuple[Entry, ...]) -> None:
+    def __init__(self, text: str, entries: tuple[Entry, ...], starts: tuple[Start | None, ...]) -> None:
         self.text: Final = text
         self.entries: Final = entries
+        self.starts: Final = starts
         self._tokens: tuple[Token, ...] | None = None
         self._diagnostics: tuple[Diagnostic, ...] | None = None
 
@@ -110,32 +120,107 @@ def parse(text: str) -> Parsed:
         The tree of what could be understood, with a diagnostic for every mistake.
     """
     with NotCollecting():
-        return Parsed(text, Parser(text).file())
+        parser = Parser(text)
+        return Parsed(text, parser.file(), tuple(parser.begun))
+
+
+def reparse(before: Parsed, text: str) -> Parsed:
+    """Parse a file after an edit: the same as `parse(text)`, but what the edit does not touch is taken over.
+
+    From the last item before the change that the parser can begin at, it reads until it comes to an item behind the
+    change as it came to it before; items that it did not read anew are the same objects.
+    """
+    change = changed(before.text, text)
+    if change is None:
+        return before
+    first = _first_touched(before, change.start)
+    by = len(text) - len(before.text)
+    old = before.entries
+    behind = {
+        old[index].start + by: index
+        for index in range(bisect_left(old, change.end, first, key=_start_of), len(old))
+        if before.starts[index] is not None
+    }
+    with NotCollecting():
+        parser = Parser(text)
+        if first:
+            parser.begin_at(old[first].start, before.starts[first])
+        entries = parser.file({start: before.starts[index] for start, index in behind.items()})
+    if not parser.has_met:
+        return Parsed(text, old[:first] + entries, (*before.starts[:first], *parser.begun))
+    last = behind[parser.lexer.line_start]
+    moved = tuple([entry if by == 0 else moved_by(entry, by) for entry in old[last:]])
+    return Parsed(text, old[:first] + entries + moved, (*before.starts[:first], *parser.begun, *before.starts[last:]))
+
+
+def _first_touched(before: Parsed, change: int) -> int:
+    """The first entry that may be another after a change there: an item's first line says where the one before it
+    ends, so a change in that line touches both."""
+    first = bisect_right(before.entries, change, key=_start_of) - 1
+    if first > 0:
+        entry = before.entries[first]
+        if change <= line_end(before.text, entry.start + entry.item.start):
+            first -= 1
+    while first > 0 and before.starts[first] is None:
+        first -= 1
+    return max(first, 0)
 
 
 class Parser(NodeParser):
-    """The state of one parse: the cursor, the open item, and what was found so far."""
+    """The state of one parse: the cursor, the open item, and what was found so far.
+
+    Attributes:
+        begun: for each entry, the state that it began in.
+        has_met: it stands where an earlier parse stood in the same state, and need read no further.
+    """
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self.entries: list[Entry] = []
+        self.begun: list[Start | None] = []
+        self.has_met = False
         self.has_root = False
         self.roots: list[int] = []  # the levels of the Roots whose blocks are open, for more than one is a mistake
         self.stray_level = -1  # the level of lines indented for no reason, reported once
 
     # ---- file and items ----
 
-    def file(self) -> tuple[Entry, ...]:
-        """File = { Item }"""
+    def file(self, meeting: dict[int, Start | None] | None = None) -> tuple[Entry, ...]:
+        """File = { Item }
+
+        Args:
+            meeting: where an earlier parse stood, by the start of the line, in which state.
+        """
         self.more = self.lexer.open_line()
         while self.more:
             while self.roots and self.lexer.level <= self.roots[-1]:
                 self.roots.pop()
+            state = self.state()
+            if meeting is not None and state is not None and meeting.get(self.lexer.line_start) == state:
+                self.has_met = True
+                return tuple(self.entries)
+            self.begun.append(state)
             self.item(self.roots[-1] + 1 if self.roots else 0, bool(self.roots))
         if self.problems or self.lexer.problems:  # behind the last item, or in a file without any
             self.base = 0
+            self.begun.append(None)
             self.entry(Skipped(len(self.text), len(self.text)), False)
         return tuple(self.entries)
+
+    def state(self) -> Start | None:
+        """What the next item depends on besides its text; None where that is more than can be said in short: after
+        mistakes whose traces go on, and where the rest of the file was searched for the end of something."""
+        if self.problems or self.stray_level >= 0 or self.inside_out <= len(self.text) or self.is_in_wake():
+            return None
+        lexer = self.lexer.state()
+        return None if lexer is None else (lexer, tuple(self.roots), self.has_root)
+
+    def begin_at(self, start: int, state: Start | None) -> None:
+        """Go on from the start of a line, as a parser does that has come there in this state."""
+        assert state is not None, "a parse begins again only where that can be said"
+        lexer, roots, self.has_root = state
+        self.roots = list(roots)
+        self.lexer.begin_at(start, lexer)
 
     def item(self, level: int, in_root: bool) -> None:
         """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""

@@ -555,6 +555,11 @@ class Entry:
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
+def moved_by(entry: Entry, by: int) -> Entry:
+    """The same item elsewhere in its file."""
+    return Entry(entry.start + by, entry.item, entry.in_root, entry.diagnostics)
+
+
 def quote(text: str) -> str:
     """A STRING that says `text`."""
     for character, escape in (("\\", "\\\\"), ('"', '\\"'), ("\t", "\\t")):

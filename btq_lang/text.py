@@ -7,9 +7,9 @@ editor), and `LineIndex` is the only place that turns one into the other, in the
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections import namedtuple
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from btq_lang.record import record
 
@@ -73,6 +73,29 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     return "".join([*pieces, text[at:]])
 
 
+def changed(before: str, after: str) -> Span | None:
+    """The part of a text that an edit replaced: what is before and behind it is in both; None where they are equal."""
+    if before == after:
+        return None
+    shorter = min(len(before), len(after))
+    start = _same(lambda low, high: before[low:high] == after[low:high], shorter)
+    size, new_size = len(before), len(after)
+    rest = _same(lambda low, high: before[size - high : size - low] == after[new_size - high : new_size - low], shorter)
+    return Span(start, size - min(rest, shorter - start))
+
+
+def _same(is_same: Callable[[int, int], bool], size: int) -> int:
+    """How much is the same from the start of something on, found by halving."""
+    low, high = 0, size
+    while low < high:
+        middle = (low + high + 1) // 2
+        if is_same(low, middle):
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
 class LineIndex:
     """Where the lines of a text begin, to turn offsets into positions and back."""
 
@@ -81,6 +104,25 @@ class LineIndex:
     def __init__(self, text: str) -> None:
         self._text = text
         self._starts = [0, *(end.end() for end in LINE_END.finditer(text))]
+
+    def edited(self, text: str) -> LineIndex:
+        """The index of the text after an edit; the lines before and behind the change are not looked for again."""
+        change = changed(self._text, text)
+        if change is None:
+            return self
+        # A \r before the change, or a \n behind it, may be half of a line end that the change makes or breaks.
+        first = bisect_left(self._starts, change.start) - 1
+        last = bisect_right(self._starts, change.end)
+        by = len(text) - len(self._text)
+        end = self._starts[last] + by if last < len(self._starts) else len(text)
+        begin = self._starts[max(first, 0)]
+        after = LineIndex("")
+        after._text = text
+        between = [match.end() for match in LINE_END.finditer(text, begin, end)]
+        after._starts = [*self._starts[: max(first, 0) + 1], *between]
+        if last < len(self._starts):
+            after._starts[-1:] = [start + by for start in self._starts[last:]]
+        return after
 
     @property
     def line_count(self) -> int:

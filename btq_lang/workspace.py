@@ -14,12 +14,12 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.parser import Parsed, parse
+from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.places import Places
 from btq_lang.project import Project, include_candidates
 from btq_lang.record import record
 from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
-from btq_lang.syntax import Entry, Include, Root, Tree, Word
+from btq_lang.syntax import Entry, Include, Item, Root, Tree, Word
 from btq_lang.text import LineIndex, Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -72,6 +72,24 @@ class Origin:
     is_complete: bool
 
 
+class Facts:
+    """What an item says by itself: found out when first asked for, and true for as long as the item stays."""
+
+    def __init__(self, item: Item) -> None:
+        self.item = item
+
+    @cached_property
+    def summary(self) -> Summary:
+        return summarize(self.item)
+
+    @cached_property
+    def mentions(self) -> tuple[Mention, ...]:
+        """Every word of it that names something."""
+        from btq_lang.mentions import mentions  # only editors ask
+
+        return mentions(self.item)
+
+
 class File:
     """One file: its text, and what was made of it so far.  Two files with one path and text are equal.
 
@@ -84,6 +102,18 @@ class File:
         self.path = path
         self.text = text
         self.origin = origin
+
+    def edited(self, text: str) -> File:
+        """The file after an edit, which shares what the edit does not touch."""
+        after = File(self.path, text)
+        if self.origin is None and "parsed" in self.__dict__ and is_btq(self.path):
+            after.parsed = reparse(self.parsed, text)
+            known = self.facts
+            items = (entry.item for entry in after.parsed.entries)
+            after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
+            if "lines" in self.__dict__:
+                after.lines = self.lines.edited(text)
+        return after
 
     @cached_property
     def parsed(self) -> Parsed:
@@ -100,9 +130,15 @@ class File:
         return self.origin.is_complete if self.origin else is_btq(self.path)
 
     @cached_property
+    def facts(self) -> dict[int, Facts]:
+        """What is known of each item, by its id."""
+        return {id(entry.item): Facts(entry.item) for entry in self.parsed.entries}
+
+    @cached_property
     def summaries(self) -> tuple[Summary, ...]:
         """One for each entry."""
-        return tuple(summarize(entry.item) for entry in self.parsed.entries)
+        facts = self.facts
+        return tuple([facts[id(entry.item)].summary for entry in self.parsed.entries])
 
     @cached_property
     def lines(self) -> LineIndex:
@@ -119,12 +155,7 @@ class File:
 
     def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
         """Every word of one of the file's entries that names something."""
-        known = self._mentions.get(id(entry))
-        if known is None:
-            from btq_lang.mentions import mentions  # only editors ask
-
-            known = self._mentions[id(entry)] = mentions(entry.item)
-        return known
+        return self.facts[id(entry.item)].mentions
 
     @cached_property
     def mentioned(self) -> dict[str, list[tuple[Entry, Mention]]]:
@@ -134,10 +165,6 @@ class File:
             for mention in self.mentions_of(entry):
                 found.setdefault(mention.name, []).append((entry, mention))
         return found
-
-    @cached_property
-    def _mentions(self) -> dict[int, tuple[Mention, ...]]:
-        return {}
 
     @cached_property
     def source_lines(self) -> LineIndex:
@@ -153,11 +180,7 @@ class File:
 
     def summary_of(self, entry: Entry) -> Summary:
         """The summary of one of the file's entries."""
-        return self._summaries[id(entry)]
-
-    @cached_property
-    def _summaries(self) -> dict[int, Summary]:
-        return {id(entry): summary for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)}
+        return self.facts[id(entry.item)].summary
 
     @cached_property
     def _starts(self) -> dict[int, int]:
@@ -255,7 +278,8 @@ class Workspace:
 
     def with_file(self, path: str, text: str) -> Workspace:
         """The workspace after an edit: `path` says `text`; every other file is shared."""
-        return Workspace({**self.files, path: File(path, text)}, self.project)
+        known = self.files.get(path)
+        return Workspace({**self.files, path: known.edited(text) if known else File(path, text)}, self.project)
 
     def without_file(self, path: str) -> Workspace:
         return Workspace({other: file for other, file in self.files.items() if other != path}, self.project)

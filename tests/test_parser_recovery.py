@@ -325,3 +325,9 @@ def test_a_quote_alone_at_the_end_of_a_line_is_no_string_that_ends_further_down(
         "3:33 unclosed-string «'» this string has no closing '\n"
         "4:5 syntax-error «a» expected a verb behind `'` (takes, succeeds, needs, keeps, …), found `a`"
     )
+
+
+def test_a_root_without_a_block_leaves_no_column_behind() -> None:
+    text = "Root A\n    BehaviorTree A\n        X\n    Root\n  QualityReq rq1\n"
+    found = [(problem.rule, problem.span.start) for problem in parse(text).diagnostics]
+    assert found == [("second-root", 40), ("inconsistent-indentation", 45)]

@@ -1,0 +1,140 @@
+"""A parse after an edit gives what a parse of the whole text gives, and keeps what the edit does not touch."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import missions
+import pytest
+
+from btq_lang.parser import Parsed, parse, reparse
+from btq_lang.text import LineIndex, changed
+from btq_lang.workspace import Workspace
+
+EVERY_FORM = (Path(__file__).parent / "every_form.btq").read_text(encoding="utf-8")
+IN_ROOT = (
+    "# first\nRoot A\n    BehaviorTree A\n        ->\n            X (a = 1)\n    # between\n    BehaviorTree B\n"
+    "        Y satisfies rq1\n\n    QualityReq rq1\n        takes at most 3 s\nBehaviorTree C\n    Z\n"
+)
+PIECES = (
+    *(
+        "\n",
+        "    ",
+        "\t",
+        "Pick",
+        "rq1",
+        '"',
+        "'",
+        "(",
+        ")",
+        "{",
+        "# ",
+        "/*",
+        "*/",
+        "// ",
+        "\\",
+        "=",
+        ",",
+        "\r",
+        "\r\n",
+    ),
+    *(
+        "\nBehaviorTree X\n",
+        "\nRoot X\n",
+        "\n    Root\n",
+        'include "x.btq"\n',
+        "QualityReq ID = x",
+        " satisfies ",
+        "->",
+    ),
+    *("BehaviorTree ", "BehaviourTre ", "\nsignal s : %\n", "\n  ", "30sek", "}", "\ufeff", "\n    BehaviorTree Y\n"),
+)
+
+
+def same(one: Parsed, other: Parsed) -> bool:
+    return (one.text, one.entries, one.starts) == (other.text, other.entries, other.starts)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "text",
+    [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short"), "", "Root\n"],
+    ids=["every form", "in a Root", "classic", "short", "empty", "Root alone"],
+)
+def test_after_any_edits_it_is_the_parse_of_the_text(text: str, seed: int) -> None:
+    chance = random.Random(f"{seed}{text[:40]}")
+    parsed = parse(text)
+    for step in range(150):
+        at = chance.randrange(len(parsed.text) + 1)
+        gone = chance.choice((0, 0, 1, 1, 4, 30))
+        after = parsed.text[:at] + chance.choice((*PIECES, "", "")) + parsed.text[at + gone :]
+        if chance.random() < 0.2 or len(after) > 2 * len(text) + 100:
+            after = text  # mend it all: mistakes that stay would hide what an edit of a sound file does
+        parsed = reparse(parsed, after)
+        assert same(parsed, parse(after)), (step, after)
+
+
+def test_an_item_that_an_edit_does_not_touch_is_the_same_object() -> None:
+    text = missions.mission(200, 1, "short")
+    before = parse(text)
+    tree = next(entry for entry in before.entries[20:] if "BehaviorTree" in text[entry.start : entry.start + 20])
+    at = text.index("\n", tree.start + tree.item.start + 40)
+    after = reparse(before, text[:at] + "  # a remark" + text[at:])
+    others = [entry for entry in before.entries if entry is not tree]
+    assert len(after.entries) == len(before.entries)
+    kept = [mine.item is old.item for mine, old in zip(after.entries, before.entries, strict=True)]
+    assert kept == [old is not tree for old in before.entries]
+    assert len(others) == kept.count(True)
+    assert reparse(after, after.text) is after
+
+
+def test_an_edit_of_an_items_first_line_touches_the_item_before_it_too() -> None:
+    text = "signal a : %\nsignal b : %\nsignal c : %\n"
+    before = parse(text)
+    after = reparse(before, text.replace("b", "bb"))
+    kept = [mine.item is old.item for mine, old in zip(after.entries, before.entries, strict=True)]
+    assert kept == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "span"),
+    [
+        ("abc", "abc", None),
+        ("abc", "abXc", (2, 2)),
+        ("abc", "ac", (1, 2)),
+        ("aaa", "aaaa", (3, 3)),
+        ("aaaa", "aa", (2, 4)),
+        ("", "a", (0, 0)),
+        ("abcabc", "abc", (3, 6)),
+        ("x" * 1000 + "a" + "y" * 999, "x" * 1000 + "b" + "y" * 999, (1000, 1001)),
+    ],
+)
+def test_what_an_edit_replaced(before: str, after: str, span: tuple[int, int] | None) -> None:
+    assert changed(before, after) == span
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_line_index_that_is_patched_is_that_of_the_text(seed: int) -> None:
+    chance = random.Random(seed)
+    text = "ab\ncd\r\nef\r\n\n"
+    index = LineIndex(text)
+    for _ in range(400):
+        at = chance.randrange(len(text) + 1)
+        text = (
+            text[:at] + chance.choice(("x", "\n", "\r", "\r\n", "", "y\nz")) + text[at + chance.choice((0, 0, 1, 3)) :]
+        )
+        index = index.edited(text)
+        fresh = LineIndex(text)
+        offsets = range(len(text) + 1)
+        assert [index.position(one) for one in offsets] == [fresh.position(one) for one in offsets]
+        assert index.line_count == fresh.line_count
+
+
+def test_the_file_after_an_edit_keeps_what_is_known_of_its_items() -> None:
+    before = Workspace.of({"/f": "BehaviorTree A\n    X\nBehaviorTree B\n    Y\n"})
+    known = before.files["/f"].summaries
+    after = before.with_file("/f", "BehaviorTree A\n    X\nBehaviorTree B\n    YY\n").files["/f"]
+    assert after.summaries[0] is known[0]
+    assert [use.name for use in after.summaries[1].uses] == ["YY"]
+    assert after == Workspace.of({"/f": after.text}).files["/f"]
