@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -49,6 +50,44 @@ class Neovim:
 def neovim(nvim: Path, tmp_path: Path) -> Neovim:
     (tmp_path / "btq.toml").write_text("")
     return Neovim(nvim, tmp_path)
+
+
+def test_installed_as_the_page_says(nvim: Path, tmp_path: Path) -> None:
+    """A new user's home: the two lines of docs/editors.md, `btq-lsp` on the PATH, and the line that formats on save."""
+    page = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8").partition("\n## Neovim\n")[2]
+    (install, *_), (format_on_save,) = (
+        re.findall(rf"^```{language}\n(.*?)^```$", page, re.DOTALL | re.MULTILINE) for language in ("sh", "lua")
+    )
+    server = tmp_path / "bin" / "btq-lsp"
+    server.parent.mkdir()
+    server.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m btq_lang.server "$@"\n')
+    server.chmod(0o755)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("XDG_")}
+    environment |= {"HOME": str(tmp_path), "PATH": f"{server.parent}:{os.environ['PATH']}"}
+    subprocess.run(["bash", "-e", "-c", install], cwd=ROOT, env=environment, check=True)
+    (tmp_path / "init.lua").write_text(f"if vim.lsp.buf.format then\n{format_on_save}end\n")
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    script = """
+    local btq = ...
+    local found = btq.diagnostics(1)
+    vim.api.nvim_buf_set_lines(0, 2, 3, true, { '        Sequence   First' })
+    vim.cmd('write')
+    return { found, btq.lines()[3], vim.lsp.buf.format ~= nil }
+    """
+    drive = Path(__file__).with_name("drive.lua")
+    command = [str(nvim), "--headless", "-u", str(tmp_path / "init.lua"), "main.btq", "-S", str(drive)]
+    run = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={**environment, "BTQ_SCRIPT": script},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    found, line, formats = json.loads(run.stdout.splitlines()[-1])
+    assert found == ["3:9-15 unknown-node"]
+    assert line == ("        Sequence First" if formats else "        Sequence   First")
 
 
 def test_both_endings_are_missions(neovim: Neovim) -> None:
