@@ -54,6 +54,21 @@ def is_pointer(text: str) -> bool:
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
 
 
+def plain_type(port_type: str) -> str:
+    """One name for a type that has several: `int32_t` is `int`, `std::vector<double, …>` is `std::vector<double>`."""
+    item = _list_item(port_type)
+    if item is not None and "deque" not in port_type:
+        return f"std::vector<{item}>"
+    plain = _plain(port_type)
+    return "std::string" if plain == "string" else plain
+
+
+def is_known_type(plain: str) -> bool:
+    """Is it a type of the engine's or of C++ itself, by the name that `plain_type` gives it?  Any other is somebody's
+    own, and may be another word for one of these."""
+    return plain in _INTEGERS or plain in _OTHER_TYPES or _list_item(plain) is not None
+
+
 def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
     if plain in _INTEGERS:
         return _check_integer(plain, text)
@@ -223,6 +238,7 @@ _SYNONYMS: Final = {
     "int8_t": "signed char",
     "uint8_t": "unsigned char",
 }
+_OTHER_TYPES: Final = frozenset(("double", "float", "bool", "std::string", "BT::NodeStatus"))
 # Up to the first a number that is not 0 becomes 0, beyond the second it becomes infinite: the engine refuses both.
 _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.006492321624085e-46, 3.4028235677973366e38)}
 

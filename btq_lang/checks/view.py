@@ -37,6 +37,7 @@ from btq_lang.workspace import Definition, File, Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from btq_lang.checks.mixed_types import EntryTypes
     from btq_lang.checks.results import TreeResults
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Requirements
@@ -230,6 +231,13 @@ class View:
     def calls(self) -> Calls:
         """Which tree runs which, of all trees in scope."""
         return Calls(self.workspace, self.scope)
+
+    @cached_property
+    def entry_types(self) -> EntryTypes:
+        """The types that blackboard entries meet."""
+        from btq_lang.checks.mixed_types import EntryTypes  # it asks views, too
+
+        return EntryTypes(self)
 
     @cached_property
     def results(self) -> TreeResults:

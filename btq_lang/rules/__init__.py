@@ -84,6 +84,7 @@ _TABLE = (
     Rule("invalid-literal", _E, "a value that the port's type refuses"),
     Rule("trailing-text-in-number", _W, "text behind a number that the engine drops silently"),
     Rule("number-for-text", _E, "a number that a SubTree gives to a port of text below it"),
+    Rule("entry-with-two-types", _E, "a blackboard entry that ports of two types are given"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or of another dimension"),
     Rule("child-count", _E, "more or fewer children than the node takes"),
     Rule("switch-cases", _E, "a Switch whose cases and children do not match"),
