@@ -84,7 +84,6 @@ def test_what_is_no_placeholder(node: str) -> None:
         'ScriptAction /* why */ (name = "A")',
         'ScriptAction (/* why */ name = "A")',
         'ScriptAction (name = "A")\n        Pick',
-        'ScriptAction (name = "A"',
     ],
 )
 def test_where_the_name_stands_in_an_unusual_place_no_fix_is_offered(node: str) -> None:

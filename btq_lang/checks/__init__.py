@@ -37,6 +37,8 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
 from btq_lang.project import configured
 from btq_lang.record import replace
+from btq_lang.rules import Severity
+from btq_lang.scan import line_start
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -195,13 +197,25 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
         checks = CHECKS.get(type(entry.item), ())
         if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
             checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
-        diagnostics = [*entry.diagnostics, *(diagnostic for each in checks for diagnostic in each(view, entry))]
+        diagnostics = [diagnostic for each in checks for diagnostic in each(view, entry)]
+        if entry.diagnostics:
+            diagnostics = [*entry.diagnostics, *_on_sound_lines(diagnostics, entry, view.file.text)]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
     if "btq:" in view.file.text:
         suppressions = Suppressions(view.file)
         found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
     found = list(configured(workspace.project, shown_on_origins(workspace, path, found)))
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
+
+
+def _on_sound_lines(found: list[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
+    """What is not on a line with a syntax error: what a line means is not known before it can be read."""
+    broken = {_line(text, entry, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
+    return (each for each in found if _line(text, entry, each) not in broken)
+
+
+def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
+    return line_start(text, entry.start, entry.start + diagnostic.span.start)
 
 
 def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:
