@@ -7,9 +7,10 @@ blocks, is at every line what it would be had the lexer opened the line.
 
 from __future__ import annotations
 
+from btq_lang import patterns
 from btq_lang.blocks import MAX_DEPTH, Block
 from btq_lang.lexer import Lexer
-from btq_lang.patterns import NO_NODE, read_between, read_line, role_of, value_kind
+from btq_lang.patterns import NO_NODE, role_of, value_kind
 from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
 from btq_lang.tokens import NAME, NODE_CLAUSES
@@ -26,6 +27,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     Returns:
         Where the next line begins, or -1 if none was read; and the node that the last line is, if it is one.
     """
+    read_line, read_between = patterns.read_line, patterns.read_between
     text, columns = lexer.text, lexer.columns
     column = lexer.blanks
     top = blocks[0].level

@@ -19,7 +19,7 @@ from btq_lang.near import near
 from btq_lang.nodes import NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.record import replace
-from btq_lang.scan import line_end, name_end, path_end
+from btq_lang.scan import COMPILED, line_end, name_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -58,6 +58,9 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+
+if not COMPILED:
+    from btq_lang.patterns import expect
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -176,6 +179,8 @@ class Parser(NodeParser):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
+        if not COMPILED:
+            expect(len(text))
         self.entries: list[Entry] = []
         self.begun: list[Start | None] = []
         self.has_met = False

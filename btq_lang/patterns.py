@@ -73,7 +73,7 @@ def read_attributes(
 
 def read_list(text: str, start: int, base: int) -> NodeClause | None:
     """ "satisfices" QualityPath { "," QualityPath } | "satisfies" Name { "," Name }, at the end of a line"""
-    match = _line_list().match(text, start)
+    match = None if read_line is _nothing else _line_list().match(text, start)
     return None if match is None else _listed(match, base)
 
 
@@ -112,9 +112,9 @@ def _listed(match: re.Match[str], base: int) -> NodeClause:
     start, end = match.span(1)
     text = match.string
     if match[2] is not None:
-        qualities = [Quality(_path(path.start(1) - base, path[1])) for path in _PATHS(text, *match.span(2))]
+        qualities = [Quality(_path(path.start(1) - base, path[1])) for path in _paths().finditer(text, *match.span(2))]
         return Satisfices(start - base, end - base, tuple(qualities))
-    uses = [ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES(text, *match.span(3))]
+    uses = [ReqRef(Word(NAME, name.start() - base, name[0])) for name in _names().finditer(text, *match.span(3))]
     return Satisfies(start - base, end - base, tuple(uses))
 
 
@@ -165,30 +165,61 @@ _LINE_END: Final = r"(?=[\r\n]| (?:\#|//))"
 
 # ---- patterns -------------------------------------------------------------------------------------------------------
 
-# A line of a tree; each group but the first may be missing:
-#     1 blanks  2 to 4 up to three words  5 to 8 two pairs  9 the closing bracket, empty where the brackets go on
-#     10 the end of the line with the comment before it, empty where the line goes on
-read_line: Final = re.compile(
-    rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME}){_LABEL}{_LABEL}"
-    rf"(?: ?\((?:{_PAIR}(?:{_PAIR}|)|)(\)|)|)"
-    rf"((?: +{_REMARK}|)\r?\n|)"
-).match
-# Blank lines and comments between two lines.
-read_between: Final = re.compile(rf"(?:[ \t]*(?:{_COMMENT}|)\r?\n)+").match
-# 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket; none of them: a clause follows
-_ATTRIBUTE: Final = re.compile(
-    rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(?=satisfi))"
-).match
-_NAMES: Final = re.compile(rf"{_NAME}(?:-\w+)*").finditer
-_PATHS: Final = re.compile(rf"(?:Quality ?= ?|)({_PATH})").finditer
-# A name has a follower, for in `Ready?`, `M->` and `a#` it is more or less than a name.
-_TOKEN: Final = re.compile(
-    rf"[ \t]*(?:({_NAME}(?:-\w+)*)(?=[ \t,()=:.<>\r\n])|({_STRING})|([0-9]+)|(==?|,|::?|\.|[<>]=?))"
-).match
+
+def expect(size: int) -> None:
+    """Tell that so many characters are to be read: when there are enough of them, the patterns are compiled.
+
+    Until then they match nothing, so `plain` reads everything itself: a small file is read before they are compiled.
+    """
+    global _expected
+    _expected += size
+    if _expected >= _WORTH and read_line is _nothing:
+        _compile()
+
+
+def _compile() -> None:
+    global read_line, read_between, _ATTRIBUTE, _TOKEN
+    # A line of a tree; each group but the first may be missing:
+    #     1 blanks  2 to 4 up to three words  5 to 8 two pairs  9 the closing bracket, empty where the brackets go on
+    #     10 the end of the line with the comment before it, empty where the line goes on
+    read_line = re.compile(
+        rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME}){_LABEL}{_LABEL}"
+        rf"(?: ?\((?:{_PAIR}(?:{_PAIR}|)|)(\)|)|)"
+        rf"((?: +{_REMARK}|)\r?\n|)"
+    ).match
+    # Blank lines and comments between two lines.
+    read_between = re.compile(rf"(?:[ \t]*(?:{_COMMENT}|)\r?\n)+").match
+    # 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket; none of them: a clause follows
+    _ATTRIBUTE = re.compile(
+        rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(?=satisfi))"
+    ).match
+    # A name has a follower, for in `Ready?`, `M->` and `a#` it is more or less than a name.
+    _TOKEN = re.compile(
+        rf"[ \t]*(?:({_NAME}(?:-\w+)*)(?=[ \t,()=:.<>\r\n])|({_STRING})|([0-9]+)|(==?|,|::?|\.|[<>]=?))"
+    ).match
+
+
+def _nothing(text: str, at: int) -> re.Match[str] | None:
+    return None
+
+
+read_line = read_between = _ATTRIBUTE = _TOKEN = _nothing
 _TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups of _TOKEN
+_WORTH: Final = 25_000  # to read so many characters without patterns takes as long as to compile them
+_expected = 0
 
 
 # ---- patterns that not every file needs: each takes a millisecond to compile ----------------------------------------
+
+
+@cache
+def _names() -> re.Pattern[str]:
+    return re.compile(rf"{_NAME}(?:-\w+)*")
+
+
+@cache
+def _paths() -> re.Pattern[str]:
+    return re.compile(rf"(?:Quality ?= ?|)({_PATH})")
 
 
 @cache

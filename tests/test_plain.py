@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from missions import mission
 
-from btq_lang import lexer, lines, nodes, parser, plain, scan
+from btq_lang import lexer, lines, nodes, parser, patterns, plain, scan
 from btq_lang.parser import Parsed, parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +23,7 @@ EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*") if path.suffix
 CLASSIC, SHORT = mission(30, 7, "classic"), mission(30, 7, "short")
 
 Reader = Callable[[str], Parsed]
+patterns.expect(1_000_000)  # the usual reader takes no short cuts before it has read enough
 
 
 def parse_by_characters(text: str) -> Parsed:
@@ -84,6 +85,16 @@ def test_the_usual_reader_takes_the_short_cuts(monkeypatch: pytest.MonkeyPatch) 
     parse(mission(1_000, 1, "classic"))
     assert len(by_characters) < 50
     assert lines.read_lines is nodes.read_lines
+
+
+def test_a_small_file_is_read_before_patterns_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patterns, "_expected", 0)
+    for pattern in ("read_line", "read_between", "_ATTRIBUTE", "_TOKEN"):
+        monkeypatch.setattr(patterns, pattern, patterns._nothing)
+    parse(SHORT)
+    assert patterns.read_line is patterns._nothing
+    parse(mission(1_000, 1, "short"))
+    assert patterns.read_line is not patterns._nothing
 
 
 # ---- torn texts -----------------------------------------------------------------------------------------------------
