@@ -6,13 +6,17 @@ Every answer is made in the terms of `convert`; which request asks which feature
 from __future__ import annotations
 
 import asyncio
+import functools
 import logging
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, TypeVar
+from concurrent.futures import Future
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol
 
 from btq_lang import __version__
 from btq_lang.convert import Converter
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace import Workspace
 
 T = TypeVar("T")
+Handler = TypeVar("Handler", bound=Callable[..., Any])
 
 
 class Refused(JsonRpcException):
@@ -31,11 +36,41 @@ class Refused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+MOST_DETAILS = 500  # a parameter may hold a whole text
+
+
+class Protocol(LanguageServerProtocol):
+    """The protocol, without a leak: pygls 2.1 keeps what became of each notification, and every key is one."""
+
+    def _check_handler_result(self, future: Future[Any]) -> None:
+        kept = self._request_futures
+        for key in [key for key, other in kept.items() if other is future]:
+            del kept[key]
+        super()._check_handler_result(future)
+
+
+class Traced(logging.Handler):
+    """What is logged, for an editor that traces: it may not show what a server writes to standard error."""
+
+    def __init__(self, server: Server) -> None:
+        super().__init__(logging.WARNING)  # pygls logs at lower levels what it sends, this too
+        self._server = server
+        self._is_telling = False
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if not self._is_telling:  # what goes wrong while it is told is logged, too
+            self._is_telling = True
+            self._server.trace(record.getMessage(), self.format(record))
+            self._is_telling = False
+
+
 class Server(LanguageServer):
     """The server: a session, the way to the editor's terms, and what the editor has been told."""
 
     def __init__(self) -> None:
-        super().__init__("btq", __version__, text_document_sync_kind=types.TextDocumentSyncKind.Full)
+        super().__init__(
+            "btq", __version__, protocol_cls=Protocol, text_document_sync_kind=types.TextDocumentSyncKind.Full
+        )
         self.session = Session()
         self.convert = Converter()
         self.versions: dict[str, int] = {}
@@ -45,6 +80,43 @@ class Server(LanguageServer):
         self.waiting: dict[str, None] = {}
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
+
+    # ---- what an editor that traces is told ----
+
+    def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
+        register = super().feature(feature_name, options)
+        return lambda handler: register(self._timed(feature_name, handler))
+
+    def trace(self, message: str, details: str) -> None:
+        """Tell what the server does, if the editor has asked for it; the details, if it has asked for those."""
+        value = self.protocol.trace
+        if value is not types.TraceValue.Off:
+            verbose = details if value is types.TraceValue.Verbose else None
+            self.log_trace(types.LogTraceParams(message, verbose))
+
+    def _timed(self, name: str, handler: Handler) -> Handler:
+        """A handler that says how long it took."""
+
+        def say(begin: float, arguments: tuple[Any, ...]) -> None:
+            self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MOST_DETAILS])
+
+        @functools.wraps(handler)
+        def answer(*arguments: Any) -> Any:
+            begin = perf_counter()
+            try:
+                return handler(*arguments)
+            finally:
+                say(begin, arguments)
+
+        @functools.wraps(handler)
+        async def answer_later(*arguments: Any) -> Any:
+            begin = perf_counter()
+            try:
+                return await handler(*arguments)
+            finally:
+                say(begin, arguments)
+
+        return answer_later if asyncio.iscoroutinefunction(handler) else answer  # type: ignore[return-value]  # `wraps`
 
     # ---- what an editor can do ----
 

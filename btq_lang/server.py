@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from btq_lang import __version__
 from btq_lang.commands.options import add_server_options
-from btq_lang.editor import Refused, Server
+from btq_lang.editor import Refused, Server, Traced
 from btq_lang.handlers import register
 
 
@@ -28,10 +28,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def serve(options: argparse.Namespace) -> int:
     """Serve as the options say."""
     logging.basicConfig(stream=sys.stderr, level=options.log.upper())
-    for handler in logging.getLogger().handlers:
-        handler.addFilter(_is_no_refusal)
     sys.setrecursionlimit(10_000)  # trees are 256 levels deep, and their outline is converted by recursion
     server = make_server()
+    logging.getLogger().addHandler(Traced(server))
+    for handler in logging.getLogger().handlers:
+        handler.addFilter(_is_no_refusal)
     if options.tcp is not None:
         server.start_tcp("127.0.0.1", options.tcp)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import socket
 import subprocess
 import sys
@@ -557,6 +558,35 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     assert unknown["error"]["code"] == -32602
     assert editor.diagnostics("main.btq") != []
     assert "ZeroDivisionError: broken" in editor.close()
+
+
+def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> None:
+    program = (
+        "import btq_lang.features as features\n"
+        "def broken(*_): raise ZeroDivisionError('broken')\n"
+        "features.signature_help = broken\n"
+        "from btq_lang.server import main; main([])\n"
+    )
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program), trace="messages")
+    editor.open("main.btq", WRONG)
+    traced = traces(editor, "textDocument/hover")
+    assert re.fullmatch(r"textDocument/hover: \d+\.\d ms", traced[-1]["message"])
+    assert "verbose" not in traced[-1]
+    editor.notify("$/setTrace", value="verbose")
+    assert "HoverParams" in traces(editor, "textDocument/hover")[-1]["verbose"]
+    failed = traces(editor, "textDocument/signatureHelp")[-1]
+    assert failed["message"].startswith("Exception occurred")
+    assert "ZeroDivisionError: broken" in failed["verbose"]
+    editor.notify("$/setTrace", value="off")
+    assert traces(editor, "textDocument/hover") == []
+    assert "ZeroDivisionError" in editor.close()
+
+
+def traces(editor: Editor, method: str) -> list[Message]:
+    """What is told while a request is answered."""
+    editor.kept.clear()
+    editor.ask(method, **editor.at("main.btq", 0, 0))
+    return [message["params"] for message in editor.kept if message["method"] == "$/logTrace"]
 
 
 def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None:

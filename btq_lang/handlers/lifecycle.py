@@ -16,6 +16,7 @@ def register(server: Server) -> None:
     @server.feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         convert.agree(server.workspace.position_encoding)
+        server.protocol.trace = params.trace or types.TraceValue.Off
         _settle(session, params.initialization_options)
 
     @server.feature(types.INITIALIZED)
