@@ -589,6 +589,23 @@ def traces(editor: Editor, method: str) -> list[Message]:
     return [message["params"] for message in editor.kept if message["method"] == "$/logTrace"]
 
 
+def test_a_key_leaves_nothing_behind(tmp_path: Path) -> None:
+    program = (
+        "import sys; from btq_lang import server\n"
+        "made = server.make_server(); server.make_server = lambda: made\n"
+        "server.main([])\n"
+        "print(len(made.protocol._request_futures), file=sys.stderr)\n"
+    )
+    kept = []
+    for keys in (0, 50):
+        editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+        editor.open("main.btq", RIGHT)
+        for _ in range(keys):
+            editor.change("main.btq", RIGHT)
+        kept.append(int(editor.close()))
+    assert kept[0] == kept[1]
+
+
 def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None:
     answer = editor.ask("textDocument/somethingNew", **editor.document("main.btq"))
     assert answer["error"]["code"] == -32601
