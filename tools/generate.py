@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+import extension_manifest
 import language_configuration
 import textmate
 import vim_syntax
@@ -18,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # Every generated file and who makes its text.
 GENERATED: Mapping[str, Callable[[], str]] = {
     "editors/vscode/syntaxes/btq.tmLanguage.json": textmate.grammar,
+    "editors/vscode/package.json": extension_manifest.manifest,
     "editors/vscode/language-configuration.json": language_configuration.configuration,
     "editors/nvim/syntax/btq.vim": vim_syntax.syntax,
     "editors/nvim/autoload/btq/words.vim": vim_syntax.openers,

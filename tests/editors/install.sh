@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the editors that the tests in this folder drive, into a folder of their own: BTQ_EDITORS, else
 # ~/.cache/btq-editors.  What cannot be installed is said and left out: its tests are skipped then, and say so too.
-# What is there stays: a second run takes no time.
+# What is there stays: a second run takes no time.  `installed.txt` in that folder lists what was installed: in CI a test
+# whose editor stands there, and is not found, fails.
 #
 # Nothing but apt, npm and PyPI is asked.  VS Code comes as code-server, which has the same workbench and runs in a
 # headless browser; Neovim in Debian's versions of three years, the newer ones unpacked beside the system.
@@ -14,6 +15,7 @@ node=24.21.0
 mkdir -p "$store"
 
 main() {
+    : >"$store/installed.txt"
     attempt "Chromium and Neovim of this system" from_apt
     attempt "Emacs with Eglot, Vim with ALE" more_from_apt
     attempt "Node.js and VS Code" vscode
@@ -26,8 +28,11 @@ main() {
 attempt() { # name, command …: what it prints is shown only if it fails
     local name=$1 start=$SECONDS log="$store/${2}_${3:-}.log"
     shift
-    if ("$@") >"$log" 2>&1; then
+    # Not as the condition itself: there `set -e` has no effect, and the last command alone would count.
+    ("$@") >"$log" 2>&1
+    if [ $? = 0 ]; then
         echo "editors: $name: there ($((SECONDS - start)) s)"
+        echo "${1}${2:+-$2}" >>"$store/installed.txt"
     else
         echo "editors: $name: not installed, its tests will be skipped"
         tail -n 15 "$log" | sed 's/^/    /'
@@ -37,13 +42,13 @@ attempt() { # name, command …: what it prints is shown only if it fails
 from_apt() {
     set -e
     command -v chromium >/dev/null && command -v nvim >/dev/null && return
-    as_root apt-get update -qq
+    as_root apt-get update -qq || true # what is there of the lists may do
     as_root apt-get install -y -qq --no-install-recommends chromium neovim fonts-dejavu-core
 }
 
 more_from_apt() {
     set -e
-    command -v emacs >/dev/null && [ -d /usr/share/vim-ale ] && command -v vim >/dev/null && return
+    emacs -q --batch --eval "(require 'eglot)" && [ -d /usr/share/vim-ale ] && command -v vim >/dev/null && return
     as_root apt-get install -y -qq --no-install-recommends emacs-nox elpa-eglot vim vim-ale
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -12,8 +13,20 @@ STORE = Path(os.environ.get("BTQ_EDITORS") or Path.home() / ".cache" / "btq-edit
 ARTIFACTS = Path(__file__).parent / "artifacts"
 
 
-def there(path: Path | str | None, what: str) -> Path:
-    """The path; the test is skipped where nothing is at it."""
+def there(path: Path | str | None, what: str, part: str) -> Path:
+    """The path; the test is skipped where nothing is at it.
+
+    Args:
+        part: the function of install.sh that installs it, and its argument.
+    """
     if path is None or not Path(path).exists():
-        pytest.skip(f"{what} is not installed: tests/editors/install.sh")
+        missing(what, part)
     return Path(path)
+
+
+def missing(what: str, part: str) -> NoReturn:
+    """Skip the test; in CI fail it where the thing was installed, for then a skip would hide that nothing is tested."""
+    record = STORE / "installed.txt"
+    if os.environ.get("BTQ_CI") and record.exists() and part in record.read_text().split():
+        pytest.fail(f"install.sh has installed {what}, and it is not there")
+    pytest.skip(f"{what} is not installed: tests/editors/install.sh")

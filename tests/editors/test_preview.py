@@ -17,8 +17,6 @@ from workbench import FLAGS
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-pytest.importorskip("playwright", reason="the browser's driver is not installed: tests/editors/install.sh")
-
 MISSION = """\
 QualityReq soon "In time"
     takes at most 30 s
@@ -34,10 +32,10 @@ BehaviorTree Rest
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
+def browser(driver: None) -> Iterator[Browser]:
     from playwright.sync_api import sync_playwright
 
-    chromium = there(shutil.which("chromium"), "Chromium")
+    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=str(chromium), args=FLAGS)
         yield browser

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from installed import ROOT, there
+from installed import ROOT, missing, there
 
 RECIPES = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
 WRONG = "BehaviorTree   Main\n    ->\n        Sequnce\n            Dock\n"
@@ -36,7 +36,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
 
 
 def test_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
-    there(shutil.which("emacs"), "Emacs")
+    there(shutil.which("emacs"), "Emacs", "more_from_apt")
     (tmp_path / "main.btq").write_text(WRONG)
     (tmp_path / "recipe.el").write_text(recipe("elisp"))
     (tmp_path / "test.el").write_text(
@@ -55,15 +55,15 @@ def test_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
     if "eglot" not in run(
         ["emacs", "-q", "--batch", "--eval", '(princ (locate-library "eglot"))'], tmp_path, environment
     ):
-        pytest.skip("Eglot is not installed: tests/editors/install.sh")
+        missing("Eglot", "more_from_apt")
     said = run(["emacs", "-q", "--batch", "-l", "test.el"], tmp_path, environment)
     assert "unknown node `Sequnce`" in said
     assert said.endswith(TIDY)
 
 
 def test_vim_with_ale(tmp_path: Path, environment: dict[str, str]) -> None:
-    there(shutil.which("vim"), "Vim")
-    ale = there("/usr/share/vim-ale", "ALE")
+    there(shutil.which("vim"), "Vim", "more_from_apt")
+    ale = there("/usr/share/vim-ale", "ALE", "more_from_apt")
     (tmp_path / "main.btq").write_text(WRONG)
     (tmp_path / "recipe.vim").write_text(recipe("vim"))
     (tmp_path / "test.vim").write_text(

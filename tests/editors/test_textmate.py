@@ -20,7 +20,9 @@ EXTENSION = ROOT / "editors" / "vscode"
     "source", ["tests/every_form.btq", "examples/laboratory/mission.btq", "examples/classic/inspector.qualitybtcpp"]
 )
 def test_every_word_has_its_scopes(source: str, node: Path, update: bool, tmp_path: Path) -> None:
-    program = there(EXTENSION / "node_modules/vscode-tmgrammar-test/dist/snapshot.js", "vscode-tmgrammar-test")
+    program = there(
+        EXTENSION / "node_modules/vscode-tmgrammar-test/dist/snapshot.js", "vscode-tmgrammar-test", "package"
+    )
     name = source.replace("/", "-")
     shutil.copyfile(ROOT / source, tmp_path / name)
     run = subprocess.run(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -10,8 +11,6 @@ from pathlib import Path
 import pytest
 from installed import ROOT, STORE, there
 from workbench import Workbench, workbench
-
-pytest.importorskip("playwright", reason="the browser's driver is not installed: tests/editors/install.sh")
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 ENVIRONMENT = {
@@ -29,9 +28,11 @@ ENVIRONMENT = {
 
 
 @pytest.fixture(scope="module")
-def window(vsix: Path, node: Path, artifacts: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Workbench]:
-    there("/usr/bin/chromium", "Chromium")
-    there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code")
+def window(
+    vsix: Path, node: Path, driver: None, artifacts: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Workbench]:
+    there(shutil.which("chromium"), "Chromium", "from_apt")
+    there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code", "vscode")
     scratch = tmp_path_factory.mktemp("vscode")
     files = ROOT / "examples" / "hospital"
     programs = scratch / "programs"
