@@ -1,8 +1,8 @@
 """When Python looks for garbage.
 
-One invariant: what Python does by itself is as before afterwards.  Of what btq makes nearly all stays until the command
-ends, and Python would look through it again and again: for a fifth of the time of a parse, half that of reading XML,
-and a fifth of a check of 1 000 files.
+One invariant: what Python does by itself is as before afterwards, but in a server.  Of what btq makes nearly all stays
+until the command ends, and Python would look through it again and again: for a fifth of the time of a parse, half that
+of reading XML, and a fifth of a check of 1 000 files.
 """
 
 from __future__ import annotations
@@ -37,6 +37,13 @@ def collecting_seldom(work: Callable[[], int]) -> int:
         return work()
     finally:
         gc.set_threshold(*usual)
+
+
+def keep_what_is_there() -> None:
+    """What a server has read stays: looking through all of it again would halt every answer that comes meanwhile."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(*_SELDOM)
 
 
 _SELDOM: Final = (20_000, 50, 10)

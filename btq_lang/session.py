@@ -52,11 +52,14 @@ class Session:
             if path in workspace.files:
                 self._workspaces[index] = workspace.with_file(path, text)
         after = self._workspaces[home]
-        if _includes(before, path) != _includes(after, path):
+        old, new = before.files[path], after.files[path]
+        if old.included_paths != new.included_paths:
             return (path, *self.reload())
-        if _defines(before, path) != _defines(after, path):
-            return self._in_order(path, after.files)
-        return self._in_order(path, _linked(after, path))
+        linked = set(_linked(after, path))
+        # Of a name that a file does not find it is told where else it is defined.
+        if renamed := {name for _, name in old.defined_names ^ new.defined_names}:
+            linked.update(other for other, file in after.files.items() if not renamed.isdisjoint(file.used_names))
+        return self._in_order(path, linked)
 
     def close(self, path: str) -> tuple[str, ...]:
         """A file is not open any more: the one on the disk counts again."""
@@ -143,14 +146,6 @@ class Session:
         """What the user has set, if it is a yes or a no."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
-
-
-def _includes(workspace: Workspace, path: str) -> list[str]:
-    return [include.path.text for include in workspace.files[path].includes if include.path is not None]
-
-
-def _defines(workspace: Workspace, path: str) -> set[object]:
-    return {(one.symbol.kind, one.symbol.name) for one in workspace.defined_in(path)}
 
 
 def _linked(workspace: Workspace, path: str) -> list[str]:

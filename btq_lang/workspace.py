@@ -192,6 +192,21 @@ class File:
             return ()
         return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
 
+    @property
+    def included_paths(self) -> tuple[tuple[str, bool], ...]:
+        """What its includes name, and whether a ROS package is to have it."""
+        return tuple(
+            (include.path.text, _is_of_package(include)) for include in self.includes if include.path is not None
+        )
+
+    @cached_property
+    def defined_names(self) -> frozenset[tuple[Kind, str]]:
+        return frozenset((symbol.kind, symbol.name) for summary in self.summaries for symbol in summary.symbols)
+
+    @cached_property
+    def used_names(self) -> frozenset[str]:
+        return frozenset(use.name for summary in self.summaries for use in summary.uses)
+
     def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
         return File, (self.path, self.text, self.origin)
 
@@ -269,6 +284,7 @@ class Workspace:
         self.files = files
         self.project = project
         self._scopes: dict[str, Scope] = {}
+        self._closures: dict[str, tuple[str, ...]] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
@@ -278,8 +294,20 @@ class Workspace:
 
     def with_file(self, path: str, text: str) -> Workspace:
         """The workspace after an edit: `path` says `text`; every other file is shared."""
-        known = self.files.get(path)
-        return Workspace({**self.files, path: known.edited(text) if known else File(path, text)}, self.project)
+        before = self.files.get(path)
+        file = before.edited(text) if before else File(path, text)
+        after = Workspace({**self.files, path: file}, self.project)
+        if before is not None and before.included_paths == file.included_paths:
+            after._take_over(self, path)
+        return after
+
+    def _take_over(self, before: Workspace, edited: str) -> None:
+        """What is known of which file includes which, and of the names in files that do not see the one edited."""
+        for known in ("included_files", "missions", "_users"):
+            if known in before.__dict__:
+                self.__dict__[known] = before.__dict__[known]
+        self._closures = before._closures
+        self._scopes = {path: scope for path, scope in before._scopes.items() if edited not in scope.paths}
 
     def without_file(self, path: str) -> Workspace:
         return Workspace({other: file for other, file in self.files.items() if other != path}, self.project)
@@ -309,12 +337,18 @@ class Workspace:
 
     def included_by(self, path: str, include: Include) -> str | None:
         """As `included`; what a ROS package holds is known to none but the robot."""
-        if include.path is None or any(pair.key.text == "ros_pkg" for pair in include.attributes):
+        if include.path is None or _is_of_package(include):
             return None
         return self.included(path, include.path.text)
 
     def closure(self, path: str) -> tuple[str, ...]:
         """A file and all that it includes, included ones first; a file that includes itself is in it once."""
+        known = self._closures.get(path)
+        if known is None:
+            known = self._closures[path] = self._closure(path)
+        return known
+
+    def _closure(self, path: str) -> tuple[str, ...]:
         seen: set[str] = set()
         order: list[str] = []
         stack: list[tuple[str, Iterator[str]]] = []
@@ -445,6 +479,10 @@ class Workspace:
 def is_btq(path: str) -> bool:
     """Whether a file is written in this language; an XML file may be included too."""
     return not path.endswith(".xml")
+
+
+def _is_of_package(include: Include) -> bool:
+    return any(pair.key.text == "ros_pkg" for pair in include.attributes)
 
 
 def _attribute(root: Root, key: str) -> Word | None:

@@ -106,8 +106,10 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     linked = [skills, f"{folder}/main.btq", f"{folder}/requirements.btq"]
     assert session.edit(skills, SKILLS) == (skills,)  # opened, and as it is on the disk
     assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
-    every = [*linked[:2], f"{folder}/other.btq", linked[2]]
-    assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == every
+    assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == linked
+    assert list(session.edit(skills, SKILLS)) == linked
+    every = [*linked[:2], f"{folder}/other.btq", linked[2]]  # that one has a `Pick`
+    assert list(session.edit(skills, SKILLS.replace("Pick", "Take"))) == every
     assert list(session.edit(skills, SKILLS)) == every
     assert session.close(skills) == (skills,)
 

@@ -7,6 +7,7 @@ import asyncio
 from lsprotocol import types
 
 from btq_lang.editor import Server
+from btq_lang.garbage import keep_what_is_there
 from btq_lang.session import Session
 
 
@@ -32,6 +33,9 @@ def register(server: Server) -> None:
             await _first_check(server)
         finally:
             server.scanned.set()
+        if server.task is not None:
+            await asyncio.wait((server.task,))
+        keep_what_is_there()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:
