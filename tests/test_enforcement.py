@@ -140,13 +140,15 @@ def test_an_included_file_holds_what_it_asks_for_itself() -> None:
     assert skills.count('_onFailure="@safe_stop := true"') == 1
     assert "btq_init" not in skills
     assert main.count('_onFailure="@safe_stop := true"') == 1
-    assert 'code="@on := true; @safe_stop := false"' in main
+    assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
 
 
 def test_a_mission_begins_with_what_included_files_need() -> None:
     workspace = Workspace.of(FILES | {"main.btq": MAIN.replace("apply safe to Look, Drive\n", "")})
     main = xml_of(workspace, "main.btq")
-    assert 'code="@on := true; @safe_stop := false"' in main
+    assert '<WasEntryUpdated entry="@on" _onFailure="@on := true" _btq="*"/>' in main
+    assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
     assert "safe_guard" not in main
     assert "btq_stop" in main
 

@@ -6,6 +6,8 @@ requirements that it sees itself ask for, and it is the mission's own file that 
 first values.  It does not judge whether a clause makes sense: that is for `checks`.
 
     btq_init   a Sequence around the main tree's root: first values, the mission, and whether it was to be halted
+    btq_first  a RunOnce in it: what signals are whose entries nobody has written
+    btq_start  a Script in it: the variables of guards
     btq_stop   a ReactiveSequence in it, where a clause halts: ends the mission at the tick after
 """
 
@@ -20,7 +22,7 @@ from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
-from btq_lang.btcpp.wrappers import START, Leaf, Wrapper, may_be_skipped, wrapped
+from btq_lang.btcpp.wrappers import START, FirstValues, Leaf, Wrapper, may_be_skipped, wrapped
 from btq_lang.diagnostics import Place
 from btq_lang.record import record, replace
 from btq_lang.requirements import Requirements, requirements
@@ -79,13 +81,15 @@ class _Plan:
     Attributes:
         wrappers: by `id(node)` of the syntax.
         enforced: what a clause, a node and arguments are known by, for the files that include these.
-        first: the statements that a mission begins with.
+        cells: the entries that a mission begins with, each with its value.
+        first: those of signals, each with its value before the first sample.
         stops: the entries that halt it.
     """
 
     held: tuple[tuple[Held, ...], ...]
     wrappers: Mapping[int, tuple[Wrapper, ...]]
     enforced: Mapping[object, Held]
+    cells: Mapping[str, str]
     first: Mapping[str, str]
     stops: tuple[str, ...]
 
@@ -183,7 +187,7 @@ def _plan(
         tuple([planner.held(applied, claim) for claim in applied.requirement.claims]) for applied in found.applied
     )
     wrappers = {key: tuple(each) for key, each in planner.wrappers.items()}
-    return _Plan(held, wrappers, planner.enforced, planner.first, tuple(planner.stops))
+    return _Plan(held, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
 
 
 class _Planner:
@@ -197,6 +201,7 @@ class _Planner:
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, Held]] = {}
+        self.cells: Final[dict[str, str]] = {}
         self.first: Final[dict[str, str]] = {}
         self.stops: Final[dict[str, None]] = {}
         self._workspace: Final = workspace
@@ -257,15 +262,16 @@ class _Planner:
         name = self._keys.next(requirement.name)
         made = guarded(requirement, claim, node, name, self._keys.stop(requirement.name), self._shared)
         self._can_stand(claim, node, made)
-        first = dict(made.cells)
+        first: dict[str, str] = {}
         for signal in made.signals:
             first |= _first_value(signal)
-        if (first or made.stop) and not self._has_start:
+        if (first or made.cells or made.stop) and not self._has_start:
             raise NotEnforced("nobody can say which tree is the mission, and where it begins")
         if made.stop is not None and not self._shared:
             assert self._found.mission is not None, "there is a mission that begins"
             _can_stand_around(self._found.mission, self._budget_of(self._found.mission).skip is not None)
         self._keys.take(name)
+        self.cells.update(made.cells)
         self.first.update(first)
         if made.stop is not None:
             self.stops[made.stop] = None
@@ -335,17 +341,20 @@ def _where_else(workspace: Workspace, node: SourceNode) -> str:
 
 def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     """What stands around the mission; nothing where it has nothing to begin with."""
+    cells: dict[str, str] = {}
     first: dict[str, str] = {}
-    stops: dict[str, None] = {}
+    stops: dict[str, str] = {}
     for plan in plans:
+        cells.update(plan.cells)
         first.update(plan.first)
-        stops.update(dict.fromkeys(plan.stops))
-    if not first and not stops:
+        stops.update(dict.fromkeys(plan.stops, "false"))
+    before: list[Leaf | FirstValues] = [FirstValues(tuple(first.items()))] if first else []
+    if statements := [f"{key} := {value}" for key, value in (cells | stops).items()]:
+        before.append(Leaf("Script", "btq_start", "; ".join(statements)))
+    if not before:
         return ()
-    statements = [*(f"{key} := {value}" for key, value in first.items()), *(f"{key} := false" for key in stops)]
-    script = Leaf("Script", "btq_first", "; ".join(statements))
     if not stops:
-        return (Wrapper(START, _ALL, "Sequence", "btq_init", before=(script,)),)
+        return (Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before)),)
     code = ""
     for key in stops:
         one = f"({key} == false)"
@@ -353,7 +362,7 @@ def _start(plans: Iterable[_Plan]) -> tuple[Wrapper, ...]:
     # The flags are set outside the reactive node, where they would be set back at every tick; the condition behind it
     # catches what breaks in the tree's last tick.
     behind = (Leaf("ScriptCondition", "btq_end", code),)
-    init = Wrapper(START, _ALL, "Sequence", "btq_init", before=(script,), behind=behind)
+    init = Wrapper(START, _ALL, "Sequence", "btq_init", before=tuple(before), behind=behind)
     guard = (Leaf("ScriptCondition", "btq_go_on", code),)
     return init, Wrapper(START, _ALL, "ReactiveSequence", "btq_stop", before=guard)
 

@@ -47,6 +47,21 @@ class Leaf:
 
 
 @record
+class FirstValues:
+    """What entries are where nobody has written them before the tree runs for the first time.
+
+    A script cannot ask whether an entry is there, so a node does: `WasEntryUpdated` fails where its entry was never
+    written.  It also fails where that was not written since it was last asked, hence the `RunOnce`.  The entry has no
+    braces, for a port makes an entry of its own type, in which no script can store a text.
+
+    Attributes:
+        values: each entry, as scripts name it (`@speed`), with its value, a script.
+    """
+
+    values: tuple[tuple[str, str], ...]
+
+
+@record
 class Wrapper:
     """An element around a node.
 
@@ -62,7 +77,7 @@ class Wrapper:
     tag: WrapperTag
     name: str
     attributes: tuple[tuple[str, str], ...] = ()
-    before: tuple[Leaf, ...] = ()
+    before: tuple[Leaf | FirstValues, ...] = ()
     behind: tuple[Leaf, ...] = ()
 
 
@@ -123,11 +138,30 @@ def _around(element: Element, wrapper: Wrapper) -> Element:
     return Element(wrapper.tag, [*attributes, mark], [*before, inside, *behind])
 
 
-def _leaf(leaf: Leaf, mark: Attribute) -> Element:
+def _leaf(leaf: Leaf | FirstValues, mark: Attribute) -> Element:
+    if isinstance(leaf, FirstValues):
+        return _first_values(leaf, mark)
     attributes = [Attribute("name", escape(leaf.name)), Attribute("code", escape(leaf.code))]
     if leaf.failed is not None:
         attributes.append(Attribute("_onFailure", escape(leaf.failed)))
     return Element(leaf.tag, [*attributes, mark])
+
+
+def _first_values(first: FirstValues, mark: Attribute) -> Element:
+    asked = [
+        Element(
+            "WasEntryUpdated",
+            [
+                Attribute("entry", entry),
+                Attribute("_onFailure", escape(f"{entry} := {value}")),
+                mark,
+            ],
+        )
+        for entry, value in first.values
+    ]
+    # All of them are asked, whoever fails.
+    inside = Element("ForceSuccess", [mark], [Element("ParallelAll", [mark], [*asked])])
+    return Element("RunOnce", [Attribute("name", "btq_first"), mark], [inside])
 
 
 def _innermost(element: Element) -> Element:
@@ -139,7 +173,11 @@ def _innermost(element: Element) -> Element:
 
 def _nodes(element: Element) -> list[Element]:
     """The children that are nodes, or stand around one."""
-    return [child for child in element.elements if child.get(MARK) is None or any(child.elements)]
+    return [child for child in element.elements if _has_node(child)]
+
+
+def _has_node(element: Element) -> bool:
+    return element.get(MARK) is None or any(map(_has_node, element.elements))
 
 
 def _give_back(outermost: Element, node: Element) -> None:

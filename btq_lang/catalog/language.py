@@ -123,7 +123,7 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("fresh within", "signal speed : m/s fresh within 200 ms", "its age", "an older reading counts as unknown"),
         (
             *("initially", "signal speed : m/s initially 0 m/s", "before the first reading"),
-            "its value before the first reading, which an enforced mission begins with",
+            "its value before the first reading; guards begin with it",
         ),
     ),
     "part of a model": (

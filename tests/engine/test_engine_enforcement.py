@@ -555,6 +555,33 @@ def test_a_signal_that_somebody_writes_first_needs_no_first_value(engine: Engine
     assert "Variable not found: @speed" in answer.error
 
 
+FIRST = (
+    'signal speed : m/s from {speed} initially 0 m/s\nsignal mode : text from {mode} initially "idle"\n'
+    "signal door : bool from {door} initially false\n"
+    'QualityReq rq1\n    Move needs speed <= 1 m/s and not door and mode == "idle"\n    on violation fail\n'
+)
+
+
+@pytest.mark.parametrize("known", [{"speed": 2.0}, {"mode": "lost"}, {"door": True}])
+def test_a_first_value_is_none_where_somebody_has_written_one(engine: Engine, known: dict[str, object]) -> None:
+    text = f"{FIRST}{MOVE_THEN_REST}"
+    assert run(engine, guarded(text), {}).status == "SUCCESS"
+    assert run(engine, guarded(text), {}, blackboard={"speed": 1.0}).status == "SUCCESS"
+    assert run(engine, guarded(text), {}, blackboard=known).status == "FAILURE"
+
+
+def test_when_the_tree_runs_again_the_last_values_count(engine: Engine) -> None:
+    text = FIRST + "Root Main\nBehaviorTree Main\n    ->\n        Move\n        Measure\n"
+    xml = guarded(text)
+    begins, ends = '<Sequence name="btq_init"', "</Sequence>\n  </BehaviorTree>"
+    assert (xml.count(begins), xml.count(ends)) == (1, 1)
+    again = xml.replace(begins, f'<Repeat num_cycles="3">{begins}').replace(ends, "</Sequence></Repeat></BehaviorTree>")
+    parts: Parts = {"Measure": [[step("SUCCESS", speed=0.5)], [step("SUCCESS", speed=1.5)]]}
+    answer = run(engine, again, parts)
+    assert (answer.status, answer.statuses("Measure").count("SUCCESS")) == ("FAILURE", 2)
+    assert run(engine, again, {}).status == "SUCCESS"
+
+
 # ---- several files ----
 
 
