@@ -129,7 +129,7 @@ def build(options: Namespace, files: Files) -> Outcome:
         for path in _missions(group) if options.bundle else _sources(group):
             outputs += _outputs(group.workspace, path, places, exports, options)
     code = (_compare if options.check else _write)(outputs, options)
-    return Outcome(code, watched, tuple(output.path for output in outputs))
+    return Outcome(code, watched, tuple(output.path for output in outputs if output.text is not None))
 
 
 def _for_target(group: Group, target: str) -> Group:
