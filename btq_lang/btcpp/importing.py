@@ -15,7 +15,7 @@ from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Eleme
 from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
-from btq_lang.btcpp.wording import comment, is_kept, kind, name, string, string_of, type_, value
+from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.garbage import NotCollecting
 from btq_lang.places import Places
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
     IncludedAs: TypeAlias = Callable[[str], str]
-    # A word of a line, and what it was made of: an attribute's value, or what stands between two places.
-    Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
+    # A word of a line, and what it was made of: an element's tag, an attribute's value, what stands between two places.
+    Piece: TypeAlias = tuple[str, Element | Attribute | tuple[int, int] | None]
     # A line: which one it is and where on it the words begin, the words, the pairs in brackets with what they were made
     # of, and what is between them.
     Mark: TypeAlias = tuple[int, int, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
@@ -134,7 +134,7 @@ class _Writer:
     def root(self, root: Element, level: int) -> None:
         """ "Root" [ Name ] [ Attributes ], and its items below it: in a block, only if something stands behind it"""
         attributes = root.attributes
-        head: list[Piece] = [_tag(root, "Root")]
+        head: list[Piece] = [("Root", root)]
         if len(attributes) == 2 and _is(attributes[0], "BTCPP_format", "4") and _is_main_tree(attributes[1]):
             head.append((name(attributes[1].raw), attributes[1]))
             self.line(0, head)
@@ -163,7 +163,7 @@ class _Writer:
         """BehaviorTree, include, TreeNodesModel; anything else as it is."""
         attributes = element.attributes
         first = attributes[0] if attributes else None
-        tag = _tag(element, element.tag)
+        tag = (element.tag, element)
         if element.tag == "BehaviorTree":
             identity = self.first(element, "ID")
             if identity is None:
@@ -233,13 +233,13 @@ class _Writer:
         if tag not in CATEGORIES:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
             word = kind(tag, False, has_code, self.symbols)
-            head = [_tag(element, word)]
+            head = [(word, element)]
             if not attributes:  # a third of all nodes
                 self.marks.append((len(self.out), level * len(_INDENT), head, (), None, ""))
                 self.out.append(f"{_INDENT * level}{word}\n")
                 return
         else:
-            head = [_tag(element, tag)]
+            head = [(tag, element)]
             if attributes and attributes[0].name == "ID":
                 index = 1
                 raw = attributes[0].raw
@@ -269,7 +269,7 @@ class _Writer:
 
     def model(self, element: Element, identity: Attribute, level: int) -> None:
         """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ], and its ports below"""
-        head = [_tag(element, element.tag), (name(identity.raw), identity)]
+        head: list[Piece] = [(element.tag, element), (name(identity.raw), identity)]
         children = element.children
         others = [each for each in element.attributes if each is not identity]
         text = _text_of(children[0]) if children and _is_description(children[0]) else None
@@ -286,7 +286,7 @@ class _Writer:
                 self.port(child, level + 1)
             elif child.tag == "MetadataFields" and not was_metadata and _is_metadata(child):
                 for part in child.elements:
-                    self.line(level + 1, [_tag(part, "metadata")], part.attributes)
+                    self.line(level + 1, [("metadata", part)], part.attributes)
             else:
                 self.verbatim(child, level + 1)
             was_metadata = child.tag == "MetadataFields"
@@ -294,7 +294,7 @@ class _Writer:
     def port(self, element: Element, level: int) -> None:
         """( "input" | "output" | "inout" ) [ NAME ] [ ":" … ] [ "=" Value ] [ Attributes ] [ STRING ]"""
         attributes = element.attributes
-        head = [_tag(element, _DIRECTIONS[element.tag])]
+        head: list[Piece] = [(_DIRECTIONS[element.tag], element)]
         count = len(attributes)
         index = 0
         if index < count and attributes[index].name == "name" and is_name(attributes[index].raw):
@@ -327,10 +327,10 @@ class _Writer:
         pairs: list[str] = []
         between = " "
         if attributes:
-            pairs = [f"{name(each.name)} = {value(each.raw)}" for each in attributes]
+            pairs = [pair(each.name, each.raw) for each in attributes]
             group = " ".join(pairs)
             line = f"{out} ({group}){behind}\n"
-            if len(line) > self.columns or "\n" in line[:-1]:  # it may be too long
+            if len(line) > self.columns or line.count("\n") > 1:  # it may be too long
                 columns = self.columns
                 column = len(out) - out.rfind("\n") if "\n" in out else len(out) + 1
                 if not _fits(f"({group}){behind}", column, columns) and (
@@ -400,30 +400,26 @@ def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int,
     for line, column, head, pairs, attributes, between in marks:
         at = starts[line] + column
         for word, origin in head:
-            if isinstance(origin, tuple):
+            if isinstance(origin, Element):
+                places.append((at, at + len(word), origin.start + 1, origin.start + 1 + len(origin.tag)))
+            elif isinstance(origin, tuple):
                 places.append((at, at + len(word), *origin))
             elif origin is not None and (start := origin.value_start) >= 0:
                 places.append((at, at + len(word), start, start + len(origin.raw)))
             at += len(word) + 1
         at += len("(") + (len(between) if between != " " else 0)
-        for pair, attribute in zip(pairs, attributes or (), strict=True):
+        for said, attribute in zip(pairs, attributes or (), strict=True):
             key, start = len(name(attribute.name)), attribute.start
             if start >= 0:
                 places.append((at, at + key, start, start + len(attribute.name)))
-                end, start, size = at + len(pair), attribute.value_start, len(attribute.raw)
+                end, start, size = at + len(said), attribute.value_start, len(attribute.raw)
                 value_at = at + key + len(" = ")
-                if pair[-1] == '"' and 0 < size == end - value_at - 2:
+                if said[-1] == '"' and 0 < size == end - value_at - 2:
                     places.append((value_at + 1, end - 1, start, start + size))
                 else:
                     places.append((value_at, end, start, start + size))
-            at += len(pair) + len(between)
+            at += len(said) + len(between)
     return places
-
-
-def _tag(element: Element, word: str) -> Piece:
-    """A word made of an element's tag."""
-    start = element.start + 1
-    return word, (start, start + len(element.tag))
 
 
 def _fits(text: str, column: int, columns: int) -> bool:

@@ -60,11 +60,14 @@ def read(text: str) -> Read:
         text: any string at all.
     """
     refused = not_well_formed(text)
+    reader = _Reader(text, refused is None)
     try:
         with NotCollecting():
-            contents = _Reader(text, refused is None).contents()
+            contents = reader.contents()
     except _Broken as broken:
         return Read(None, (broken.diagnostic,))
+    if reader.has_prefixes and refused is None:
+        refused = not_well_formed(text, with_prefixes=True)
     roots = [content for content in contents if isinstance(content, Element)]
     if not roots:
         end = len(text.rstrip())
@@ -90,6 +93,7 @@ class _Reader:
         self.text: Final = text
         self.is_strict: Final = is_strict  # no attribute stands twice: that has been looked at
         self.open: Final[list[Element]] = []
+        self.has_prefixes = False  # names like `xsi:type`, perhaps: not all tools take all of them
 
     def contents(self) -> list[Content]:
         """{ Element | Comment | Text | Declaration | DOCTYPE }: what stands at the top of the document."""
@@ -111,7 +115,7 @@ class _Reader:
                 elif at == len(text):
                     break
                 elif text.startswith("<!", at):
-                    at = behind = self.marked(at, behind, contents)
+                    at = behind = self.marked(at, contents)
                     declared = False
                 elif text.startswith("<?", at):
                     at = behind = self.declaration(at, declared)
@@ -119,8 +123,13 @@ class _Reader:
                     self.broken_tag(at)
                 continue
             name, pairs, slash, closing = tag.groups()
-            at = behind = tag.end()
+            start, at = behind, tag.end()
+            behind = at
             if name is None:
+                if closing is None:
+                    at = behind = self.comment(at - len("<!--"), start, contents)
+                    declared = False
+                    continue
                 if not opened:  # the engine reads no further
                     break
                 if closing != opened[-1].tag:
@@ -135,8 +144,12 @@ class _Reader:
             if pairs:
                 start_tag = StartTag(text, start, at)
                 element.attributes.extend([Attribute(key, raw, start_tag) for key, _, raw in _ATTRIBUTES(pairs)])
+                if ":" in pairs:
+                    self.has_prefixes = self.has_prefixes or any(":" in each.name for each in element.attributes)
                 if not self.is_strict and len({each.name for each in element.attributes}) < len(element.attributes):
                     self.twice(element)
+            if ":" in name:
+                self.has_prefixes = True
             contents.append(element)
             declared = False
             if not slash:
@@ -178,24 +191,29 @@ class _Reader:
         start = self.text.rfind("<", 0, tag.start(4))
         raise _Broken(Diagnostic(RULE, Span(start, tag.end()), message, related, (note,)))
 
-    def marked(self, start: int, behind: int, contents: list[Content]) -> int:
-        """ "<!--" … "-->", "<![CDATA[" … "]]>", "<!" … ">"; the last is passed over, as the engine does"""
+    def comment(self, start: int, behind: int, contents: list[Content]) -> int:
+        """ "<!--" … "-->"; behind: where the last thing ended"""
         text = self.text
-        if text.startswith("<!--", start):
-            end = self.closing("-->", start + 4, start, "this comment has no -->")
-            beside = behind > 0 and LINE_END.search(text, behind, start) is None
-            contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
-            return end + 3
+        end = self.closing("-->", start + 4, start, "this comment has no -->")
+        beside = behind > 0 and LINE_END.search(text, behind, start) is None
+        contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
+        return end + 3
+
+    def marked(self, start: int, contents: list[Content]) -> int:
+        """ "<![CDATA[" … "]]>", "<!" … ">"; the latter is passed over, as the engine does"""
+        text = self.text
         if text.startswith("<![CDATA[", start):
             end = self.closing("]]>", start + 9, start, "this CDATA section has no ]]>")
             if start + 9 < end:
                 contents.append(Text(_line_ends(text[start + 9 : end]), start))
             return end + 3
+        self.has_prefixes = True  # in a DOCTYPE there may be anything
         return self.closing(">", start + 2, start, "this declaration has no >") + 1
 
     def declaration(self, start: int, declared: bool) -> int:
         """ "<?" … "?>": the engine takes every one for a declaration, and wants those first"""
         end = self.closing("?>", start + 2, start, "this declaration has no ?>") + 2
+        self.has_prefixes = self.has_prefixes or ":" in self.text[start:end]
         if not declared:
             span = Span(start, end)
             what = "an XML declaration" if self.text.startswith("<?xml ", start) else "a processing instruction"
@@ -270,7 +288,7 @@ _IN_NAME: Final = WORD[WORD.rindex("[") : -1]  # what may stand behind the first
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
 # No two parts of it can match the same characters, so there is one way to match, or none: the time is linear.
 _TAG: Final = re.compile(
-    rf"{SPACE}<(?:{SPACE}({WORD})(?!{_IN_NAME}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{_IN_NAME})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
+    rf"{SPACE}<(?:{SPACE}({WORD})(?!{_IN_NAME}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{_IN_NAME})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>|!--)"
 ).match
 _ATTRIBUTES: Final = ATTRIBUTE.findall
 _NAME: Final = re.compile(WORD).match

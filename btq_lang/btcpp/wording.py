@@ -39,6 +39,12 @@ def value(raw: str) -> str:
     return string(raw)
 
 
+@lru_cache(maxsize=4096)
+def pair(key: str, raw: str) -> str:
+    """A Pair, from an attribute; most of a file's are there more than once."""
+    return f"{name(key)} = {value(raw)}"
+
+
 def string(raw: str) -> str:
     """A STRING, from what stands between the quotes of the XML."""
     if _PLAIN(raw):
