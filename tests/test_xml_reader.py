@@ -153,6 +153,22 @@ def test_what_only_the_engine_reads(text: str, found: list[object], note: str) -
     assert [(each.rule, each.notes) for each in done.problems] == [("xml-not-well-formed", (note,))]
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("<root><a:b/></root>", "Namespace prefix a on b is not defined"),
+        ('<root><a x:y="1"/></root>', "Namespace prefix x for y on a is not defined"),
+        ('<root xml:id="1 2"/>', "xml:id : attribute value 1 2 is not an NCName"),
+        ("<?a:b c?><root/>", "colons are forbidden from PI names 'a:b'"),
+        ('<root xmlns:a="u"><a:b a:c="d: e"/><!-- a:b --></root>', None),
+        ('<root a="b:c"/>', None),
+    ],
+)
+def test_prefixes_that_other_tools_refuse(text: str, said: str | None) -> None:
+    told = [] if said is None else [f"the engine reads this, but no other XML tool does: {said}"]
+    assert [each.message for each in read(text).problems] == told
+
+
 def test_what_is_passed_over_and_what_is_kept() -> None:
     text = '\ufeff<?xml version="1.0" encoding="latin1"?>\n<!DOCTYPE a SYSTEM "file:///etc/passwd">\n<a>t&#252;<![CDATA[<u>]]></a>\n'
     done = read(text)

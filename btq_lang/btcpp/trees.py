@@ -84,14 +84,16 @@ class Trees:
     def _fill(self, entry: Entry, part: Node | Tree, element: Element) -> Iterator[tuple[Node, Element]]:
         """Put into an element what stands in the block of a part; what comes out has a block of its own."""
         source = self._source
+        comments = source.comments
         contents = element.children
-        has_comments = bool(source.comments)
-        if has_comments:
-            contents += source.written(source.around(entry, part).first, beside=True)
+        own = comments.get(entry.start + part.start, NO_COMMENTS) if comments else NO_COMMENTS
+        if own.first:
+            contents += source.written(own.first, beside=True)
+        if comments:
             for clause in part.clauses:
                 contents += source.written(source.around(entry, clause).before)
         for child in part.children:
-            around = source.around(entry, child) if has_comments else NO_COMMENTS
+            around = comments.get(entry.start + child.start, NO_COMMENTS) if comments else NO_COMMENTS
             if isinstance(child, Verbatim):
                 source.put(contents, source.raw(entry, child), around)
                 continue
@@ -100,10 +102,10 @@ class Trees:
                 contents.append(made)
             else:
                 source.put(contents, made, around)
-            if child.children or has_comments:
+            if child.children or child.clauses or around is not NO_COMMENTS:
                 yield child, made
-        if has_comments:
-            contents += source.written(source.around(entry, part).last)
+        if own.last:
+            contents += source.written(own.last)
 
     def _node(self, entry: Entry, node: Node, parent: Element) -> Element:
         kind = node.kind
