@@ -418,7 +418,7 @@ class Model:
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        return tuple(part for part in self.body if isinstance(part, Port))
+        return tuple([part for part in self.body if isinstance(part, Port)])
 
 
 @record

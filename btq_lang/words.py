@@ -228,6 +228,8 @@ def unquote(raw: str) -> str:
 
 def _closes(raw: str) -> bool:
     """Whether the last character of a string is its closing quote, not an escaped one."""
+    if raw[-2] != "\\":
+        return True
     backslashes = len(raw) - 1 - len(raw[:-1].rstrip("\\"))
     return backslashes % 2 == 0
 

@@ -52,8 +52,10 @@ class SeenNode:
         parent: the node whose child it is; None for a tree's own.
         index: which child of its parent it is.
         kind: the built-in it is, if it is one; for an older engine's word the one of today.
-        definition: its model, where one is in scope.
+        definition: where its model stands, where one is in scope.
+        model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
+        is_subtree: whether that is SubTree.
     """
 
     node: Node
@@ -62,21 +64,14 @@ class SeenNode:
     index: int
     kind: NodeKind | None
     definition: Definition | None
+    model: Model | None
     category: str | None
-
-    @property
-    def model(self) -> Model | None:
-        target = self.definition.symbol.target if self.definition else None
-        return target if isinstance(target, Model) else None
+    is_subtree: bool
 
     @property
     def shown(self) -> str:
         """The node as a message names it."""
         return f"`{self.node.head.text}`"
-
-    @property
-    def is_subtree(self) -> bool:
-        return self.category == "SubTree"
 
     def ancestors(self) -> Iterator[SeenNode]:
         """Its parent, the parent's parent, and so on."""
@@ -111,7 +106,8 @@ class View:
 
     def uses(self, entry: Entry, kind: Kind) -> Iterator[Use]:
         """What an entry refers to, of one kind."""
-        return (use for use in self.file.summary_of(entry).uses if use.kind is kind)
+        uses = self.file.summary_of(entry).uses
+        return (use for use in uses if use.kind is kind) if uses else iter(())
 
     @property
     def is_xml(self) -> bool:
@@ -336,11 +332,13 @@ class View:
                 definition = self.scope.find(Kind.MODEL, name.text)
             if kind is None and definition is None and not name.quoted and name.text in KNOWN_WORDS:
                 kind = BUILTINS.get(KNOWN_WORDS[name.text].replacement or "")
+        target = definition.symbol.target if definition is not None else None
+        model = target if isinstance(target, Model) else None
         if category is None and kind is not None:
             category = kind.category
-        elif category is None and definition is not None and isinstance(model := definition.symbol.target, Model):
+        elif category is None and model is not None:
             category = model.category.raw
-        return SeenNode(node, tree, parent, index, kind, definition, category)
+        return SeenNode(node, tree, parent, index, kind, definition, model, category, category == "SubTree")
 
     def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
         """The names that a file included here and one included before it both define, each with the definition that
