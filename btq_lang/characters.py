@@ -9,6 +9,8 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
+    from mypy_extensions import i64
+
 TAB: Final = 0x09
 LINE_FEED: Final = 0x0A
 RETURN: Final = 0x0D
@@ -35,14 +37,14 @@ LEFT_BRACE: Final = 0x7B
 ASCII: Final = 0x80  # the first that is none
 
 
-def begins_name(code: int) -> bool:
+def begins_name(code: i64) -> bool:
     """A letter or `_`"""
     if code < ASCII:
         return 0x61 <= code <= 0x7A or 0x41 <= code <= 0x5A or code == UNDERSCORE
     return chr(code).isalpha()
 
 
-def goes_on(code: int) -> bool:
+def goes_on(code: i64) -> bool:
     """A letter, a digit or `_`"""
     if code < ASCII:
         return 0x61 <= code <= 0x7A or 0x30 <= code <= 0x39 or 0x41 <= code <= 0x5A or code == UNDERSCORE

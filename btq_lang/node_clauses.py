@@ -13,6 +13,8 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import ClassVar, Final
 
+    from mypy_extensions import i64
+
     from btq_lang.syntax import Argument, Clause, Parameter
 
 
@@ -67,7 +69,7 @@ class Satisfices(_Part):
     __slots__ = ("end", "qualities", "start")
     __match_args__: ClassVar = ("start", "end", "qualities")
 
-    def __init__(self, start: int, end: int, qualities: tuple[Quality, ...]) -> None:
+    def __init__(self, start: i64, end: i64, qualities: tuple[Quality, ...]) -> None:
         self.start: Final = start
         self.end: Final = end
         self.qualities: Final = qualities
@@ -90,7 +92,7 @@ class Satisfies(_Part):
     __slots__ = ("end", "start", "uses")
     __match_args__: ClassVar = ("start", "end", "uses")
 
-    def __init__(self, start: int, end: int, uses: tuple[Requirement | ReqRef, ...]) -> None:
+    def __init__(self, start: i64, end: i64, uses: tuple[Requirement | ReqRef, ...]) -> None:
         self.start: Final = start
         self.end: Final = end
         self.uses: Final = uses
@@ -102,7 +104,7 @@ class Tags(_Part):
     __slots__ = ("end", "names", "start")
     __match_args__: ClassVar = ("start", "end", "names")
 
-    def __init__(self, start: int, end: int, names: tuple[Word, ...]) -> None:
+    def __init__(self, start: i64, end: i64, names: tuple[Word, ...]) -> None:
         self.start: Final = start
         self.end: Final = end
         self.names: Final = names
@@ -122,8 +124,8 @@ class Requirement(_Part):
 
     def __init__(
         self,
-        start: int,
-        end: int,
+        start: i64,
+        end: i64,
         name: Word | None,
         classic: bool,
         parameters: tuple[Parameter, ...],

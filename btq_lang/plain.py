@@ -59,8 +59,10 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
+    from mypy_extensions import i64
 
-def plain_head(text: str, start: int, base: int) -> tuple[Word, int] | None:
+
+def plain_head(text: str, start: i64, base: i64) -> tuple[Word, i64] | None:
     """ "BehaviorTree" [ "ID" "=" ] Name NL: the line that begins a tree, and no brackets in it
 
     Args:
@@ -82,7 +84,7 @@ def plain_head(text: str, start: int, base: int) -> tuple[Word, int] | None:
         return None
 
 
-def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int] | None:
+def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node, i64] | None:
     """Kind [ Label ] [ Attributes ] { NodeClause } NL
 
     Args:
@@ -96,9 +98,12 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
     try:
         category, kind, label, end = _head(text, start, base)
         at = _behind_word(text, end)
+        code: i64 = ord(text[at])
+        if code == LINE_FEED:
+            return Node(start - base, end - base, category, kind, label, (), (), ()), at + 1
         pairs: list[Pair] = []
         clauses: list[NodeClause] = []
-        if ord(text[at]) == OPENING:
+        if code == OPENING:
             at = end = attributes(text, at + 1, blanks, base, pairs, clauses)
         if ord(text[at]) == LINE_FEED:
             at += 1
@@ -113,7 +118,7 @@ def plain_node(text: str, start: int, blanks: str, base: int) -> tuple[Node, int
         return None
 
 
-def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], int] | None:
+def plain_clauses(text: str, start: i64, base: i64) -> tuple[list[NodeClause], i64] | None:
     """NodeClause { NodeClause } NL: a line of its own in the block of a node; arguments and result as of a node."""
     clauses: list[NodeClause] = []
     try:
@@ -122,9 +127,9 @@ def plain_clauses(text: str, start: int, base: int) -> tuple[list[NodeClause], i
         return None
 
 
-def _head(text: str, start: int, base: int) -> tuple[Word | None, Word | None, Word | None, int]:
+def _head(text: str, start: i64, base: i64) -> tuple[Word | None, Word | None, Word | None, i64]:
     """Kind [ Label ]: the category, the kind, the label, and where they end"""
-    code = ord(text[start])
+    code: i64 = ord(text[start])
     if (code < SMALL_A or code > SMALL_Z) and (symbol := symbol_at(text, start)):
         kind = Word(SYMBOL, start - base, symbol)
         end = start + len(symbol)
@@ -154,33 +159,33 @@ class Unusual(Exception):
 # ---- words ----------------------------------------------------------------------------------------------------------
 
 
-def _name(text: str, start: int, base: int) -> Word:
+def _name(text: str, start: i64, base: i64) -> Word:
     """NAME | STRING"""
-    code = ord(text[start])
+    code: i64 = ord(text[start])
     if begins_name(code):
         return Word(NAME, start - base, _raw_name(text, start, code))
     return Word(STRING, start - base, _string(text, start, code))
 
 
-def _raw_name(text: str, start: int, code: int) -> str:
+def _raw_name(text: str, start: i64, code: i64) -> str:
     raw = text[start : name_end(text, start)]
     if code < SMALL_A and raw in _NO_NAMES:
         raise Unusual
     return raw
 
 
-def _label(text: str, start: int, base: int) -> Word | None:
+def _label(text: str, start: i64, base: i64) -> Word | None:
     """[ Name ]"""
-    code = ord(text[start])
+    code: i64 = ord(text[start])
     if code in (OPENING, LINE_FEED, RETURN, HASH, SLASH):
         return None
     word = _name(text, start, base)
     return None if word.raw in NODE_CLAUSES else word
 
 
-def _behind_word(text: str, end: int) -> int:
+def _behind_word(text: str, end: i64) -> i64:
     """Behind the blanks that follow a word outside brackets; nothing else but a bracket or the line's end may."""
-    code = ord(text[end])
+    code: i64 = ord(text[end])
     if code != SPACE and code != TAB:
         if code != OPENING and code != LINE_FEED and code != RETURN:
             raise Unusual
@@ -188,15 +193,17 @@ def _behind_word(text: str, end: int) -> int:
     return _behind_blanks(text, end)
 
 
-def _behind_blanks(text: str, at: int) -> int:
-    while (code := ord(text[at])) == SPACE or code == TAB:
+def _behind_blanks(text: str, at: i64) -> i64:
+    while True:
+        code: i64 = ord(text[at])
+        if code != SPACE and code != TAB:
+            return at
         at += 1
-    return at
 
 
-def _value(text: str, start: int, base: int) -> Word:
+def _value(text: str, start: i64, base: i64) -> Word:
     """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-    code = ord(text[start])
+    code: i64 = ord(text[start])
     if code in (QUOTE, APOSTROPHE):
         word = Word(STRING, start - base, _string(text, start, code))
     elif begins_name(code):
@@ -219,14 +226,14 @@ def _value(text: str, start: int, base: int) -> Word:
     return word
 
 
-def _ends_word(text: str, at: int) -> None:
+def _ends_word(text: str, at: i64) -> None:
     """What may stand behind a word in brackets or in a list"""
-    code = ord(text[at])
+    code: i64 = ord(text[at])
     if code not in (SPACE, CLOSING, COMMA, LINE_FEED, RETURN, TAB):
         raise Unusual
 
 
-def _string(text: str, start: int, quote: int) -> str:
+def _string(text: str, start: i64, quote: i64) -> str:
     """STRING without a backslash, none of whose lines may be the start of an item"""
     if quote != QUOTE and quote != APOSTROPHE:
         raise Unusual
@@ -236,28 +243,30 @@ def _string(text: str, start: int, quote: int) -> str:
             raise Unusual
         return raw
     at = start + 1
-    while (code := ord(text[at])) != quote:
+    while True:
+        code: i64 = ord(text[at])
         at += 1
+        if code == quote:
+            return text[start:at]
         if code == BACKSLASH:
             raise Unusual
         if code in (LINE_FEED, RETURN):
-            following = ord(text[at])
+            following: i64 = ord(text[at])
             if following != SPACE and following != TAB and following != LINE_FEED and following != RETURN:
                 raise Unusual
-    return text[start : at + 1]
 
 
 # ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
 
 
-def attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]) -> int:
+def attributes(text: str, at: i64, blanks: str, base: i64, pairs: list[Pair], clauses: list[NodeClause]) -> i64:
     """{ Attribute [ "," ] } ")", from behind the `(`"""
     while True:
         if not COMPILED:
             at, closed = read_attributes(text, at, blanks, base, pairs, clauses)
             if closed:
                 return at
-        code = ord(text[at])
+        code: i64 = ord(text[at])
         if code == CLOSING:
             return at + 1
         if code in (SPACE, LINE_FEED, RETURN, TAB, HASH, SLASH):
@@ -280,7 +289,7 @@ def attributes(text: str, at: int, blanks: str, base: int, pairs: list[Pair], cl
             at += 1
 
 
-def _behind_equals(text: str, at: int) -> int:
+def _behind_equals(text: str, at: i64) -> i64:
     """Behind a `=` on this line and the blanks around it; -1 where none stands."""
     at = _behind_blanks(text, at)
     if ord(text[at]) != EQUALS or ord(text[at + 1]) == EQUALS:
@@ -288,11 +297,11 @@ def _behind_equals(text: str, at: int) -> int:
     return _behind_blanks(text, at + 1)
 
 
-def _gap(text: str, at: int, blanks: str | None) -> int:
+def _gap(text: str, at: i64, blanks: str | None) -> i64:
     """Behind blanks and, in brackets, over line ends and comments"""
     if ord(text[at]) == SPACE:
         at += 1
-    code = ord(text[at])
+    code: i64 = ord(text[at])
     if code not in (SPACE, LINE_FEED, RETURN, TAB, HASH, SLASH):
         return at
     if blanks is None:
@@ -312,7 +321,7 @@ def _gap(text: str, at: int, blanks: str | None) -> int:
     return at
 
 
-def _comment_end(text: str, at: int) -> int:
+def _comment_end(text: str, at: i64) -> i64:
     """Behind the comment that begins there, if it is one of the rest of a line"""
     if text[at - 1] not in " \t\r\n()," or (ord(text[at]) == SLASH and ord(text[at + 1]) != SLASH):
         raise Unusual
@@ -322,7 +331,7 @@ def _comment_end(text: str, at: int) -> int:
 # ---- qualities and requirements -------------------------------------------------------------------------------------
 
 
-def line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> int:
+def line_clauses(text: str, at: i64, base: i64, clauses: list[NodeClause]) -> i64:
     """{ NodeClause } NL, outside brackets; returns where the next line begins"""
     at = _gap(text, at, None)
     while begins_name(ord(text[at])):
@@ -331,9 +340,9 @@ def line_clauses(text: str, at: int, base: int, clauses: list[NodeClause]) -> in
     return _next_line(text, at)
 
 
-def _next_line(text: str, at: int) -> int:
+def _next_line(text: str, at: i64) -> i64:
     """NL, and the comment before it"""
-    code = ord(text[at])
+    code: i64 = ord(text[at])
     if code in (HASH, SLASH):
         at = _comment_end(text, at)
         code = ord(text[at])
@@ -344,7 +353,7 @@ def _next_line(text: str, at: int) -> int:
     raise Unusual
 
 
-def _clause(text: str, start: int, word: str, blanks: str | None, base: int, clauses: list[NodeClause]) -> int:
+def _clause(text: str, start: i64, word: str, blanks: str | None, base: i64, clauses: list[NodeClause]) -> i64:
     """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
     if word not in NODE_CLAUSES:
         raise Unusual
@@ -383,12 +392,12 @@ def _clause(text: str, start: int, word: str, blanks: str | None, base: int, cla
     return behind
 
 
-def _next_element(text: str, at: int, word: str, blanks: str | None) -> int:
+def _next_element(text: str, at: i64, word: str, blanks: str | None) -> i64:
     """Where the list goes on, behind a comma or, as classic files are written, without one; -1 where it ends"""
     comma = ord(text[at]) == COMMA
     if comma:
         at = _gap(text, at + 1, blanks)
-    code = ord(text[at])
+    code: i64 = ord(text[at])
     if not comma and code == CLOSING:
         return -1
     name = text[at : name_end(text, at)] if begins_name(code) else ""
@@ -403,14 +412,14 @@ def _next_element(text: str, at: int, word: str, blanks: str | None) -> int:
     return at
 
 
-def _element(text: str, at: int, base: int) -> Word:
+def _element(text: str, at: i64, base: i64) -> Word:
     """Name, and behind it what may follow in a list"""
     name = _name(text, at, base)
     _ends_word(text, at + len(name.raw))
     return name
 
 
-def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality, int]:
+def _quality(text: str, at: i64, blanks: str | None, base: i64) -> tuple[Quality, i64]:
     """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
     classic = text.startswith("Quality", at)
     if classic:
@@ -440,7 +449,7 @@ def _quality(text: str, at: int, blanks: str | None, base: int) -> tuple[Quality
     return Quality(QualityPath(tuple(names)), tuple(requirements)), end
 
 
-def _blanks_before(text: str, at: int) -> str | None:
+def _blanks_before(text: str, at: i64) -> str | None:
     """The blanks of the line that begins there; None where no line does"""
     start = at
     while (code := ord(text[start - 1])) == SPACE or code == TAB:
@@ -448,7 +457,7 @@ def _blanks_before(text: str, at: int) -> str | None:
     return text[start:at] if code in (LINE_FEED, RETURN) else None
 
 
-def _requirement(text: str, start: int, blanks: str | None, base: int) -> tuple[Requirement, int]:
+def _requirement(text: str, start: i64, blanks: str | None, base: i64) -> tuple[Requirement, i64]:
     """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ]"""
     end = start + len("QualityReq")
     at = _gap(text, end, blanks)

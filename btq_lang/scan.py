@@ -30,15 +30,17 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
+    from mypy_extensions import i64
+
 COMPILED: Final = not __file__.endswith(".py")
 
 
-def name_end(text: str, start: int) -> int:
+def name_end(text: str, start: i64) -> i64:
     """The end of the NAME that begins at `start`, which is a letter or `_`."""
-    size = len(text)
+    size: i64 = len(text)
     end = word_end(text, start + 1, size)
     while end < size:
-        code = ord(text[end])
+        code: i64 = ord(text[end])
         if code == MINUS and (further := word_end(text, end + 1, size)) > end + 1:
             end = further
         else:
@@ -48,7 +50,7 @@ def name_end(text: str, start: int) -> int:
     return end
 
 
-def word_end(text: str, start: int, size: int) -> int:
+def word_end(text: str, start: i64, size: i64) -> i64:
     """Behind letters, digits and `_`."""
     if not COMPILED:
         return _WORD(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
@@ -57,57 +59,62 @@ def word_end(text: str, start: int, size: int) -> int:
     return start
 
 
-def blanks_end(text: str, start: int, size: int) -> int:
+def blanks_end(text: str, start: i64, size: i64) -> i64:
     """Behind blanks and tabs."""
     if not COMPILED:
         return _BLANKS(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
     while start < size:
-        code = ord(text[start])
+        code: i64 = ord(text[start])
         if code != SPACE and code != TAB:
             break
         start += 1
     return start
 
 
-def line_opening(text: str, start: int) -> tuple[int, int]:
+def line_opening(text: str, start: i64) -> tuple[i64, i64]:
     """Over blank lines: where the line begins whose first word or comment comes next (`start`, if it is the same
     line), and where its blanks end."""
     if not COMPILED:
         match = _OPENING(text, start)
         return match.span(match.lastindex)  # type: ignore
-    size = len(text)
+    size: i64 = len(text)
     at = start
     while at < size:
-        code = ord(text[at])
-        if code in (LINE_FEED, RETURN):
-            start = at + 1
-        elif code != SPACE and code != TAB:
-            break
+        code: i64 = ord(text[at])
         at += 1
+        if code == SPACE:
+            continue
+        if code in (LINE_FEED, RETURN):
+            start = at
+        elif code != TAB:
+            return start, at - 1
     return start, at
 
 
-def line_end(text: str, start: int) -> int:
+def line_end(text: str, start: i64) -> i64:
     """Where the line of text ends."""
     if COMPILED:
-        size = len(text)
-        while start < size and (code := ord(text[start])) != LINE_FEED and code != RETURN:
+        size: i64 = len(text)
+        while start < size:
+            code: i64 = ord(text[start])
+            if code in (LINE_FEED, RETURN):
+                break
             start += 1
         return start
     return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
-def line_start(text: str, lower: int, position: int) -> int:
+def line_start(text: str, lower: i64, position: i64) -> i64:
     """Where the line of text begins, at least `lower`."""
     return max(text.rfind("\n", lower, position) + 1, text.rfind("\r", lower, position) + 1, lower)
 
 
-def path_end(text: str, start: int) -> int:
+def path_end(text: str, start: i64) -> i64:
     """Behind what somebody probably wrote as a path: up to a blank, a bracket or a quote."""
     return _PATH(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
-def symbol_at(text: str, start: int) -> str:
+def symbol_at(text: str, start: i64) -> str:
     """The longest symbol that begins at `start`; empty where none does."""
     for symbol in _BY_FIRST.get(text[start], ()):
         if text[start : start + len(symbol)] == symbol:
@@ -115,7 +122,7 @@ def symbol_at(text: str, start: int) -> str:
     return ""
 
 
-def string_end(text: str, start: int, quote: str) -> int:
+def string_end(text: str, start: i64, quote: str) -> i64:
     """Behind the closing quote of the string whose text begins at `start`; -1 where there is none."""
     end = text.find(quote, start)
     while end >= 0:
@@ -128,21 +135,21 @@ def string_end(text: str, start: int, quote: str) -> int:
     return -1
 
 
-def braced_end(text: str, start: int) -> int:
+def braced_end(text: str, start: i64) -> i64:
     """Behind the BRACED that begins at `start`; `start` where none does."""
     braced = _BRACED(text, start)
     return braced.end() if braced else start
 
 
-def number_at(text: str, start: int) -> tuple[int, int]:
+def number_at(text: str, start: i64) -> tuple[i64, i64]:
     """What begins at `start`, a digit or a `-` and a digit, and where it ends.
 
     Returns:
         NUMBER or QUANTITY and the end, or ERROR and the end of the number where a word that is no unit is glued to it
         or units follow it that make none together.
     """
-    size = len(text)
-    end = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
+    size: i64 = len(text)
+    end: i64 = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
     unit = end
     while unit < size and ((code := ord(text[unit])) == SPACE or code == TAB):
         unit += 1
@@ -156,12 +163,12 @@ def number_at(text: str, start: int) -> tuple[int, int]:
     return NUMBER, end
 
 
-def number_end(text: str, start: int) -> int:
+def number_end(text: str, start: i64) -> i64:
     """Behind the number that begins at `start`, a digit or a `-` and a digit; its unit does not count."""
     return _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
 
 
-def unit_at(text: str, start: int) -> int:
+def unit_at(text: str, start: i64) -> i64:
     """The end of the UNIT that begins at `start`, or `start` where none does."""
     factor = _FACTOR(text, start)
     if factor is None:
@@ -185,7 +192,7 @@ def is_unit(word: str) -> bool:
     return word in UNITS or parse_unit(word) is not None
 
 
-def unit_run(text: str, start: int) -> int:
+def unit_run(text: str, start: i64) -> i64:
     """The end of what somebody probably wrote as a unit, right or wrong."""
     return _UNIT_RUN(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 

@@ -17,6 +17,8 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import ClassVar, Final
 
+    from mypy_extensions import i64
+
     from btq_lang.syntax import NodeClause, Verbatim
 
 
@@ -32,13 +34,13 @@ class Word:
     __slots__ = ("kind", "raw", "start")
     __match_args__: ClassVar = ("kind", "start", "raw")
 
-    def __init__(self, kind: int, start: int, raw: str) -> None:
+    def __init__(self, kind: i64, start: i64, raw: str) -> None:
         self.kind: Final = kind
         self.start: Final = start
         self.raw: Final = raw
 
     @property
-    def end(self) -> int:
+    def end(self) -> i64:
         return self.start + len(self.raw)
 
     @property
@@ -119,8 +121,8 @@ class Node:
 
     def __init__(
         self,
-        start: int,
-        end: int,
+        start: i64,
+        end: i64,
         category: Word | None,
         kind: Word | None,
         label: Word | None,
@@ -143,7 +145,7 @@ class Node:
         return Span(self.start, self.end)
 
     @property
-    def block_end(self) -> int:
+    def block_end(self) -> i64:
         """Where the last line of its block ends."""
         end = 0
         last: Node | Verbatim | None = self
