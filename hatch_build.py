@@ -33,6 +33,7 @@ COMPILED = (
     "cursor",
     "conditions",
     "clauses",
+    "plain_requirements",
     "nodes",
     "parser",
 )

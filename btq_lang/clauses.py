@@ -57,6 +57,7 @@ HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
+RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
 
 
@@ -366,7 +367,7 @@ class ClauseParser(ConditionParser):
             return Bound(start, self.last_end(), "between", lower, upper)
         relation = None
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
-            relation = _RELATIONS.get((self.raw, self.raws[self.index + 1]))
+            relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
         if relation is None:
             meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
             if meant is None:
@@ -374,7 +375,7 @@ class ClauseParser(ConditionParser):
                 note = f"how much is said before the value: `at most {example}`"
                 self.expected("a bound: at most, at least, less than, more than or between", (note,))
                 return None
-            relation = _RELATIONS[meant]
+            relation = RELATIONS[meant]
             written = " ".join(meant)
             fix = replace_fix(f"Write `{written}`", self.here(), written, safe=True)
             self.complain("syntax-error", self.here(), f"this bound is written `{written}`", (), (fix,))
@@ -457,4 +458,3 @@ _INSTEAD_OF_BOUNDS: Final = {
     "above": ("more", "than"),
     "within": ("at", "most"),
 }
-_RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}

@@ -76,7 +76,9 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             kind: Word | None = Word(role, start, first)
             label = None if second is None else Word(value_kind(second[0], NAME), start + len(first) + 1, second)
         elif role == NO_NODE:
-            if first not in NODE_CLAUSES or children or (line := plain_clauses(text, at, base)) is None:
+            if first not in NODE_CLAUSES or children or second == "QualityReq":
+                break
+            if (line := plain_clauses(text, at, base)) is None:
                 break
             block.clauses += line[0]
             at = behind = line[1]

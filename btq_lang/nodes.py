@@ -12,6 +12,7 @@ from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
+from btq_lang.plain_requirements import plain_clause_line, plain_requirement
 from btq_lang.scan import COMPILED, line_start, path_end
 from btq_lang.syntax import (
     Node,
@@ -89,6 +90,9 @@ class NodeParser(ClauseParser):
                     continue
             node = None
             plain = None
+            if not block.children and (satisfies := self.plain_satisfies(inner)) is not None:
+                block.clauses.append(satisfies)
+                continue
             if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
                 plain = plain_node(self.text, lexer.position, lexer.blanks, self.base)
             if plain is not None:
@@ -217,25 +221,48 @@ class NodeParser(ClauseParser):
     def at_label(self) -> bool:
         return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
 
-    def clause_line(self, level: int) -> list[NodeClause]:
-        """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem"""
+    def clause_line(self, level: int, moved: bool = False) -> list[NodeClause]:
+        """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem
+
+        Args:
+            moved: it stands where it should not, so where it ends must be known to the token.
+        """
         found: list[NodeClause] = []
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             found.append(self.node_clause())
         self.end_line()
         last = found[-1]
         if isinstance(last, Satisfies) and last.uses and isinstance(use := last.uses[-1], Requirement):
-            requirement = self.clause_block(use, level)
+            requirement = self.clause_block(use, level, plain=not moved)
             found[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
         self.no_block(level)
         return found
+
+    def plain_satisfies(self, level: int) -> Satisfies | None:
+        """ "satisfies" ReqItem, the head of it plain"""
+        start = self.lexer.position
+        if not self.text.startswith("satisfies QualityReq ", start):
+            return None
+        requirement = self.plain_req_item(start + len("satisfies "), level)
+        if requirement is None:
+            return None
+        self.no_block(level)
+        return Satisfies(start - self.base, requirement.end, (requirement,))
+
+    def plain_req_item(self, start: int, level: int) -> Requirement | None:
+        """ReqItem, the head of it plain"""
+        if self.lexer.ended_early or (head := plain_requirement(self.text, start, self.base)) is None:
+            return None
+        requirement, self.lexer.position = head
+        self.more = self.lexer.open_line()
+        return self.clause_block(requirement, level)
 
     def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
         """A clause line in the block of a node; behind children, where it should not stand, it is reported."""
         start = self.lexer.line_start
         at = self.here()
         word = self.raw
-        found = self.clause_line(level)
+        found = self.clause_line(level, moved=bool(children))
         if children:
             end = self.starts[-1] + len(self.raws[-1])
             moved = self.text[start:end]
@@ -270,15 +297,23 @@ class NodeParser(ClauseParser):
         self.no_block(level)
         return Satisfies(requirement.start, requirement.end, (requirement,))
 
-    def clause_block(self, requirement: Requirement, level: int) -> Requirement:
+    def clause_block(self, requirement: Requirement, level: int, plain: bool = True) -> Requirement:
         """[ INDENT { Clause { Clause } NL } DEDENT ]"""
         clauses = list(requirement.clauses)
         end = requirement.end
         while self.deeper(level):
             inner = self.lexer.level
-            self.scan()
-            clauses += self.clauses(at_least_one=True)
-            end = self.end_line()
+            line = None
+            if plain and not self.lexer.ended_early:
+                line = plain_clause_line(self.text, self.lexer.position, self.base)
+            if line is not None:
+                found, end, self.lexer.position = line
+                clauses += found
+                self.more = self.lexer.open_line()
+            else:
+                self.scan()
+                clauses += self.clauses(at_least_one=True)
+                end = self.end_line()
             self.no_block(inner)
         if end == requirement.end:
             return requirement

@@ -231,9 +231,9 @@ class Parser(NodeParser):
         """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""
         self.base = self.lexer.line_start
         found_at = self.lexer.level
-        if found_at == level and (tree := self.plain_tree(found_at)):
+        if found_at == level and (plain := self.plain_item(found_at)):
             self.stray_level = -1
-            self.entry(tree, in_root)
+            self.entry(plain, in_root)
             return
         self.scan()
         if found_at > level and found_at != self.stray_level:
@@ -486,10 +486,12 @@ class Parser(NodeParser):
         ports, clauses, children = self.tree_block(level)
         return Tree(start, end, name, attributes, ports, clauses, children)
 
-    def plain_tree(self, level: int) -> Tree | None:
-        """A tree whose first line says its name and nothing else"""
+    def plain_item(self, level: int) -> Tree | Requirement | None:
+        """A tree whose first line says its name and nothing else, or a requirement whose first line is plain"""
         lexer = self.lexer
         start = lexer.position
+        if self.text.startswith("QualityReq ", start):
+            return self.plain_req_item(start, level)
         if lexer.ended_early or (head := plain_head(self.text, start, self.base)) is None:
             return None
         name, lexer.position = head

@@ -19,7 +19,7 @@ ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "garbage", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
         {"tokens", "characters", "scan", "lexer", "words", "node_clauses", "syntax", "cursor"}
-        | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain"}
+        | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain", "plain_requirements"}
         | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),

@@ -40,8 +40,8 @@ def parse_in_full(text: str) -> Parsed:
         for module in (lexer, nodes, plain, scan):
             patch.setattr(module, "COMPILED", True)
         patch.setattr(parser, "plain_head", lambda *_: None)
-        patch.setattr(nodes, "plain_node", lambda *_: None)
-        patch.setattr(nodes, "plain_clauses", lambda *_: None)
+        for short_cut in ("plain_node", "plain_clauses", "plain_requirement", "plain_clause_line"):
+            patch.setattr(nodes, short_cut, lambda *_: None)
         return parse(text)
 
 
@@ -194,3 +194,78 @@ def test_every_prefix_reads_alike(reader: Reader) -> None:
     for text in (CLASSIC, SHORT):
         for end in range(0, len(text), 7):
             assert_alike(text[:end], reader)
+
+
+CLAUSE_WORDS = (
+    *("takes at most", "tries at least", "needs", "keeps", "never", "leaves", "succeeds", "succeeds within", "while"),
+    *("when", "in at least", "of activations", "of runs", "over last", "activations", "on violation", "fail", "log"),
+    *(
+        "goal",
+        "because",
+        '"so"',
+        '"so" # c',
+        "verified by",
+        "monitor",
+        "test",
+        "30 s",
+        "6 m/s",
+        "3 %",
+        "5",
+        "0.5",
+        "-1",
+    ),
+    *("1.", ".5", "1e3", "speed", "a-b", "node", "not", "and", "max", "true", "<=", "==", "<", "+", "(", "x", "ready?"),
+    *("every", "mission", "from", "per 1 s", "1", "bool", "min", "if", "else", "# c", "", " ", "\t", "²", "é", "R?"),
+)
+HEADS = (
+    *(
+        "QualityReq r",
+        'QualityReq r "T"',
+        "QualityReq r : a.b",
+        'QualityReq r-1 : a "T"',
+        "QualityReq",
+        "QualityReq r :",
+    ),
+    *(
+        'QualityReq r "T" goal 3 s',
+        "QualityReq r : a.",
+        'QualityReq r : a "T',
+        'QualityReq r "T\\n"',
+        "QualityReq R? : a",
+    ),
+    *(
+        "QualityReq ID = r",
+        "QualityReq ID",
+        'QualityReq "r" : a',
+        "QualityReq r: a",
+        "QualityReq  r : a",
+        "QualityReq r a",
+    ),
+)
+
+
+@READERS
+def test_random_clauses_read_alike(reader: Reader) -> None:
+    draw = random.Random(4)
+    for _ in range(3_000):
+        lines = [" ".join(draw.choices(CLAUSE_WORDS, k=draw.randint(1, 4))) for _ in range(draw.randint(0, 3))]
+        at_node = draw.random() < 0.5
+        head = draw.choice(HEADS[:4] if draw.random() < 0.5 else HEADS)
+        opening = f"BehaviorTree T\n  A\n    satisfies {head}\n" if at_node else f"{head}\n"
+        assert_alike(opening + "".join(f"      {line}\n" for line in lines) + "signal x : s\n", reader)
+
+
+def test_the_usual_reader_reads_plain_clauses_without_tokens(monkeypatch: pytest.MonkeyPatch) -> None:
+    scanned = []
+    scan_line = lexer.Lexer.scan
+
+    def counted(self: lexer.Lexer) -> None:
+        scan_line(self)
+        scanned.append(" ".join(self.raws[:-1]))
+
+    monkeypatch.setattr(lexer.Lexer, "scan", counted)
+    parsed = parse(mission(1_000, 1, "short"))
+    assert parsed.diagnostics == ()
+    assert [
+        line for line in scanned if line.split()[0] not in ("Action", "Condition", "input", "signal", "context")
+    ] == []
