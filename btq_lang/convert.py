@@ -56,6 +56,14 @@ class Converter:
         place = Position(position.line, position.character)
         return workspace.files[path].lines.offset(place, self.encoding)
 
+    def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
+        """As `offset`; of a file in XML, where in this language that is; None: nowhere."""
+        file = workspace.files[path]
+        if file.origin is None:
+            return self.offset(workspace, path, position)
+        place = Position(position.line, position.character)
+        return file.origin.places.made(file.source_lines.offset(place, self.encoding))
+
     def span(self, workspace: Workspace, path: str, range_: types.Range) -> Span:
         start, end = (self.offset(workspace, path, position) for position in (range_.start, range_.end))
         return Span(start, max(start, end))
@@ -145,13 +153,12 @@ class Converter:
         return merged
 
     def outline(self, workspace: Workspace, path: str, outline: Outline) -> types.DocumentSymbol:
+        children = [self.outline(workspace, path, child) for child in outline.children]
+        whole, name = self.range(workspace, path, outline.span), self.range(workspace, path, outline.name_span)
+        if workspace.files[path].origin is not None:  # in XML the parts need not stand in the order of this language
+            whole = _around(whole, name, *(child.range for child in children))
         return types.DocumentSymbol(
-            outline.name,
-            SYMBOL_KINDS[outline.kind],
-            self.range(workspace, path, outline.span),
-            self.range(workspace, path, outline.name_span),
-            detail=outline.detail,
-            children=[self.outline(workspace, path, child) for child in outline.children],
+            outline.name, SYMBOL_KINDS[outline.kind], whole, name, detail=outline.detail, children=children
         )
 
     def symbol(self, workspace: Workspace, match: Match) -> types.WorkspaceSymbol:
@@ -197,6 +204,11 @@ class Converter:
                 )
             )
         return types.CompletionList(is_incomplete=False, items=items)
+
+
+def _around(*ranges: types.Range) -> types.Range:
+    starts, ends = [one.start for one in ranges], [one.end for one in ranges]
+    return types.Range(min(starts), max(ends))
 
 
 def markdown(text: str) -> types.MarkupContent:

@@ -42,6 +42,15 @@ class Places:
         """In the order of the text that was made; they do not overlap in it."""
         return self._located(self._marks, self._lines) if self._located else ()
 
+    def made(self, offset: int) -> int | None:
+        """Where in the text that was made an offset of the original is: in the shortest piece around it, or that ends
+        there; None: nothing was made of what stands there."""
+        around = [piece for piece in self.pieces if piece[2] <= offset <= piece[3]]
+        if not around:
+            return None
+        start, end, original_start, original_end = min(around, key=lambda piece: (piece[3] - piece[2], -piece[2]))
+        return start + offset - original_start if end - start == original_end - original_start else start
+
     def __reduce__(self) -> tuple[object, ...]:
         return Places, (self.pieces, (), _as_they_are)
 

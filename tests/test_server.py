@@ -523,6 +523,117 @@ def test_a_build_that_is_not_done_says_why(editor: Editor) -> None:
     assert refused["error"]["message"] == "this document is no file: save it first"
 
 
+# ---- documents in XML ----
+
+DOCK = """<root BTCPP_format="4">
+  <BehaviorTree ID="Dock">
+    <Timeout msec="1000">
+      <SubTree ID="Home"/>
+    </Timeout>
+  </BehaviorTree>
+  <BehaviorTree ID="Home">
+    <Action ID="Pick" from="{shelf}"/>
+  </BehaviorTree>
+</root>
+"""
+
+
+@pytest.fixture
+def foreign(tmp_path: Path) -> Iterator[Editor]:
+    """An editor that sends the server an XML file, which a mission includes."""
+    (tmp_path / "dock.xml").write_text(DOCK, encoding="utf-8")
+    (tmp_path / "main.btq").write_text('include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n', encoding="utf-8")
+    (tmp_path / "other.btq").write_text("BehaviorTree Other\n    Pick\n", encoding="utf-8")
+    editor = Editor(tmp_path)
+    editor.open("dock.xml", DOCK)
+    yield editor
+    assert editor.close() == ""
+
+
+def test_xml_is_checked_as_it_is_typed(foreign: Editor) -> None:
+    assert foreign.diagnostics("dock.xml") == []
+    foreign.change("dock.xml", DOCK.replace("Timeout", "Timeot"))
+    assert foreign.diagnostics("dock.xml") == [("unknown-node", 2, 5, 11)]
+    foreign.change("dock.xml", DOCK.replace('ID="Dock"', 'ID="Station"'))
+    assert foreign.diagnostics("dock.xml") == []
+    assert foreign.diagnostics("main.btq") == [("unknown-tree", 2, 12, 16)]
+    foreign.change("dock.xml", DOCK[:-9])
+    assert [found[0] for found in foreign.diagnostics("dock.xml")] == ["xml-syntax"]
+
+
+def test_xml_that_is_nobodys_tree_is_left_alone(editor: Editor) -> None:
+    editor.open("pom.xml", "<project><name/></project>")
+    assert editor.diagnostics("pom.xml") == []
+    assert editor.request("textDocument/documentSymbol", **editor.document("pom.xml")) == []
+    editor.open("main.btq", 'include "pom.xml"\n')
+    assert [found[0] for found in editor.diagnostics("pom.xml")] == ["xml-root"]
+
+
+def test_what_stands_in_xml_is_explained_and_found(foreign: Editor) -> None:
+    shown = foreign.request("textDocument/hover", **foreign.at("dock.xml", 2, 6))
+    assert shown["contents"]["value"].startswith("**Timeout** (Decorator)")
+    assert shown["range"] == {"start": {"line": 2, "character": 5}, "end": {"line": 2, "character": 12}}
+    assert foreign.request("textDocument/hover", **foreign.at("dock.xml", 9, 7)) is None
+    called, defined = (
+        {"start": {"line": line, "character": start}, "end": {"line": line, "character": start + 4}}
+        for line, start in ((3, 19), (6, 20))
+    )
+    uri = foreign.uri("dock.xml")
+    here = foreign.at("dock.xml", 3, 21)
+    assert foreign.request("textDocument/definition", **here) == [{"uri": uri, "range": defined}]
+    context = {"includeDeclaration": False}
+    assert foreign.request("textDocument/references", **here, context=context) == [{"uri": uri, "range": called}]
+    highlighted = foreign.request("textDocument/documentHighlight", **here)
+    assert [each["range"] for each in highlighted] == [called, defined]
+    (home,) = foreign.request("textDocument/prepareCallHierarchy", **here)
+    (caller,) = foreign.request("callHierarchy/incomingCalls", item=home)
+    assert (caller["from"]["name"], caller["fromRanges"]) == ("Dock", [called])
+    lenses = foreign.request("textDocument/codeLens", **foreign.document("dock.xml"))
+    assert [lens["command"]["title"] for lens in lenses] == ["1 call", "1 call"]
+
+
+def test_the_outline_of_xml(foreign: Editor) -> None:
+    outline = foreign.request("textDocument/documentSymbol", **foreign.document("dock.xml"))
+    dock = outline[1]
+    assert [dock["name"], dock["children"][0]["name"], dock["children"][0]["children"][0]["name"]] == [
+        *("Dock", "Timeout", "Home")
+    ]
+
+    def check(symbols: list[Message], around: Message | None) -> None:
+        for one in symbols:
+            inner, outer = one["selectionRange"], one["range"]
+            assert order(outer["start"]) <= order(inner["start"]) <= order(inner["end"]) <= order(outer["end"])
+            assert around is None or order(around["start"]) <= order(outer["start"])
+            assert around is None or order(outer["end"]) <= order(around["end"])
+            check(one["children"], outer)
+
+    check(outline, None)
+
+
+def order(place: Message) -> tuple[int, int]:
+    return place["line"], place["character"]
+
+
+def test_xml_is_never_edited(foreign: Editor) -> None:
+    options = {"tabSize": 4, "insertSpaces": True}
+    assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) == []
+    for method in ("completion", "signatureHelp", "linkedEditingRange"):
+        assert foreign.request(f"textDocument/{method}", **foreign.at("dock.xml", 3, 21)) is None
+    place = {"start": {"line": 3, "character": 21}, "end": {"line": 3, "character": 21}}
+    context = {"diagnostics": []}
+    asked = {**foreign.document("dock.xml"), "range": place, "context": context}
+    assert foreign.request("textDocument/codeAction", **asked) == []
+    foreign.open("main.btq", 'include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n')
+    foreign.open("other.btq", "BehaviorTree Other\n    Pick\n")
+    for name, line, character, reason in (
+        ("dock.xml", 3, 21, f"`Home` is defined in {foreign.root}/dock.xml, which is no .btq file"),
+        ("main.btq", 2, 13, f"`Dock` is defined in {foreign.root}/dock.xml, which is no .btq file"),
+        ("other.btq", 1, 5, f"`Pick` stands in {foreign.root}/dock.xml, too, which is no .btq file"),
+    ):
+        refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
+        assert refused["error"] == {"code": -32803, "message": reason}
+
+
 # ---- the way there ----
 
 

@@ -67,6 +67,9 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     if reason:
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))
+    foreign = next((place.path for place in places if not is_btq(place.path)), None)
+    if foreign is not None:  # a node without a model means the same in files that know nothing of each other
+        return Refusal(f"`{wanted.name}` stands in {foreign}, too, which is no .btq file")
     reasons: list[str] = []
     for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}

@@ -14,7 +14,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def show(params: types.HoverParams) -> types.Hover | None:
-        asked = server.ask(params.text_document, params.position, features.explain)
+        asked = server.ask(params.text_document, params.position, features.explain, reads=True)
         if asked is None or asked[2] is None:
             return None
         return types.Hover(markdown(asked[2].markdown), convert.range(asked[0], asked[1], asked[2].span))

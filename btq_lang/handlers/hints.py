@@ -43,7 +43,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     def prepare(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem] | None:
-        asked = server.ask(params.text_document, params.position, features.prepare_calls)
+        asked = server.ask(params.text_document, params.position, features.prepare_calls, reads=True)
         return [item(asked[0], asked[2])] if asked and asked[2] else None
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
@@ -83,7 +83,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
-        place = server.at(params.text_document)
+        place = server.at(params.text_document, reads=True)
         if place is None or not session.setting("codeLens", True):
             return []
         workspace, path = place

@@ -13,7 +13,7 @@ def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
     def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        asked = server.ask(params.text_document, params.position, features.goto_definition)
+        asked = server.ask(params.text_document, params.position, features.goto_definition, reads=True)
         if asked is None:
             return []
         workspace, path, targets = asked
@@ -36,13 +36,16 @@ def register(server: Server) -> None:
     def references(params: types.ReferenceParams) -> list[types.Location]:
         wanted = params.context.include_declaration
         asked = server.ask(
-            params.text_document, params.position, lambda *at: features.find_references(at[0], at[1], at[2], wanted)
+            params.text_document,
+            params.position,
+            lambda *at: features.find_references(at[0], at[1], at[2], wanted),
+            reads=True,
         )
         return [convert.location(asked[0], path, span) for path, span in asked[2]] if asked else []
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
-        asked = server.ask(params.text_document, params.position, features.highlights)
+        asked = server.ask(params.text_document, params.position, features.highlights, reads=True)
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(convert.range(asked[0], asked[1], each.span), kinds[each.writes])
@@ -52,7 +55,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-        asked = server.ask(params.text_document, params.position, features.prepare_rename)
+        asked = server.ask(params.text_document, params.position, features.prepare_rename, reads=True)
         if asked is None:
             return None
         if isinstance(asked[2], features.Refusal):
@@ -62,7 +65,10 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_all(params: types.RenameParams) -> types.WorkspaceEdit | None:
         asked = server.ask(
-            params.text_document, params.position, lambda *at: features.renamed(at[0], at[1], at[2], params.new_name)
+            params.text_document,
+            params.position,
+            lambda *at: features.renamed(at[0], at[1], at[2], params.new_name),
+            reads=True,
         )
         if asked is None:
             return None

@@ -13,7 +13,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def outline(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        place = server.at(params.text_document)
+        place = server.at(params.text_document, reads=True)
         return [convert.outline(*place, each) for each in features.document_symbols(*place)] if place else []
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
@@ -28,7 +28,7 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_LINK)
     def links(params: types.DocumentLinkParams) -> list[types.DocumentLink]:
-        place = server.at(params.text_document)
+        place = server.at(params.text_document, reads=True)
         return [
             types.DocumentLink(convert.range(*place, link.span), target=convert.uri(link.target))
             for link in (features.document_links(*place) if place else ())
