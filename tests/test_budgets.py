@@ -2,21 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 import pytest
 from engine_simulator import Endless, Run
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from btq_lang.catalog.nodes import lookup
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.budgets import Budgets, Range
+from btq_lang.requirements.composition import _RULES
 from btq_lang.requirements.model import SourceNode
 from btq_lang.workspace import Workspace
 
 # ---- no run lies outside --------------------------------------------------------------------------------------------
 
-IN_ORDER = ["->", "?", "M->", "A->", "A?"]
+# What the kinds of nodes with children have in common where trees are drawn.
+GROUPS = {
+    "order": ("->", "?", "M->", "A->", "A?"),
+    "reactive": ("R->", "R?"),
+    "parallel": ("||", "All||"),
+    "one": (
+        *("Timeout", "Delay", "Retry", "Repeat", "Inverter", "ForceSuccess", "ForceFailure"),
+        *("KeepRunningUntilFailure", "RunOnce", "Precondition"),
+    ),
+    "other": ("IfThenElse", "WhileDoElse", "TryCatch", "Switch"),
+    "leaf": ("SubTree",),
+}
+KINDS = tuple(kind for kinds in GROUPS.values() for kind in kinds)
+# Queues and entries that somebody else writes are no part of the simulation: where they stand, no end can be said.
+NOT_SIMULATED = {"LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate"}
 
 
 def leaf(draw: st.DrawFn) -> str:
@@ -31,31 +48,39 @@ def leaf(draw: st.DrawFn) -> str:
 
 
 @st.composite
-def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True) -> list[str]:
-    """The lines of a node with all below it."""
+def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True, top: str = "") -> list[str]:
+    """The lines of a node with all below it.
+
+    Args:
+        sub: SubTree nodes may be among them.
+        may_skip: it may be skipped.
+        top: its kind; any by default.
+    """
 
     def below(count: int = 1, skipping: bool = True) -> list[list[str]]:
         return [draw(tree(depth - 1, sub, skipping)) for _ in range(count)]
 
-    group = (
-        "leaf"
-        if depth == 0
-        else draw(st.sampled_from(["leaf", "order", "order", "reactive", "parallel", "one", "other"]))
-    )
+    def one_of(choices: Sequence[str]) -> str:
+        return draw(st.sampled_from([each for each in choices if each.split()[0] == top] or choices))
+
+    group = next((group for group, kinds in GROUPS.items() if top in kinds), "leaf")
+    if not top and depth:
+        group = draw(st.sampled_from(["leaf", "order", "order", "reactive", "parallel", "one", "other"]))
     children: list[list[str]] = []
     if group == "leaf":
-        head = "SubTree Sub" if sub and draw(st.integers(0, 4)) == 0 and may_skip else leaf(draw)
+        is_subtree = top == "SubTree" or (sub and draw(st.integers(0, 4)) == 0 and may_skip)
+        head = "SubTree Sub" if is_subtree else leaf(draw)
     elif group == "order":
-        head, children = draw(st.sampled_from(IN_ORDER)), below(draw(st.integers(1, 3)))
+        head, children = one_of(GROUPS["order"]), below(draw(st.integers(1, 3)))
     elif group == "reactive":
-        head = draw(st.sampled_from(["R->", "R?"]))
+        head = one_of(GROUPS["reactive"])
         children = [["Condition C"] for _ in range(draw(st.integers(0, 2)))] + below(draw(st.integers(1, 2)))
     elif group == "parallel":
         count = draw(st.integers(1, 3))
         children = below(count)
         head = f"|| (success_count = {draw(st.sampled_from([-1, *range(1, count + 1)]))} failure_count = "
         head += f"{draw(st.sampled_from([-1, *range(1, count + 1)]))})"
-        if draw(st.booleans()):
+        if one_of(GROUPS["parallel"]) == "All||":
             head = f"All|| (max_failures = {draw(st.integers(-1, count))})"
     elif group == "one":
         milliseconds = draw(st.integers(0, 12)) * 250
@@ -68,13 +93,12 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True) -> list[
             'Precondition (if = "@x" else = SKIPPED)',
             'Precondition (if = "@x")',
         ]
-        head = draw(st.sampled_from(choices))
+        head = one_of(choices)
         children = below(skipping=may_skip)
-        may_skip = may_skip and "SKIPPED" not in head
         if not may_skip and ("SKIPPED" in head or head == "RunOnce" or "= 0)" in head):
             head = "Inverter"
     else:
-        head = draw(st.sampled_from(["IfThenElse", "WhileDoElse", "TryCatch", "Switch"]))
+        head = one_of(GROUPS["other"])
         children = below(1, head == "TryCatch") + below(draw(st.integers(1, 2)))
         if head == "WhileDoElse":  # it asks a condition that takes time in every tick, and starves the branch meanwhile
             children[0] = ["Condition C"]
@@ -91,8 +115,8 @@ def tree(draw: st.DrawFn, depth: int, sub: bool, may_skip: bool = True) -> list[
 
 
 @st.composite
-def missions(draw: st.DrawFn) -> str:
-    lines = ["BehaviorTree Main", *(f"    {line}" for line in draw(tree(3, True)))]
+def missions(draw: st.DrawFn, top: str = "") -> str:
+    lines = ["BehaviorTree Main", *(f"    {line}" for line in draw(tree(3, True, top=top)))]
     lines += ["BehaviorTree Sub", *(f"    {line}" for line in draw(tree(1, False)))]
     numbered = (line.replace("@ takes", f"q{number} takes") for number, line in enumerate(lines))
     return "\n".join(numbered) + "\n"
@@ -108,7 +132,32 @@ def resolved(text: str) -> Requirements:
 
 @given(missions(), st.integers(0, 1000))
 def test_no_run_lies_outside_its_budget(text: str, seed: int) -> None:
+    assert_within_budgets(text, seed)
+
+
+@pytest.mark.parametrize("top", KINDS)
+def test_no_run_of_any_kind_of_node_lies_outside_its_budget(top: str) -> None:
+    ended: set[str] = set()
+
+    @settings(max_examples=30)
+    @given(missions(top), st.integers(0, 1000))
+    def run(text: str, seed: int) -> None:
+        ended.update(assert_within_budgets(text, seed))
+
+    run()
+    only = {"ForceSuccess": "success", "ForceFailure": "failure", "KeepRunningUntilFailure": "failure"}.get(top)
+    assert ended - {"skip"} == ({only} if only else {"success", "failure"})
+
+
+def test_all_kinds_of_nodes_are_simulated_that_have_a_rule() -> None:
+    tags = {kind.tag if (kind := lookup(name)) is not None else name for name in KINDS}
+    assert {"Switch" if tag.startswith("Switch") else tag for tag in tags} | NOT_SIMULATED == {*_RULES, "SubTree"}
+
+
+def assert_within_budgets(text: str, seed: int) -> set[str]:
+    """Some runs of a mission; how its root ended."""
     found = resolved(text)
+    ended: set[str] = set()
     budgets = Budgets(found)
 
     def report(node: SourceNode, status: str, seconds: float) -> None:
@@ -116,6 +165,8 @@ def test_no_run_lies_outside_its_budget(text: str, seed: int) -> None:
         allowed = getattr(budget, status)
         assert allowed is not None, f"{node} {status} after {seconds}: {budget}"
         assert allowed.low <= seconds <= allowed.high, f"{node} {status} after {seconds}: {budget}"
+        if node is root:
+            ended.add(status)
 
     root = found.nodes.root("Main")
     assert root is not None
@@ -126,6 +177,7 @@ def test_no_run_lies_outside_its_budget(text: str, seed: int) -> None:
     except Endless:
         longest = budgets.of(root).anything
         assert longest is None or longest.high > 100.0 or not_bounded(budgets, found)
+    return ended
 
 
 def not_bounded(budgets: Budgets, found: Requirements) -> bool:
