@@ -614,3 +614,29 @@ def test_xml_is_shown_on_its_own_lines(tmp_path: Path, capfd: pytest.CaptureFixt
     )
     assert main(["trace", str(mission), "--format", "json"]) == 0
     assert [node["at"]["line"] for node in json.loads(capfd.readouterr().out)["nodes"]] == [3, 4]
+
+
+def test_of_the_published_example_the_overview_the_side_file_and_the_xml_say_the_same(
+    shared: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    mission = tmp_path / "mission.qualitybtcpp"
+    mission.write_bytes((shared / "original" / "paper_example.qualitybtcpp").read_bytes())
+    assert main(["trace", str(mission), "--format", "json"]) == 0
+    overview = json.loads(capfd.readouterr().out)
+    nodes = {node["key"]: node["at"]["line"] for node in overview["nodes"]}
+    assert main(["build", str(mission), "-o", str(tmp_path)]) == 0
+    side = json.loads((tmp_path / "mission.qreq.json").read_text(encoding="utf-8"))
+    places = {node["uid"]: node["line"] for node in side["nodes"]}
+    said = {
+        (each["id"], each["title"], tuple(nodes[key] for use in each["holds_for"] for key in use["nodes"]))
+        for each in overview["requirements"]
+    }
+    titles = {each["id"]: " ".join(each["title"].split()) for each in side["requirements"]}
+    assert said == {
+        (each["requirement"], titles[each["requirement"]], tuple(places[uid] for uid in each["nodes"]))
+        for each in side["applied"]
+    }
+    assert {name for name, _, _ in said} == {"rq1", "rq2", "rq3"}
+    xml = (tmp_path / "mission.xml").read_text(encoding="utf-8")
+    described = re.findall(r"&#10;(rq\d)[^:]*: ([^\"]*?)\"", xml)
+    assert sorted(described) == sorted((name, title) for name, title, _ in said)

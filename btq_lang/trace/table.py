@@ -145,9 +145,13 @@ def _narrowed(widths: list[int], room: int) -> list[int]:
 
 
 def _broken(text: str, room: int) -> list[str]:
-    """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere."""
+    """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere; all lines
+    stand as far in as the first."""
+    words = text.lstrip(" ")
+    indent = len(text) - len(words)
+    room -= indent
     lines: list[str] = []
-    for word in text.split(" "):
+    for word in words.split(" "):
         if lines and _cells(lines[-1]) + 1 + _cells(word) <= room:
             lines[-1] += f" {word}"
             continue
@@ -156,7 +160,7 @@ def _broken(text: str, room: int) -> list[str]:
             lines.append(word[:at])
             word = word[at:]
         lines.append(word)
-    return lines
+    return [" " * indent + line for line in lines]
 
 
 def _fitting(word: str, room: int) -> int:
