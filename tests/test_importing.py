@@ -393,7 +393,7 @@ def test_what_is_no_mission(xml: str, rule: str) -> None:
 
 def test_each_word_knows_where_it_comes_from() -> None:
     xml = '<root><BehaviorTree ID="T"><!-- c --><Action ID="Pick" name="p" tube="&lt;1" s="abc"/></BehaviorTree></root>'
-    done = import_xml(xml)
+    done = import_xml(xml, for_people=False)
     btq = done.text
 
     def origin(word: str) -> str:

@@ -46,7 +46,7 @@ class Imported:
         text: the .btq file; empty where the XML could not be read.
         changes: what it says otherwise than the XML did, in the order of the XML.
         diagnostics: what is wrong with the XML itself; spans count from its start.
-        places: what in `text` was made of what in the XML.
+        places: what in `text` was made of what in the XML; nothing in a text for people.
         described: how many elements a build had told of requirements or qualities, which is left out.
     """
 
@@ -71,7 +71,8 @@ def import_xml(
         text: the XML, any string at all.
         keep_v3: leave what version 3 of the engine says as it is, instead of saying it as version 4 does.
         for_people: write `->` for Sequence and so on, and break long lines; for those who only check, nodes keep their
-            names and lines are as long as they are, so that a comment silences a rule for all of an element.
+            names and lines are as long as they are, so that a comment silences a rule for all of an element, and
+            places are known.
         included_as: what an `include` says for the path of an `<include>`; None: the same.
     """
     with NotCollecting():
@@ -91,7 +92,7 @@ def import_xml(
         writer.document(done.document)
         changes = tuple(sorted(writer.changes, key=_start))
         problems = (*done.problems, *writer.ignored)
-        places = Places(writer.marks, writer.out, located)
+        places = Places() if writer.marks is None else Places(writer.marks, writer.out, located)
         return Imported("".join(writer.out), changes, problems, places, described)
 
 
@@ -112,7 +113,7 @@ class _Writer:
         self.columns: Final = _COLUMNS if for_people else len(source) * 10
         self.included_as: Final = included_as
         self.out: Final[list[str]] = []
-        self.marks: Final[list[Mark]] = []
+        self.marks: Final[list[Mark] | None] = None if for_people else []
         self.has_returns: Final = _RETURN.search(source) is not None
         self.changes: Final[list[Change]] = []
         self.ignored: Final[list[Diagnostic]] = []
@@ -235,7 +236,8 @@ class _Writer:
             word = kind(tag, False, has_code, self.symbols)
             head = [(word, element)]
             if not attributes:  # a third of all nodes
-                self.marks.append((len(self.out), level * len(_INDENT), head, (), None, ""))
+                if self.marks is not None:
+                    self.marks.append((len(self.out), level * len(_INDENT), head, (), None, ""))
                 self.out.append(f"{_INDENT * level}{word}\n")
                 return
         else:
@@ -344,7 +346,8 @@ class _Writer:
             line = f"{out} ()\n"
         else:
             line = f"{out}{behind}\n"
-        self.marks.append((len(self.out), len(indent), head, pairs, attributes, between))
+        if self.marks is not None:
+            self.marks.append((len(self.out), len(indent), head, pairs, attributes, between))
         self.out.append(line)
 
     def verbatim(self, element: Element, level: int) -> None:
@@ -367,7 +370,8 @@ class _Writer:
 
     def place_comment(self, content: Comment, said: str, line: int, column: int) -> None:
         span = Span(content.start, content.start + len(content.text) + len("<!---->"))
-        self.marks.append((line, column, [(said, span)], (), None, ""))
+        if self.marks is not None:
+            self.marks.append((line, column, [(said, span)], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
             self.changes.append(Change(span, "`*/` in a comment is written `* /`, or its last blank goes"))
 
