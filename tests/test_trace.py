@@ -308,8 +308,8 @@ def test_markdown() -> None:
     assert lines[:6] == [
         "## Requirements and qualities",
         "",
-        "5 requirements (3 clauses: 3 monitored), 6 qualities; of 5 skills 2 carry a quality or a requirement,"
-        " 1 through a node above, 2 none.",
+        "5 requirements (3 clauses: 3 monitored), 1 of them hard and not enforced everywhere, 6 qualities;"
+        " of 5 skills 2 carry a quality or a requirement, 1 through a node above, 2 none.",
         "",
         "| Requirement | Quality | Holds for | How | Defined |",
         "|---|---|---|---|---|",

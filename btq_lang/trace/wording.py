@@ -15,6 +15,8 @@ def summary(overview: Overview) -> str:
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     said = f"{counted(len(overview.requirements), 'requirement')}"
     said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
+    if hard := len(overview.unenforced):
+        said += f", {hard} of them hard and not enforced everywhere"
     said += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
     skills = overview.coverage()
     if not sum(skills.values()):
