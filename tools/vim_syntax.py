@@ -29,6 +29,7 @@ let g:btq#words#opener = '\\C{pattern}'
 def syntax() -> str:
     """The file `syntax/btq.vim`."""
     name = r"\h\k*[?!]\?"
+    first = rf"^\%({_any((*words.ITEMS, words.MODELS))}\)\>\%(\s*=\)\@!"
     item = rf"^\s*\%({_any((*words.ITEMS, words.MODELS))}\)\>\%(\s*=\)\@!"
     qualities = r"\|".join(r"[-_ ]\?".join(map(_escape, word)) for word in words.QUALITY_NAMES)
     unit = rf"\%({_any(words.UNIT_SYMBOLS)}\)\%(\^-\?\d\+\)\?"
@@ -89,8 +90,9 @@ syntax match btqQualityPair /\\<Quality\\s*=/ nextgroup=btqQuality skipwhite con
 syntax region btqGroup start=/(/ end=/)/ end=/{item}/me=s-1 contains=TOP,btqNode,btqControl,btqBuiltin,btqCategory,btqPort,btqClauseLine transparent
 
 syntax match btqEscape /\\\\["'\\\\nt]/ contained
-syntax region btqString start=/"/ skip=/\\\\./ end=/"/ contains=btqEscape,@Spell
-syntax region btqString start=/'/ skip=/\\\\./ end=/'/ contains=btqEscape,@Spell
+" It goes on behind the line that it is in; one without its quote ends before the next item at a line's start.
+syntax region btqString start=/"/ skip=/\\\\./ end=/"/ end=/{first}/me=s-1 contains=btqEscape,@Spell extend
+syntax region btqString start=/'/ skip=/\\\\./ end=/'/ end=/{first}/me=s-1 contains=btqEscape,@Spell extend
 syntax match btqBraced /{{[^{{}}"']*}}/
 syntax match btqComment /\\%(^\\|[[:blank:](),]\\@<=\\)\\%(#\\|\\/\\/\\).*$/ contains=btqTodo,@Spell
 syntax region btqComment start=/\\/\\*/ end=/\\*\\// contains=btqTodo,@Spell

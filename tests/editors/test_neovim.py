@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from installed import ROOT
+from installed import ROOT, there
 
 PLUGIN = ROOT / "editors" / "nvim"
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce  # größer\n            Dock\n"
@@ -300,9 +301,30 @@ def test_every_kind_of_word_has_its_colour(neovim: Neovim) -> None:
         ("rq2\\n", "btqRequirement"),
         ("AlwaysSuccess", "btqBuiltin"),
     ]  # fmt: skip
+    assert colours(neovim, text, [place for place, _ in places]) == [f"{place}: {colour}" for place, colour in places]
+
+
+def test_a_string_goes_on_in_the_next_line_and_ends_before_an_item(neovim: Neovim) -> None:
+    text = (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8")
+    places = [
+        ("b='1'", "btqString"),
+        ("FailureIf b", "btqString"),
+        ("on violation halt\\nQ", "btqClauseWord"),
+        ("QualityReq subject", "btqItem"),
+        ("Or so", "btqString"),
+        ('BehaviorTree "3', "btqItem"),
+    ]
+    found = colours(neovim, text, [place for place, _ in places])
+    torn = 'QualityReq a "no end\n    takes at most 3 s\nBehaviorTree Main\n    Dock\n'
+    found += colours(neovim, torn, ["Dock"])  # the item's own line is still taken for the rest of the torn one
+    assert found == [f"{place}: {colour}" for place, colour in (*places, ("Dock", "btqNode"))]
+
+
+def colours(neovim: Neovim, text: str, places: list[str]) -> list[str]:
+    """The name of the colour at each place: the first, from the top of the file, where this stands."""
     script = f"""
     local found = {{}}
-    for _, place in ipairs(vim.fn.json_decode({json.dumps(json.dumps([place for place, _ in places]))})) do
+    for _, place in ipairs(vim.fn.json_decode({json.dumps(json.dumps(places))})) do
       vim.fn.cursor(1, 1)
       assert(vim.fn.search('\\\\V\\\\C' .. place, 'cW') > 0, place)
       local at = vim.fn.synID(vim.fn.line('.'), vim.fn.col('.'), 1)
@@ -310,5 +332,44 @@ def test_every_kind_of_word_has_its_colour(neovim: Neovim) -> None:
     end
     return vim.tbl_map(function(pair) return table.concat(pair, ': ') end, found)
     """
-    found = neovim.run({"main.btq": text}, script, lsp=False)
-    assert found == [f"{place}: {colour}" for place, colour in places]
+    found: list[str] = neovim.run({"main.btq": text}, script, lsp=False)
+    return found
+
+
+LOOK = """
+vim.o.termguicolors = true
+pcall(vim.cmd, 'packadd nvim.tohtml')  -- from 0.12 on an optional package
+for _, theme in ipairs({ 'light', 'dark' }) do
+  vim.o.background = theme
+  local found, html = pcall(require, 'tohtml')
+  if found then
+    vim.fn.writefile(html.tohtml(0, {}), theme .. '.html')
+  else
+    vim.cmd('runtime plugin/tohtml.vim | TOhtml')
+    vim.cmd('silent write! ' .. theme .. '.html | bwipeout!')
+  end
+end
+"""
+
+
+def test_how_a_mission_looks(neovim: Neovim, request: pytest.FixtureRequest, artifacts: Path, tmp_path: Path) -> None:
+    """Neovim's own page of the buffer, every form of the language in it, in both themes; screenshots are kept."""
+    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
+    text = (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8")
+    neovim.run({"every_form.btq": text}, LOOK, lsp=False)
+    for theme in ("light", "dark"):
+        html = (tmp_path / f"{theme}.html").read_text(encoding="utf-8")
+        colours = set(re.findall(r"[^-]color: (#?\w+)", html))
+        assert len(colours) >= 5
+        assert "Größe!" in html
+        picture = artifacts / f"nvim-{request.node.callspec.params['nvim']}-{theme}.png"
+        picture.unlink(missing_ok=True)
+        flags = ("--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars")
+        subprocess.run(
+            [chromium, *flags, "--window-size=1500,1900", f"--screenshot={picture}", f"{tmp_path}/{theme}.html"],
+            env={**os.environ, "HOME": str(tmp_path)},
+            check=True,
+            capture_output=True,
+            timeout=120,
+        )
+        assert picture.read_bytes().startswith(b"\x89PNG")

@@ -349,14 +349,17 @@ def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])
-def test_how_a_mission_looks(code: Workbench, theme: str) -> None:
+def test_how_a_mission_looks(code: Workbench, theme: str, artifacts: Path) -> None:
     code.settings(**{**ENVIRONMENT, "workbench.colorTheme": f"Default {theme.title()} Modern"})
     code.see(".monaco-workbench.vs-dark" if theme == "dark" else ".monaco-workbench.vs:not(.vs-dark)")
     code.write("every_form.btq", (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8"))
     code.open("every_form.btq")
-    code.command("View: Toggle Panel Visibility")
+    code.page.set_viewport_size({"width": 1500, "height": 2150})  # all of it
+    code.see(".view-line:has-text('Größe!')")
     # Comment, keyword, string, number, name of a node: five colours at least, or nothing is coloured.
     colours = code.page.evaluate(
         "new Set([...document.querySelectorAll('.view-line span span')].map(e => getComputedStyle(e).color)).size"
     )
     assert colours >= 6
+    code.shot(artifacts / f"vscode-{theme}.png")
+    code.page.set_viewport_size({"width": 1400, "height": 900})

@@ -55,8 +55,9 @@ syntax match btqQualityPair /\<Quality\s*=/ nextgroup=btqQuality skipwhite conta
 syntax region btqGroup start=/(/ end=/)/ end=/^\s*\%(BehaviorTree\|Root\|include\|signal\|context\|apply\|quality\|qualities\|QualityReq\|TreeNodesModel\)\>\%(\s*=\)\@!/me=s-1 contains=TOP,btqNode,btqControl,btqBuiltin,btqCategory,btqPort,btqClauseLine transparent
 
 syntax match btqEscape /\\["'\\nt]/ contained
-syntax region btqString start=/"/ skip=/\\./ end=/"/ contains=btqEscape,@Spell
-syntax region btqString start=/'/ skip=/\\./ end=/'/ contains=btqEscape,@Spell
+" It goes on behind the line that it is in; one without its quote ends before the next item at a line's start.
+syntax region btqString start=/"/ skip=/\\./ end=/"/ end=/^\%(BehaviorTree\|Root\|include\|signal\|context\|apply\|quality\|qualities\|QualityReq\|TreeNodesModel\)\>\%(\s*=\)\@!/me=s-1 contains=btqEscape,@Spell extend
+syntax region btqString start=/'/ skip=/\\./ end=/'/ end=/^\%(BehaviorTree\|Root\|include\|signal\|context\|apply\|quality\|qualities\|QualityReq\|TreeNodesModel\)\>\%(\s*=\)\@!/me=s-1 contains=btqEscape,@Spell extend
 syntax match btqBraced /{[^{}"']*}/
 syntax match btqComment /\%(^\|[[:blank:](),]\@<=\)\%(#\|\/\/\).*$/ contains=btqTodo,@Spell
 syntax region btqComment start=/\/\*/ end=/\*\// contains=btqTodo,@Spell
