@@ -12,6 +12,7 @@ one and not by regular expressions because that is the form which mypyc compiles
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from functools import cache, lru_cache
 
 from btq_lang.characters import HASH, SLASH
@@ -23,6 +24,7 @@ from btq_lang.scan import (
     line_opening,
     name_end,
     number_at,
+    number_end,
     string_end,
     symbol_at,
     unit_run,
@@ -214,14 +216,19 @@ class Lexer:
             self._root_level = -1
 
     def _adopting_level(self, blanks: str) -> int:
-        """The block that a line belongs to whose indentation fits none: for an item that of the items, else the
-        deepest whose opener stands further left."""
+        """The block that a line belongs to whose indentation fits none: for an item that of the items, else the nearer
+        of those between which it stands; of tabs in a file of blanks, each counts as a level."""
+        columns = self.columns
+        items = max(0, min(self._root_level, len(columns) - 1))  # a Root may have no block
         if _top_line().match(self.text, self.position):
-            return max(0, min(self._root_level, len(self.columns) - 1))  # a Root may have no block
-        level = len(self.columns) - 1
-        while not _extends(blanks, self.columns[level - 1], self._aliases[level - 1]):
+            return items
+        if not blanks.strip("\t") and not "".join(columns).strip(" "):
+            return min(len(blanks), len(columns) - 1)
+        level = len(columns) - 1
+        while not _extends(blanks, columns[level - 1], self._aliases[level - 1]):
             level -= 1
-        return level
+        is_nearer = len(blanks) - len(columns[level - 1]) < len(columns[level]) - len(blanks)
+        return level - 1 if is_nearer and level - 1 > items else level
 
     def scan(self) -> None:
         """Cut the opened line into tokens, through all lines that its brackets join."""
@@ -329,7 +336,10 @@ class Lexer:
             return self._operator(start)
         if character == "!" or text.startswith("&&", start):  # the parser knows whether a condition is meant
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
-        if self._brackets and character not in _INSTEAD and _WHOLE_WORD.match(text, start) and self._in_value(start):
+        if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
+            return self._close_square(start)
+        in_value = self._brackets and (character == "[" or character not in _INSTEAD)
+        if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
         if character == "{" or character == "}":
             return self._half_braced(start, character)
@@ -454,16 +464,19 @@ class Lexer:
         safe = in_value and text[end : end + 1] not in _QUOTES and self._takes_strings()
         fix = replace_fix("Put quotes around it", Span(start, end), quoted(text[start:end]), safe=safe)
         fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
+        if sign.end() == end:  # the comment was not even begun right behind the word
+            fixes = fixes[::-1]
         self.problems.append(Diagnostic("misplaced-comment", Span(start, end), f"{message}: quote this", fixes=fixes))
         return self._add(NAME, start, end)
 
     def _quote_value(self, at: int) -> int:
         """A character that begins nothing, inside a value: `a = 1;2`."""
         start, end = self._whole_word(at)
-        safe = self.text[end : end + 1] not in _QUOTES and self._takes_strings()
-        fix = replace_fix("Put quotes around it", Span(start, end), quoted(self.text[start:end]), safe=safe)
         self._strange = True  # more of it may follow
-        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=(fix,)))
+        fixes: tuple[Fix, ...] = ()
+        if _VALUE_END.match(self.text, end):
+            fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
+        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
         return self._add(NAME, start, end)
 
     def _takes_strings(self) -> bool:
@@ -539,6 +552,13 @@ class Lexer:
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
 
+    def _close_square(self, position: int) -> int:
+        span = Span(position, position + 1)
+        fix = replace_fix("Write `)`", span, ")", safe=True)
+        self.problems.append(Diagnostic("syntax-error", span, "brackets are closed by `)`", fixes=(fix,)))
+        self._brackets.pop()
+        return self._add(CLOSE, position, position + 1)
+
     def _blanks(self) -> str:
         """The blanks at the start of the line at hand."""
         return _BLANKS.match(self.text, self._last_line)[0]  # type: ignore[index]  # it matches nothing at least
@@ -595,10 +615,22 @@ class Lexer:
         end = self.starts[-1] + len(self.raws[-1])
         for _ in range(count):
             self._add(CLOSE, end, end)
-        fix = replace_fix("Add `)`", Span(end, end), ")" * count)
+        missed = self._missed_at(opened) if count == 1 else end
+        fix = replace_fix("Add `)`", Span(missed, missed), ")" * count)
         message = "this `(` has no `)`"
         span = Span(opened, opened + 1)
         self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
+
+    def _missed_at(self, opened: int) -> int:
+        """Where a `)` was probably forgotten: at the end of a line behind which no attribute begins."""
+        end = opened
+        for index in range(bisect_left(self.starts, opened), len(self.starts)):
+            start, raw = self.starts[index], self.raws[index]
+            begins = index + 1 < len(self.raws) and _has_line_end(self.text, end, start)
+            if begins and raw not in _IN_BRACKETS and self.raws[index + 1] != "=" and self.raws[index - 1] not in "=,(":
+                break
+            end = start + len(raw)
+        return end
 
     # ---- reports ----
 
@@ -622,8 +654,28 @@ class Lexer:
 def close_string(text: str, start: int) -> Fix:
     """Close the string that begins at `start` on its line, before what is probably no part of it."""
     end = line_end(text, start)
-    said = start + 1 + len(text[start + 1 : end].rstrip(" \t,)"))
+    said = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
+    depth = 0
+    for at in range(start + 1, said):
+        depth += (text[at] == "(") - (text[at] == ")")
+        if depth < 0:  # it closes brackets that were opened before the string
+            said = start + 1 + len(text[start + 1 : at].rstrip(" \t,"))
+            break
     return replace_fix(f"Close it with {text[start]}", Span(said, said), text[start])
+
+
+def value_meant(text: str, start: int, end: int, *, safe: bool) -> Fix:
+    """What is probably meant by a word that is no value: an entry, a number without its sign, a text.
+
+    Args:
+        safe: whether a text may stand there, and nothing else went wrong.
+    """
+    word = text[start:end]
+    if word[0] == "@":
+        return replace_fix(f"Write the entry `{{{word}}}`", Span(start, end), f"{{{word}}}")
+    if word[0] == "+" and word[1:2].isdecimal() and number_end(word, 1) == len(word):
+        return replace_fix(f"Write `{word[1:]}`", Span(start, start + 1), "", safe=safe)
+    return replace_fix("Put quotes around it", Span(start, end), quoted(word), safe=safe)
 
 
 def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
@@ -712,5 +764,7 @@ _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
+_VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
+_IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))
 _QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time

@@ -10,6 +10,7 @@ from btq_lang.clauses import VERBS, ClauseParser
 from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.lexer import value_meant
 from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
@@ -487,7 +488,7 @@ class NodeParser(ClauseParser):
         else:
             # A quote or a brace in it means that more went wrong than this.
             safe = self.ends_value() and not set(raw) & set("\"'{}\\")
-            fix = replace_fix("Put quotes around it", Span(start, end), quote(raw), safe=safe)
+            fix = value_meant(self.text, start, end, safe=safe)
             self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
         return Word(NAME, word.start, raw)
 

@@ -129,6 +129,21 @@ def test_a_dedent_to_a_column_of_no_block_is_one_diagnostic() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("line", "title", "mended"),
+    [
+        (" " * 9 + "D", "Indent it by 8 blanks", " " * 8 + "D"),
+        (" " * 10 + "D", "Indent it by 12 blanks", " " * 12 + "D"),
+        (" " * 7 + "D", "Indent it by 8 blanks", " " * 8 + "D"),
+        ("\t\t\tD", "Indent it by 12 blanks", " " * 12 + "D"),
+        ("\tD", "Indent it by 4 blanks", "    D"),
+    ],
+)
+def test_a_column_of_no_block_is_taken_for_the_nearer_one(line: str, title: str, mended: str) -> None:
+    blocks = "BehaviorTree t\n    A\n        B\n            C\n"
+    assert_fix(f"{blocks}{line}\n", title, f"{blocks}{mended}\n")
+
+
 def test_the_adopted_column_may_open_blocks() -> None:
     text = "BehaviorTree t\n    ->\n        A\n      B\n         C\n      D\n"
     tree = """

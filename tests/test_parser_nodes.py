@@ -376,13 +376,55 @@ def test_broken_attributes(line: str, tree: str, problem: str) -> None:
 
 @pytest.mark.parametrize(
     "value",
-    ["map/frame", "/map", "a.b", "1.2.3", "-x", "->", "a->b", "1.5.", "+1", ".5", "*", "a:b", "a<b", "a^2"],
+    ["map/frame", "/map", "a.b", "1.2.3", "-x", "->", "a->b", "1.5.", ".5", "*", "a:b", "a<b", "a^2", "x[0]", "[b]"],
 )
 def test_a_value_that_is_no_word_needs_quotes(value: str) -> None:
     text = f"X (a = {value} b = 1)"
     assert_node(text, f"X (a={value} b=1)", f"1:8 syntax-error «{value}» this value needs quotes")
     fixed = f'BehaviorTree t\n  X (a = "{value}" b = 1)'
     assert_fix(f"BehaviorTree t\n  {text}", "Put quotes around it", fixed, safe=True)
+
+
+@pytest.mark.parametrize(
+    ("value", "title", "meant", "safe"),
+    [("+1", "Write `1`", "1", True), ("@level", "Write the entry `{@level}`", "{@level}", False)],
+)
+def test_a_value_that_means_something_else_than_text(value: str, title: str, meant: str, safe: bool) -> None:
+    before, after = (f"BehaviorTree t\n  X (a = {each} b = 1)" for each in (value, meant))
+    assert_fix(before, title, after, safe=safe)
+
+
+def test_what_is_only_the_start_of_a_value_has_no_fix() -> None:
+    (problem,) = parse("BehaviorTree t\n  Script (code = @count := (@count + 1))\n").diagnostics
+    assert (problem.message, problem.fixes) == ("this value needs quotes", ())
+
+
+def test_brackets_that_a_square_one_closes() -> None:
+    assert_node("X (a = 4]", "X (a=4)", "1:9 syntax-error «]» brackets are closed by `)`")
+    assert_fix("BehaviorTree t\n  X (a = 4] tags b", "Write `)`", "BehaviorTree t\n  X (a = 4) tags b", safe=True)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('X (a = "x"\n  Y (b = 1)', 'X (a = "x")\n  Y (b = 1)'),
+        ("X (a = 1,\n     b = 2\n  Y", "X (a = 1,\n     b = 2)\n  Y"),
+        ("X (\n    a =\n      1\n    satisfies b\n  Y", "X (\n    a =\n      1\n    satisfies b)\n  Y"),
+    ],
+)
+def test_a_bracket_is_closed_where_the_attributes_end(before: str, after: str) -> None:
+    assert_fix(f"BehaviorTree t\n  {before}\n", "Add `)`", f"BehaviorTree t\n  {after}\n")
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('X (a = "home) satisfies r', 'X (a = "home") satisfies r'),
+        ('X (_skipIf = "(@a > 3.0))', 'X (_skipIf = "(@a > 3.0)")'),
+    ],
+)
+def test_a_string_is_closed_before_the_bracket_behind_it(before: str, after: str) -> None:
+    assert_fix(f"BehaviorTree t\n  {before}\n", 'Close it with "', f"BehaviorTree t\n  {after}\n")
 
 
 def test_an_unknown_compound_unit_in_a_value() -> None:
