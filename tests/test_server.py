@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 import socket
@@ -12,6 +13,8 @@ from pathlib import Path
 
 import pytest
 from lsp_editor import SERVER, Editor, Message
+
+from btq_lang.editor import Server
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 RIGHT = WRONG.replace("Sequnce", "Sequence")
@@ -224,6 +227,27 @@ def test_the_diagnostics_of_the_whole_workspace_are_pulled(tmp_path: Path) -> No
     known = [{"uri": each["uri"], "value": each["resultId"]} for each in first]
     again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
     assert [each["kind"] for each in again] == ["unchanged", "unchanged"]
+    assert editor.close() == ""
+
+
+def test_a_large_workspace_is_pulled_in_parts_and_with_progress(tmp_path: Path) -> None:
+    for number in range(60):
+        (tmp_path / f"main{number:02}.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities={**PULLS, "window": {"workDoneProgress": True}})
+    rest = editor.request("workspace/diagnostic", previousResultIds=[], partialResultToken="part")
+    progress = [message["params"] for message in editor.kept if message["method"] == "$/progress"]
+    shown = [each["value"] for each in progress if each["token"] != "part"]
+    assert [each["kind"] for each in shown] == ["begin", "report", "report", "report", "end"]
+    assert [each.get("percentage") for each in shown] == [0, 33, 66, 100, None]
+    parts = [each["value"]["items"] for each in progress if each["token"] == "part"]
+    assert [len(part) for part in parts] == [20, 20, 20]
+    assert rest == {"items": []}
+    files = [item for part in parts for item in part]
+    assert {each["uri"] for each in files} == {editor.uri(f"main{number:02}.btq") for number in range(60)}
+    assert {tuple(found["code"] for found in each["items"]) for each in files} == {("unknown-node",)}
+    known = [{"uri": each["uri"], "value": each["resultId"]} for each in files]
+    again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
+    assert {each["kind"] for each in again} == {"unchanged"}
     assert editor.close() == ""
 
 
@@ -734,6 +758,28 @@ def test_a_cancelled_request_is_answered_as_cancelled(tmp_path: Path) -> None:
     answer = editor.wait_for(lambda message: message.get("id") == "slow")
     assert answer["error"]["code"] == -32800
     assert editor.close() == ""
+
+
+def test_what_is_outdated_is_not_checked() -> None:
+    class Telling(Server):
+        pulls = False
+
+        def publish(self, path: str) -> None:
+            told.append(path)
+            if path == "first":
+                self.check_soon(("edited", "linked"))  # an edit, while all is checked for the first time
+
+    async def edit() -> None:
+        server = Telling()
+        server.check_soon(("first", "linked", "other", "edited"))
+        for _ in range(50):  # keys that come faster than they are checked
+            server.check_soon(("first", "linked"))
+        assert server.task is not None
+        await server.task
+
+    told: list[str] = []
+    asyncio.run(edit())
+    assert told == ["first", "edited", "linked", "other"]
 
 
 def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import asyncio
 from lsprotocol import types
 
 from btq_lang.editor import Server
+from btq_lang.handlers.progress import checking
 
 
 def register(server: Server) -> None:
@@ -48,17 +49,27 @@ def _diagnostics(server: Server) -> None:
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> types.WorkspaceDiagnosticReport:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
-        items: list[types.WorkspaceDocumentDiagnosticReport] = []
         await server.scanned.wait()
-        for path in session.paths() if session.setting("checkClosedFiles", True) else ():
-            report = server.report(path, known.get(path))
-            uri, version = convert.uri(path), server.versions.get(path)
-            if isinstance(report, types.RelatedUnchangedDocumentDiagnosticReport):
-                unchanged = types.WorkspaceUnchangedDocumentDiagnosticReport(uri, report.result_id, version)
-                items.append(unchanged)
-            else:
-                items.append(
-                    types.WorkspaceFullDocumentDiagnosticReport(uri, report.items, version, result_id=report.result_id)
-                )
-            await asyncio.sleep(0)  # the editor may have given up, or changed something
+        paths = session.paths() if session.setting("checkClosedFiles", True) else ()
+        items: list[types.WorkspaceDocumentDiagnosticReport] = []
+        async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
+            for done, path in enumerate(paths, 1):
+                items.append(report_of(path, known.get(path)))
+                if done % A_PART == 0:
+                    told(done)
+                    if params.partial_result_token is not None:
+                        part = types.WorkspaceDiagnosticReport(items)
+                        server.protocol.notify(types.PROGRESS, types.ProgressParams(params.partial_result_token, part))
+                        items = []
+                await asyncio.sleep(0)  # the editor may have given up, or changed something
         return types.WorkspaceDiagnosticReport(items)
+
+    def report_of(path: str, previous: str | None) -> types.WorkspaceDocumentDiagnosticReport:
+        report = server.report(path, previous)
+        uri, version = convert.uri(path), server.versions.get(path)
+        if isinstance(report, types.RelatedUnchangedDocumentDiagnosticReport):
+            return types.WorkspaceUnchangedDocumentDiagnosticReport(uri, report.result_id, version)
+        return types.WorkspaceFullDocumentDiagnosticReport(uri, report.items, version, result_id=report.result_id)
+
+
+A_PART = 20  # of the files, told together

@@ -8,6 +8,7 @@ from lsprotocol import types
 
 from btq_lang.editor import Server
 from btq_lang.garbage import keep_what_is_there
+from btq_lang.handlers.progress import checking
 from btq_lang.session import Session
 
 
@@ -88,19 +89,11 @@ async def _first_check(server: Server) -> None:
     await asyncio.sleep(0)
     paths = server.session.reload()
     server.scanned.set()
-    window = server.client_capabilities.window
-    if len(paths) < MANY_FILES or window is None or not window.work_done_progress or server.pulls:
+    if server.pulls:
         server.check_soon(paths)
         return
-    token = "btq/check"
-    await server.work_done_progress.create_async(token)
-    server.work_done_progress.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
-    server.check_soon(paths)
-    while server.task is not None and not server.task.done():
-        done = 100 - 100 * min(len(server.waiting), len(paths)) // len(paths)
-        server.work_done_progress.report(token, types.WorkDoneProgressReport(percentage=done))
-        await asyncio.wait((server.task,), timeout=0.2)
-    server.work_done_progress.end(token, types.WorkDoneProgressEnd(message=f"{len(paths)} files checked"))
-
-
-MANY_FILES = 50
+    async with checking(server, len(paths)) as told:
+        server.check_soon(paths)
+        while server.task is not None and not server.task.done():
+            told(len(paths) - len(server.waiting))
+            await asyncio.wait((server.task,), timeout=0.2)

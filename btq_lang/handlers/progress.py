@@ -1,0 +1,30 @@
+"""How far the server is with many files, for editors that show it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+
+from lsprotocol import types
+
+from btq_lang.editor import Server
+
+MANY_FILES = 50
+
+
+@asynccontextmanager
+async def checking(server: Server, files: int) -> AsyncIterator[Callable[[int], None]]:
+    """Show that files are checked, and how many of them are: what is yielded tells it.  Few files are not worth it."""
+    window = server.client_capabilities.window
+    if files < MANY_FILES or window is None or not window.work_done_progress:
+        yield lambda _: None
+        return
+    server.count += 1
+    token = f"btq/check/{server.count}"
+    shown = server.work_done_progress
+    await shown.create_async(token)
+    shown.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
+    try:
+        yield lambda done: shown.report(token, types.WorkDoneProgressReport(percentage=100 * max(done, 0) // files))
+    finally:
+        shown.end(token, types.WorkDoneProgressEnd(message=f"{files} files checked"))
