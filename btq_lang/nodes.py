@@ -273,9 +273,13 @@ class NodeParser(ClauseParser):
                 Change(Place(Span(first, first)), moved if self.raws[-1] else f"{moved}\n"),
                 Change(Place(Span(start, end)), ""),
             )
-            fix = Fix("Move it before the children", changes, safe=True)
+            fixes: tuple[Fix, ...] = (Fix("Move it before the children", changes),)
+            last = children[-1]
+            if isinstance(last, Node) and not last.children and "\n" not in moved.rstrip():
+                step = "\t" if moved.startswith("\t") else "    "
+                fixes += (replace_fix(f"Give it to `{last.head.text}`", Span(start, start), step),)
             note = f'a node of this name is written in quotes: "{word}"'
-            self.complain("clause-after-children", at, "clauses stand before children", (note,), (fix,))
+            self.complain("clause-after-children", at, "clauses stand before children", (note,), fixes)
         return found
 
     def is_requirement(self) -> bool:

@@ -218,13 +218,14 @@ def test_clauses_behind_children_belong_to_the_node_around_them(clause: str) -> 
                     Y
                 Z
     """
-    assert_fix(text, "Move it before the children", fixed, safe=True)
+    assert_fix(text, "Move it before the children", fixed)
 
 
 def test_a_clause_behind_the_node_of_a_tree() -> None:
     text = "BehaviorTree t\n  X\n  tags a"
     assert_parse(text, "tree t\n  tags a\n  X", "3:3 clause-after-children «tags» clauses stand before children")
-    assert_fix(text, "Move it before the children", "BehaviorTree t\n  tags a\n  X\n", safe=True)
+    assert_fix(text, "Move it before the children", "BehaviorTree t\n  tags a\n  X\n")
+    assert_fix(text, "Give it to `X`", "BehaviorTree t\n  X\n      tags a")
 
 
 def test_a_clause_line_moves_with_its_requirement() -> None:
@@ -232,7 +233,7 @@ def test_a_clause_line_moves_with_its_requirement() -> None:
     tree = "tree t\n  X\n    satisfies {a; keeps b; keeps d}\n    Y\n    Z"
     assert_parse(text, tree, "4:5 clause-after-children «satisfies» clauses stand before children")
     fixed = "BehaviorTree t\n  X\n    satisfies QualityReq a\n      keeps b\n      # c\n      keeps d\n    Y\n    Z\n"
-    assert_fix(text, "Move it before the children", fixed, safe=True)
+    assert_fix(text, "Move it before the children", fixed)
 
 
 def test_xml_is_no_node() -> None:
