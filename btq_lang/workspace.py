@@ -15,7 +15,6 @@ from functools import cached_property
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.parser import Parsed, parse, reparse
-from btq_lang.places import Places
 from btq_lang.project import Project, include_candidates
 from btq_lang.record import record
 from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
@@ -25,6 +24,7 @@ from btq_lang.text import LineIndex, Span
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.mentions import Mention
+    from btq_lang.places import Places
 
 
 @record

@@ -32,7 +32,6 @@ from btq_lang.checks import (
     unreachable,
 )
 from btq_lang.checks.origins import shown_on_origins
-from btq_lang.checks.suppressions import Suppressions
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
 from btq_lang.project import configured
@@ -202,6 +201,8 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
             diagnostics = [*entry.diagnostics, *_on_sound_lines(diagnostics, entry, view.file.text)]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
     if "btq:" in view.file.text:
+        from btq_lang.checks.suppressions import Suppressions  # few files have any
+
         suppressions = Suppressions(view.file)
         found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
     found = list(configured(workspace.project, shown_on_origins(workspace, path, found)))

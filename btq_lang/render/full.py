@@ -19,7 +19,6 @@ from btq_lang.diagnostics import Place
 from btq_lang.render import Finding, Report
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
-from btq_lang.render.fix_diff import fix_diff
 from btq_lang.render.frame import Row, frame
 from btq_lang.render.location import line_index, location, text_of
 from btq_lang.render.summary import summary
@@ -63,6 +62,8 @@ def _rows(report: Report, finding: Finding, width: int, paint: Paint) -> Iterato
         yield Row(None, "")
     for fix in diagnostic.fixes:
         yield from _remark("help", fix.title + (" (--fix)" if fix.safe else ""))
+        from btq_lang.render.fix_diff import fix_diff  # most findings have no fix
+
         yield from fix_diff(report, finding, fix, room)
 
 
