@@ -115,6 +115,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         reactive.condition_without_recheck,
         preconditions.one_shot_monitor,
         preconditions.while_skip_is_success,
+        preconditions.skipped_condition,
         unreachable.unreachable_child,
         measures.unresolved,
         demands.demands,

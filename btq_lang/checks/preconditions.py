@@ -1,4 +1,5 @@
-"""`_failureIf`, `_successIf` and `_while` on nodes that run over several ticks, where they do not do what they say."""
+"""Preconditions that do not do what they say: `_failureIf`, `_successIf` and `_while` on nodes that run over several
+ticks, and what skips the condition of a choice."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry
 
 _SKIPPED_IS_SUCCESS = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory", "TryCatch"))
+_TAKE_NO_SKIPPED = frozenset(("IfThenElse", "WhileDoElse"))
 _PASS_SKIPPED_ON = frozenset(
     ("Inverter", "ForceSuccess", "ForceFailure", "Timeout", "Delay", "Repeat", "RetryUntilSuccessful", "RunOnce")
 )
@@ -53,7 +55,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if pair is None or not view.results.of(entry, seen.node).ever & RUNNING:
             continue
         step = seen
-        while step.parent is not None and step.parent.kind is not None and step.parent.kind.tag in _PASS_SKIPPED_ON:
+        while step.parent is not None and _passes_skipped_on(step.parent):
             step = step.parent
         parent = step.parent
         if parent is None or not _takes_for_success(parent, step) or _is_choice(parent, step):
@@ -67,6 +69,30 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 "to fail instead: `R->` with a ScriptCondition in front of it, or a requirement with `keeps`",
             ),
         )
+
+
+def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which take no SKIPPED from it."""
+    for seen in view.nodes(entry):
+        pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
+        if pair is None:
+            continue
+        condition = seen
+        while condition.parent is not None and _passes_skipped_on(condition.parent):
+            condition = condition.parent
+        parent = condition.parent
+        if condition.index or parent is None or parent.kind is None or parent.kind.tag not in _TAKE_NO_SKIPPED:
+            continue
+        yield Diagnostic(
+            "skipped-condition",
+            pair.key.span,
+            f"where `{pair.key.text}` skips {seen.shown}, {parent.shown} throws, and the mission ends",
+            notes=(f"put {parent.shown} below `{pair.key.text}`, or say in a ScriptCondition what is to be asked",),
+        )
+
+
+def _passes_skipped_on(node: SeenNode) -> bool:
+    return node.kind is not None and node.kind.tag in _PASS_SKIPPED_ON
 
 
 def _takes_for_success(parent: SeenNode, step: SeenNode) -> bool:

@@ -147,6 +147,7 @@ _TABLE = (
     Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine wants the node's own tag"),
     Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent goes on as if it had succeeded"),
+    Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
     Rule("condition-without-recheck", _H, "a condition behind a memory Fallback that cannot interrupt what runs"),
 )

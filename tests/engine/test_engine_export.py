@@ -122,6 +122,25 @@ BehaviorTree S
     assert (answer.stage, answer.error) == ("done", "")
 
 
+@pytest.mark.parametrize("attribute", ["_skipIf", "_while"])
+@pytest.mark.parametrize("choice", ["IfThenElse", "WhileDoElse"])
+@pytest.mark.parametrize("around", ["", "Inverter\n            "])
+def test_a_choice_whose_condition_is_skipped_throws(engine: Engine, choice: str, attribute: str, around: str) -> None:
+    script = {"_skipIf": "1 == 1", "_while": "1 == 2"}[attribute]
+    text = f"""Root Main
+BehaviorTree Main
+    {choice}
+        {around}Condition Free ({attribute} = "{script}")
+        AlwaysSuccess
+        AlwaysFailure
+"""
+    workspace = Workspace.of({"main.btq": text})
+    assert [each.rule for each in check(workspace, "main.btq")] == ["skipped-condition"]
+    answer = engine.run_one(write(export(workspace, "main.btq").document), ticks=5)
+    said = {"IfThenElse": "unexpected happened in IfThenElse", "WhileDoElse": "not allowed to set manually the status"}
+    assert (answer.stage, said[choice] in answer.error) == ("tick", True)
+
+
 # What a SubTree gives to the port `n` of its tree, and what stands in that tree.
 NUMBERS_FOR_TEXT = {
     "whole": ("n = 4", "Say (text = {n})"),
