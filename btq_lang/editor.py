@@ -43,7 +43,7 @@ class Protocol(LanguageServerProtocol):
     """The protocol, without a leak: pygls 2.1 keeps what became of each notification, and every key is one."""
 
     def _check_handler_result(self, future: Future[Any]) -> None:
-        kept = self._request_futures
+        kept = {} if future.cancelled() else self._request_futures  # pygls goes through them when it cancels all
         for key in [key for key, other in kept.items() if other is future]:
             del kept[key]
         super()._check_handler_result(future)
