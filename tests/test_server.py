@@ -278,6 +278,16 @@ def test_from_a_name_to_its_definition_and_back(editor: Editor) -> None:
     assert [each["kind"] for each in shown] == [2]
 
 
+def test_from_a_requirement_to_its_nodes_and_its_quality(editor: Editor) -> None:
+    text = 'quality soft : safety "x"\nQualityReq rq : soft "y"\nBehaviorTree Main\n    Pick satisfies rq\n'
+    editor.open("main.btq", text)
+    here = editor.at("main.btq", 1, 12)
+    for method, line, start, end in (("implementation", 3, 4, 8), ("typeDefinition", 0, 8, 12)):
+        place = {"start": {"line": line, "character": start}, "end": {"line": line, "character": end}}
+        found = editor.request(f"textDocument/{method}", **here)
+        assert found == [{"uri": editor.uri("main.btq"), "range": place}]
+
+
 def test_an_editor_that_takes_links_gets_them(tmp_path: Path) -> None:
     editor = Editor(tmp_path, capabilities={"textDocument": {"definition": {"linkSupport": True}}})
     editor.open("main.btq", SKILLS + "BehaviorTree Main\n    Pick\n")

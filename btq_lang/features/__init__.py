@@ -19,11 +19,12 @@ if TYPE_CHECKING:
     from btq_lang.features.hints import code_lenses, inlay_hints
     from btq_lang.features.hover import hover as explain
     from btq_lang.features.moves import moved_files
-    from btq_lang.features.navigation import find_references, goto_definition, highlights
+    from btq_lang.features.navigation import Target, find_references, goto_definition, highlights
     from btq_lang.features.node_path import node_path as path_of_node
     from btq_lang.features.on_type import linked_ranges
     from btq_lang.features.on_type import on_type as typed
     from btq_lang.features.outline import document_symbols, workspace_symbols
+    from btq_lang.features.relations import goto_implementation, goto_type
     from btq_lang.features.rename import Refusal, prepare_rename
     from btq_lang.features.rename import rename as renamed
     from btq_lang.features.semantic_tokens import delta, encode
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Call",
     "Refusal",
+    "Target",
     "TreeItem",
     "called",
     "callers",
@@ -50,6 +52,8 @@ __all__ = [
     "find_references",
     "folding_ranges",
     "goto_definition",
+    "goto_implementation",
+    "goto_type",
     "highlights",
     "include_edits",
     "inlay_hints",
@@ -73,10 +77,11 @@ _HOMES = {
     "hints": ("code_lenses", "inlay_hints"),
     "hover": ("explain",),
     "moves": ("moved_files",),
-    "navigation": ("find_references", "goto_definition", "highlights"),
+    "navigation": ("Target", "find_references", "goto_definition", "highlights"),
     "node_path": ("path_of_node",),
     "on_type": ("linked_ranges", "typed"),
     "outline": ("document_symbols", "workspace_symbols"),
+    "relations": ("goto_implementation", "goto_type"),
     "rename": ("Refusal", "prepare_rename", "renamed"),
     "semantic_tokens": ("coloured", "delta", "encode"),
     "signature": ("signature_help",),

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 from lsprotocol import types
 
 from btq_lang import features
 from btq_lang.editor import Refused, Server
 from btq_lang.text import Span
 
+if TYPE_CHECKING:
+    from btq_lang.workspace import Workspace
+
 
 def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
-    def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
-        asked = server.ask(params.text_document, params.position, features.goto_definition, reads=True)
+    def links(
+        document: types.TextDocumentIdentifier,
+        position: types.Position,
+        feature: Callable[[Workspace, str, int], tuple[features.Target, ...]],
+    ) -> list[types.LocationLink] | list[types.Location]:
+        asked = server.ask(document, position, feature, reads=True)
         if asked is None:
             return []
         workspace, path, targets = asked
@@ -29,8 +39,21 @@ def register(server: Server) -> None:
             for target in targets
         ]
 
-    server.feature(types.TEXT_DOCUMENT_DEFINITION)(definition)
-    server.feature(types.TEXT_DOCUMENT_DECLARATION)(definition)
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location]:
+        return links(params.text_document, params.position, features.goto_definition)
+
+    @server.feature(types.TEXT_DOCUMENT_DECLARATION)
+    def declaration(params: types.DeclarationParams) -> list[types.LocationLink] | list[types.Location]:
+        return links(params.text_document, params.position, features.goto_definition)
+
+    @server.feature(types.TEXT_DOCUMENT_IMPLEMENTATION)
+    def implementation(params: types.ImplementationParams) -> list[types.LocationLink] | list[types.Location]:
+        return links(params.text_document, params.position, features.goto_implementation)
+
+    @server.feature(types.TEXT_DOCUMENT_TYPE_DEFINITION)
+    def type_definition(params: types.TypeDefinitionParams) -> list[types.LocationLink] | list[types.Location]:
+        return links(params.text_document, params.position, features.goto_type)
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(params: types.ReferenceParams) -> list[types.Location]:

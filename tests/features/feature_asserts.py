@@ -25,6 +25,7 @@ from btq_lang.features.node_path import node_path
 from btq_lang.features.on_type import linked_ranges, on_type
 from btq_lang.features.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.features.proposals import Proposal
+from btq_lang.features.relations import goto_implementation, goto_type
 from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import TYPES, delta, encode, semantic_tokens
 from btq_lang.features.signature import signature_help
@@ -95,6 +96,18 @@ def check_goto(text: str) -> None:
         assert target.span.start <= target.name.start <= target.name.end <= max(target.span.end, target.name.end)
         assert target.origin.start <= fixture.at[2] <= target.origin.end
     fixture.expect("def", ((target.path, target.name) for target in targets))
+
+
+def check_implementation(text: str) -> None:
+    """`<def>` are the heads of the nodes that satisfy the requirement at the cursor."""
+    fixture = Fixture(text, "def")
+    fixture.expect("def", ((target.path, target.name) for target in goto_implementation(*fixture.at)))
+
+
+def check_type(text: str) -> None:
+    """`<def>` is what says of which kind the thing at the cursor is; without one nothing does."""
+    fixture = Fixture(text, "def")
+    fixture.expect("def", ((target.path, target.name) for target in goto_type(*fixture.at)))
 
 
 def check_references(text: str) -> None:
@@ -413,6 +426,9 @@ def answer_everything(text: str, offset: int) -> None:
     at = workspace, "main.btq", offset
     whole = Span(0, len(text))
     for target in goto_definition(*at):
+        assert _lies_in(target.name, whole)
+    for target in (*goto_implementation(*at), *goto_type(*at)):
+        assert _lies_in(target.span, whole)
         assert _lies_in(target.name, whole)
     for _, span in find_references(*at):
         assert _lies_in(span, whole)

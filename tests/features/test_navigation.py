@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from feature_asserts import check_goto, check_highlights, check_references
+from feature_asserts import check_goto, check_highlights, check_implementation, check_references, check_type
 
 
 @pytest.mark.parametrize(
@@ -182,3 +182,38 @@ def test_highlights_stay_in_the_file() -> None:
         //- lib.btq
         Action Pick
         """)
+
+
+def test_the_implementation_of_a_requirement_is_the_nodes_at_which_it_is_named() -> None:
+    check_implementation("""
+        //- lib.btq
+        QualityReq r$0q1 "x"
+        //- main.btq
+        include "lib.btq"
+        apply rq1 to every Place
+        BehaviorTree Main
+            <def>-></def>
+                satisfies rq1
+                <def>Pick</def> First satisfies rq1
+                <def>Place</def> (satisfies QualityReq ID = rq1)
+                Drop
+        """)
+    check_implementation("BehaviorTree Main\n    SubTree Do$0ck\nBehaviorTree <def>Dock</def>\n    Pick\n")
+    check_implementation("BehaviorTree Main\n    $0\n")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Action <def>Pick</def>\nBehaviorTree Main\n    Pick Fe$0tch\n",
+        "BehaviorTree Main\n    SubTree Dock Fe$0tch\nBehaviorTree <def>Dock</def>\n    Pick\n",
+        "Action <def>Pick</def>\nQualityReq rq\n    Fe$0tch takes at most 1 s\nBehaviorTree Main\n    Pick Fetch\n",
+        'quality <def>soft</def> : safety "x"\nQualityReq rq : soft "y"\nBehaviorTree Main\n    Pick satisfies r$0q\n',
+        'QualityReq r$0q : safety "y"\n',
+        'QualityReq r$0q "y"\n',
+        "Action Pick\nBehaviorTree Main\n    Pi$0ck\n",
+        "BehaviorTree Main\n    -> Fi$0rst\n        Pick\n",
+    ],
+)
+def test_what_says_of_which_kind_it_is(text: str) -> None:
+    check_type(text)
