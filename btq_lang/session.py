@@ -15,6 +15,7 @@ from btq_lang.record import replace
 from btq_lang.rules import RULES, Severity
 
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
+    from btq_lang.checks import Kept
     from btq_lang.commands.files import Files
     from btq_lang.workspace import Workspace
 
@@ -35,6 +36,7 @@ class Session:
         self._files: Files | None = None
         self._workspaces: list[Workspace] = []
         self._home: dict[str, int] = {}
+        self._kept: dict[str, dict[int, Kept]] = {}  # of open files, for only these are edited
         self._checked: dict[str, tuple[Workspace, tuple[Diagnostic, ...]]] = {}
 
     # ---- what changes ----
@@ -66,6 +68,7 @@ class Session:
         from btq_lang.loader import read
 
         text = self.open.pop(path, None)
+        self._kept.pop(path, None)
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
             return (path,)
@@ -132,7 +135,8 @@ class Session:
             return known[1]
         from btq_lang.checks import check
 
-        found = check(workspace, path)
+        kept = self._kept.setdefault(path, {}) if path in self.open else None
+        found = check(workspace, path, kept)
         if known is not None and known[1] == found:
             found = known[1]  # the same object: nothing new to tell
         self._checked[path] = workspace, found

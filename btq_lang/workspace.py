@@ -229,13 +229,11 @@ class Scope:
 
     Attributes:
         paths: those files, included ones before the file that includes them.
-        complete: all includes were found and understood, and no string may have swallowed the rest of a file, so a
-            name that is not here is nowhere.
     """
 
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
         self.paths = paths
-        self.complete = all(
+        self._complete = all(
             (target := workspace.included_by(path, include)) is not None and workspace.files[target].is_understood
             for path in paths
             for include in workspace.files[path].includes
@@ -249,6 +247,12 @@ class Scope:
                 if not same:
                     self._names[symbol.kind].append(symbol.name)
                 same.append(definition)
+
+    @property
+    def complete(self) -> bool:
+        """All includes were found and understood, and no string may have swallowed the rest of a file, so a name that
+        is not here is nowhere."""
+        return self._complete
 
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition that a name means: the first one."""
@@ -284,6 +288,7 @@ class Workspace:
         self.files = files
         self.project = project
         self._scopes: dict[str, Scope] = {}
+        self._everywhere: dict[tuple[Kind, str], tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
@@ -409,16 +414,16 @@ class Workspace:
 
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name in the project, to say where it could have come from."""
-        return self._everywhere.get((kind, name), ())
-
-    @cached_property
-    def _everywhere(self) -> dict[tuple[Kind, str], tuple[Definition, ...]]:
-        found: dict[tuple[Kind, str], tuple[Definition, ...]] = {}
-        for path in self.files:
-            for definition in self.defined_in(path):
-                key = definition.symbol.kind, definition.symbol.name
-                found[key] = (*found.get(key, ()), definition)
-        return found
+        key = kind, name
+        if key not in self._everywhere:
+            self._everywhere[key] = tuple(
+                definition
+                for file in self.files.values()
+                if key in file.defined_names
+                for definition in file.defined
+                if (definition.symbol.kind, definition.symbol.name) == key
+            )
+        return self._everywhere[key]
 
     def uses_in(self, path: str) -> Iterator[Reference]:
         """What a file itself refers to, in the order of its text."""

@@ -32,12 +32,13 @@ from btq_lang.checks import (
     unreachable,
 )
 from btq_lang.checks.origins import shown_on_origins
-from btq_lang.checks.view import View
+from btq_lang.checks.view import Noted, View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
-from btq_lang.project import configured
-from btq_lang.record import replace
+from btq_lang.project import Project, configured
+from btq_lang.record import record, replace
 from btq_lang.rules import Severity
 from btq_lang.scan import line_start
+from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -178,11 +179,51 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
 )
 
 
-def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
+# What these find in an item depends on the item, and of all else only on what a view notes: so it holds until an edit
+# changes the item, or one of the answers.  The others look further, and are asked after every edit.
+_NARROW: frozenset[Check] = frozenset(
+    (
+        kinds.not_an_engine_node,
+        kinds.newer_engine_node,
+        kinds.category_mismatch,
+        kinds.clause_as_node,
+        ports.unknown_port,
+        ports.missing_port,
+        ports.unknown_attribute,
+        ports.duplicate_attribute,
+        literals.invalid_literal,
+        literals.quantity_on_unitless_port,
+        children.child_count,
+        children.switch_cases,
+        children.parallel_threshold,
+        names.forbidden_name,
+        names.duplicate_instance_name,
+        placeholders.classic_placeholder,
+        scripts.script_error,
+        qualities.old_quality_name,
+        qualities.ambiguous_quality,
+        conditions.subtraction_without_blanks,
+        clauses.duplicate_clause,
+    )
+)
+
+
+@record
+class Kept:
+    """What the narrow checks found in an item, and the answers that this rests on."""
+
+    entry: Entry
+    project: Project
+    found: tuple[Diagnostic, ...]
+    noted: Noted
+
+
+def check(workspace: Workspace, path: str, kept: dict[int, Kept] | None = None) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
     Args:
         path: one of the workspace's files.
+        kept: what an earlier check of the file has left here, to ask no more than an edit asks for; left anew.
 
     Returns:
         Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
@@ -192,12 +233,21 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
         KeyError: there is no such file.
     """
     view = View(workspace, path)
+    noting = View(workspace, path, notes=True)
     found: list[Diagnostic] = []
+    before = dict(kept or {})
+    if kept is not None:
+        kept.clear()
     for entry in view.file.parsed.entries:
         checks = CHECKS.get(type(entry.item), ())
         if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
             checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
-        diagnostics = [diagnostic for each in checks for diagnostic in each(view, entry)]
+        diagnostics: list[Diagnostic] = []
+        if kept is not None and _can_be_kept(entry):
+            narrow = kept[id(entry.item)] = _narrow(noting, entry, checks, before.get(id(entry.item)))
+            diagnostics += narrow.found
+            checks = tuple([each for each in checks if each not in _NARROW])
+        diagnostics += [diagnostic for each in checks for diagnostic in each(view, entry)]
         if entry.diagnostics:
             diagnostics = [*entry.diagnostics, *_on_sound_lines(diagnostics, entry, view.file.text)]
         found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
@@ -218,6 +268,34 @@ def _on_sound_lines(found: list[Diagnostic], entry: Entry, text: str) -> Iterato
 
 def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
     return line_start(text, entry.start, entry.start + diagnostic.span.start)
+
+
+def _can_be_kept(entry: Entry) -> bool:
+    """A tree without a name is told what else stands in the file."""
+    return not isinstance(entry.item, Include) and not (isinstance(entry.item, Tree) and entry.item.name is None)
+
+
+def _narrow(view: View, entry: Entry, checks: tuple[Check, ...], before: Kept | None) -> Kept:
+    """What the narrow checks find in an entry, found anew only where an answer has changed."""
+    project = view.workspace.project
+    view.noted = None
+    if (
+        before is not None
+        and before.project is project
+        and before.entry.diagnostics is entry.diagnostics
+        and all(_is_same(view.answer(question), answer) for question, answer in before.noted.items())
+    ):
+        return before
+    noted: Noted = {}
+    view.noted = noted
+    found = tuple([diagnostic for each in checks if each in _NARROW for diagnostic in each(view, entry)])
+    if any(change.place.path is not None for each in found for fix in each.fixes for change in fix.changes):
+        noted["place", Kind.TREE, ""] = ()  # it moves without being asked for, so this holds once
+    return Kept(entry, project, found, noted)
+
+
+def _is_same(now: object, before: object) -> bool:
+    return now is before or (not isinstance(now, Symbol) and now == before)
 
 
 def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:

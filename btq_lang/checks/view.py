@@ -37,11 +37,17 @@ from btq_lang.workspace import Definition, File, Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     from btq_lang.checks.mixed_types import EntryTypes
     from btq_lang.checks.results import TreeResults
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.budgets import Budgets
+
+
+Question: TypeAlias = tuple[str, Kind | None, str]
+Noted: TypeAlias = dict[Question, object]  # questions with their answers
 
 
 @record
@@ -56,6 +62,7 @@ class SeenNode:
         model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
         is_subtree: whether that is SubTree.
+        asked: the name that a model was looked for by; nothing where none was.
     """
 
     node: Node
@@ -67,6 +74,7 @@ class SeenNode:
     model: Model | None
     category: str | None
     is_subtree: bool
+    asked: str
 
     @property
     def shown(self) -> str:
@@ -82,13 +90,18 @@ class SeenNode:
 
 
 class View:
-    """One file in its workspace."""
+    """One file in its workspace.
 
-    def __init__(self, workspace: Workspace, path: str) -> None:
+    Attributes:
+        noted: what was asked of the rest of the file, while that is noted.
+    """
+
+    def __init__(self, workspace: Workspace, path: str, *, notes: bool = False) -> None:
         self.workspace = workspace
         self.path = path
         self.file: File = workspace.files[path]
-        self.scope: Scope = workspace.scope(path)
+        self.noted: Noted | None = None
+        self.scope: Scope = NotingScope(workspace.scope(path), self) if notes else workspace.scope(path)
         self._nodes: dict[int, tuple[SeenNode, ...]] = {}
         self._near: dict[tuple[Kind | None, str], tuple[str, ...]] = {}
         self._compared = 0
@@ -102,6 +115,10 @@ class View:
         known = self._nodes.get(id(entry))
         if known is None:
             known = self._nodes[id(entry)] = tuple(self._seen(entry.item))
+        elif self.noted is not None:
+            for seen in known:  # what was asked for them is asked by whoever looks at them
+                if seen.asked:
+                    self.scope.find(Kind.MODEL, seen.asked)
         return known
 
     def uses(self, entry: Entry, kind: Kind) -> Iterator[Use]:
@@ -119,9 +136,15 @@ class View:
         """The file's trees, in order."""
         return tuple(entry for entry in self.file.parsed.entries if isinstance(entry.item, Tree))
 
-    @cached_property
+    @property
     def main_tree(self) -> Definition | None:
         """The tree that runs when the engine loads the file."""
+        if self.noted is not None:
+            self.noted["main_tree", None, ""] = self._main_tree.symbol if self._main_tree else None
+        return self._main_tree
+
+    @cached_property
+    def _main_tree(self) -> Definition | None:
         return self.workspace.main_tree(self.path)
 
     @cached_property
@@ -135,6 +158,9 @@ class View:
 
     def quality(self, name: str) -> QualityMatch | None:
         """What the catalog says of a quality's name; None for a quality that a file in scope declares."""
+        if self.noted is not None:
+            self.scope.names(Kind.QUALITY)
+            self.noted["edition", None, ""] = self.edition
         if name not in self._qualities:
             words = tuple(name.split("."))
             is_own = bool(self._own_qualities) and fold(words[-1]) in self._own_qualities
@@ -326,10 +352,12 @@ class View:
         name = node.id
         kind: NodeKind | None = None
         definition: Definition | None = None
+        asked = ""
         if name is not None and category != "SubTree":
             kind = lookup(name.text, name.quoted, len(node.nodes))
             if kind is None:
-                definition = self.scope.find(Kind.MODEL, name.text)
+                asked = name.text
+                definition = self.scope.find(Kind.MODEL, asked)
             if kind is None and definition is None and not name.quoted and name.text in KNOWN_WORDS:
                 kind = BUILTINS.get(KNOWN_WORDS[name.text].replacement or "")
         target = definition.symbol.target if definition is not None else None
@@ -338,7 +366,7 @@ class View:
             category = kind.category
         elif category is None and model is not None:
             category = model.category.raw
-        return SeenNode(node, tree, parent, index, kind, definition, model, category, category == "SubTree")
+        return SeenNode(node, tree, parent, index, kind, definition, model, category, category == "SubTree", asked)
 
     def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
         """The names that a file included here and one included before it both define, each with the definition that
@@ -373,6 +401,51 @@ class View:
     def is_this(self, definition: Definition, entry: Entry) -> bool:
         """Whether a definition stands in this file's `entry`."""
         return definition.path == self.path and definition.entry is entry
+
+    def answer(self, question: Question) -> object:
+        """What the answer to a noted question is here."""
+        what, kind, name = question
+        if kind is None:
+            return (self.main_tree.symbol if self.main_tree else None) if what == "main_tree" else self.edition
+        if what == "find":
+            found = self.scope.find(kind, name)
+            return found.symbol if found is not None else None
+        if what == "names":
+            return self.scope.names(kind)
+        return self.scope.complete if what == "complete" else None  # of all definitions of a name: another answer
+
+
+class NotingScope(Scope):
+    """A scope that notes what it is asked."""
+
+    def __init__(self, scope: Scope, view: View) -> None:
+        self.paths = scope.paths
+        self._scope = scope
+        self._view = view
+
+    def _note(self, what: str, kind: Kind, name: str, answer: object) -> None:
+        if self._view.noted is not None:
+            self._view.noted[what, kind, name] = answer
+
+    @property
+    def complete(self) -> bool:
+        self._note("complete", Kind.TREE, "", self._scope.complete)
+        return self._scope.complete
+
+    def find(self, kind: Kind, name: str) -> Definition | None:
+        found = self._scope.find(kind, name)
+        self._note("find", kind, name, found.symbol if found is not None else None)
+        return found
+
+    def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        found = self._scope.all(kind, name)
+        self._note("all", kind, name, [one.symbol for one in found])
+        return found
+
+    def names(self, kind: Kind) -> tuple[str, ...]:
+        names = self._scope.names(kind)
+        self._note("names", kind, "", names)
+        return names
 
 
 def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
