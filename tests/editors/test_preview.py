@@ -168,7 +168,7 @@ def test_what_a_screen_reader_is_told(page: Page) -> None:
         '    - treeitem "->" [expanded] [level=1]',
         '    - treeitem "Ready" [level=2]',
         '    - \'treeitem "? Way; folded: Dock, Rest" [level=2]\': "? Way … 2 nodes"',
-        '    - treeitem "Charge; satisfices safety" [level=1]',
+        '    - treeitem "Charge; satisfices safety" [level=1]: Charge',
     ]
 
 

@@ -241,6 +241,8 @@ def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Wo
     code.keys("End")
     code.type("Fully")
     frame.locator(".box.here", has_text="ChargeFully").wait_for(state="attached")
+    code.type("Now")  # the page that was drawn anew has not taken the keys
+    frame.locator(".box.here", has_text="ChargeFullyNow").wait_for(state="attached")
     code.save()
     # What the server says of words is laid over the grammar's colours, and leaves a symbol the colour of a keyword.
     keyword, symbol = (code.see(f".view-line span span:text-is('{word}')") for word in ("satisfices", "->"))
@@ -354,7 +356,7 @@ def test_how_a_mission_looks(code: Workbench, theme: str, artifacts: Path) -> No
     code.see(".monaco-workbench.vs-dark" if theme == "dark" else ".monaco-workbench.vs:not(.vs-dark)")
     code.write("every_form.btq", (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8"))
     code.open("every_form.btq")
-    code.page.set_viewport_size({"width": 1500, "height": 2150})  # all of it
+    code.page.set_viewport_size({"width": 1500, "height": 2500})  # all of it
     code.see(".view-line:has-text('Größe!')")
     # Comment, keyword, string, number, name of a node: five colours at least, or nothing is coloured.
     colours = code.page.evaluate(
