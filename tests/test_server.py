@@ -675,11 +675,13 @@ def test_xml_is_never_edited(foreign: Editor) -> None:
 def test_columns_are_counted_as_agreed(tmp_path: Path, encoding: str, column: int) -> None:
     editor = Editor(tmp_path, capabilities={"general": {"positionEncodings": [encoding]}})
     assert editor.capabilities["positionEncoding"] == encoding
-    editor.open("main.btq", 'BehaviorTree Main\n    Dock "🤖" (_skipif = x)\n')
+    editor.open("main.btq", 'BehaviorTree Main\n    Dock "🤖" (_skipif = x _while = y)\n')
     found = editor.diagnostics("main.btq")
     assert (found[0][0], found[0][2]) == ("unknown-attribute", column)
-    shown = editor.request("textDocument/hover", **editor.at("main.btq", 1, 5))
-    assert shown["range"]["end"] == {"line": 1, "character": 8}
+    behind = column + len("_skipif = x ")
+    for character, expected in ((5, (4, 8)), (behind, (behind, behind + 6)), (behind + 6, (behind, behind + 6))):
+        shown = editor.request("textDocument/hover", **editor.at("main.btq", 1, character))["range"]
+        assert (shown["start"]["character"], shown["end"]["character"]) == expected
     assert editor.close() == ""
 
 
