@@ -36,7 +36,8 @@ def serve(options: argparse.Namespace) -> int:
     if options.tcp is not None:
         server.start_tcp("127.0.0.1", options.tcp)
     else:
-        server.start_io()
+        output, sys.stdout = sys.stdout.buffer, sys.stderr  # nothing that is printed may get into the protocol
+        server.start_io(stdout=output)
     return 0
 
 

@@ -707,6 +707,19 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     assert "ZeroDivisionError: broken" in editor.close()
 
 
+def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:
+    program = (
+        "import btq_lang.features as features\n"
+        "features.explain = lambda *_: print('Content-Length: 3')\n"
+        "from btq_lang.server import main; main([])\n"
+    )
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor.open("main.btq", WRONG)
+    assert editor.request("textDocument/hover", **editor.at("main.btq", 0, 0)) is None
+    assert editor.diagnostics("main.btq") != []
+    assert editor.close() == "Content-Length: 3\n"
+
+
 def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> None:
     program = (
         "import btq_lang.features as features\n"
