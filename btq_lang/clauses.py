@@ -312,7 +312,14 @@ class ClauseParser(ConditionParser):
             self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
         else:
             name = "/".join(word.raw for word in subject.names)
-            self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (_INSTEAD_OF_A_NODE,))
+            note = _INSTEAD_OF_A_NODE
+            if subject.names[0].kind == STRING:
+                note = "a requirement has one title; reasons are written `because …`"
+            elif self.kind == STRING:
+                note = '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"'
+            elif len(subject.names) == 1:
+                note = _MEANT.get(name, note)
+            self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Complain of a word that begins no clause, and pass over the rest."""
@@ -443,6 +450,10 @@ class ClauseParser(ConditionParser):
         return Word(NAME, start, self.text[first:end])
 
 
+_MEANT: Final = {  # by what is read as a node in front of a verb
+    "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
+    "violation": "write `on violation fail`",
+}
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"

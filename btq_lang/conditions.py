@@ -215,6 +215,10 @@ class ConditionParser(Cursor):
                 self.close_group("`)`")
                 return Call(start, self.last_end(), function, signal)
             if not self.at_keyword():
+                if self.kinds[self.index + 1] == OPEN and self.adjacent(self.index + 1):
+                    functions = ", ".join(sorted(FUNCTIONS))
+                    self.expected(f"a function ({functions})", (), self.replaced_by(FUNCTIONS))
+                    return None
                 return Operand(self.take())
         if self.kind == OPEN:
             self.advance()

@@ -8,9 +8,11 @@ nor is one where the lexer has said what is wrong.
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Iterable
 
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer, close_string, unknown_unit
+from btq_lang.near import near
 from btq_lang.scan import line_end, line_start, number_end, unit_run
 from btq_lang.syntax import Word
 from btq_lang.text import Span
@@ -235,7 +237,7 @@ class Cursor:
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
         attribute, or to the end of the line."""
-        cause = self.lost_quote() or self.wrong_unit()
+        cause = self.lost_quote() or self.wrong_unit() or self.decimal_comma()
         if cause is not None:
             self.report(cause)
         else:
@@ -276,6 +278,22 @@ class Cursor:
             end = unit_run(self.text, unit)
             return unknown_unit(self.text, unit, end) if end > at else None
         return None
+
+    def decimal_comma(self) -> Diagnostic | None:
+        """A comma in a number: `0,5 m/s`."""
+        following = self.index + 1
+        if not self.at(",") or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
+            return None
+        glued = self.adjacent(self.index) and self.adjacent(following)
+        if not glued or self.kinds[following] not in (NUMBER, QUANTITY):
+            return None
+        fix = replace_fix("Write a point", self.here(), ".")
+        return Diagnostic("syntax-error", self.here(), "the decimals of a number stand behind a point", fixes=(fix,))
+
+    def replaced_by(self, words: Iterable[str]) -> tuple[Fix, ...]:
+        """The fix for a word at hand that is probably one of `words`, misspelt; none for any other."""
+        meant = near(self.raw, words, limit=1) if self.kind == NAME else ()
+        return tuple(replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word) for word in meant)
 
     def complain(
         self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()

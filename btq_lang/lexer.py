@@ -343,6 +343,8 @@ class Lexer:
             return self._quote_value(start)
         if character == "{" or character == "}":
             return self._half_braced(start, character)
+        if self.kinds and self.kinds[-1] == STRING and _has_line_end(text, self.starts[-1], start):
+            return self._add(ERROR, start, start + 1)  # the parser sees that a quote was lost
         end = start + 1
         while end < self.size and text[end] == character:
             end += 1

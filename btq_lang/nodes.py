@@ -5,6 +5,8 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
+import re
+
 from btq_lang.blocks import MAX_DEPTH, Block
 from btq_lang.clauses import VERBS, ClauseParser
 from btq_lang.conditions import HEADS
@@ -46,6 +48,7 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
+    SYMBOLS,
 )
 
 if not COMPILED:
@@ -151,7 +154,8 @@ class NodeParser(ClauseParser):
         elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
             kind = self.take()
         else:
-            self.expected("a node: its kind, or a symbol: -> ? || …")
+            notes = (XML,) if self.at("<") else ()
+            self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
             self.end_line()
             self.skip_block(level)
             return None
@@ -174,12 +178,25 @@ class NodeParser(ClauseParser):
             return None
         return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
 
+    def symbol_meant(self) -> tuple[Fix, ...]:
+        """The fix for what is probably a symbol: `-->`, `=>`, `- >`."""
+        start = self.starts[self.index]
+        run = _ARROW.match(self.text, start)
+        return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
+
     def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
         """Complain of what is left of a node's line."""
         if kind is not None and kind.kind == NAME and (kind.raw in VERBS or kind.raw in HEADS):
             message = f"`{kind.raw}` begins a clause, and clauses stand in a requirement"
-            note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line"
+            note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line of its own"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
+        elif self.kind == SYMBOL and self.index == 1 and kind is not None and kind.raw.upper() + self.raw in SYMBOLS:
+            span = Span(kind.start + self.base, self.here().end)
+            symbol = kind.raw.upper() + self.raw
+            fix = replace_fix(f"Write `{symbol}`", span, symbol, safe=True)
+            self.complain("syntax-error", span, f"the symbol is written `{symbol}`", (), (fix,))
+        elif self.kind == NAME and (meant := meant_clause(self.raw)):
+            self.attaches_nothing(self.here(), meant)
         elif self.at(",") and kind is not None and kind.kind == NAME and (meant := meant_clause(kind.raw)):
             self.attaches_nothing(kind.span.shifted(self.base), meant)
         elif self.at("=") and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
@@ -360,7 +377,8 @@ class NodeParser(ClauseParser):
         default = self.value() if self.accept("=") else None
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
-        return Port(direction.start, self.end_line(), direction, name, type_, default, attributes, text)
+        notes = ("a port's type stands behind `:`, its text in quotes",)
+        return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
 
     def unquoted_type(self, type_: Word) -> Word:
         """`std::vector<int>`: take all of it for one type, and say that it needs quotes."""
@@ -487,7 +505,7 @@ class NodeParser(ClauseParser):
         if cause is not None:
             self.report(cause)
         elif word.kind == STRING:
-            note = "a closing quote is probably missing further up"
+            note = "a quote in a string is written \\\", in a script '; or a closing quote is missing further up"
             self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
         else:
             # A quote or a brace in it means that more went wrong than this.
@@ -631,6 +649,8 @@ def meant_clause(word: str) -> str | None:
     return "satisfies" if word.startswith("satisf") else None
 
 
+XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`"
+_ARROW: Final = re.compile(r"[-=~]+ ?>")
 _ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
 _OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"

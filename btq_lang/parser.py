@@ -16,7 +16,7 @@ from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
 from btq_lang.lexer import tokens
 from btq_lang.near import near
-from btq_lang.nodes import NodeParser
+from btq_lang.nodes import XML, NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.record import replace
 from btq_lang.scan import COMPILED, line_end, name_end, path_end
@@ -336,7 +336,8 @@ class Parser(NodeParser):
         name = self.name("the name of the quality")
         parent = self.quality_path() if self.accept(":") else None
         text = self.take() if self.kind == STRING else None
-        return QualityDecl(start, self.end_line(), name, parent, text)
+        notes = ("the quality it belongs to stands behind `:`, its definition in quotes",)
+        return QualityDecl(start, self.end_line(notes), name, parent, text)
 
     def models(self, level: int) -> Models:
         """ "TreeNodesModel" NL [ INDENT { Model | Verbatim } DEDENT ]"""
@@ -375,7 +376,10 @@ class Parser(NodeParser):
             elif self.kind == NAME and self.raw == "xml":
                 body.append(self.verbatim())
             else:
-                self.expected("a port (input, output or inout), metadata or xml")
+                fixes = self.replaced_by((*sorted(DIRECTIONS), "metadata", "xml"))
+                if self.kind == NAME and self.raw in ("in", "out"):
+                    fixes = (replace_fix(f"Write `{self.raw}put`", self.here(), f"{self.raw}put", safe=True),)
+                self.expected("a port (input, output or inout), metadata or xml", (), fixes)
                 self.end_line()
                 self.skip_block(inner)
             self.no_block(inner)
@@ -404,7 +408,7 @@ class Parser(NodeParser):
             fresh = self.quantity("a duration: 5 s")
         if self.accept_word("initially"):
             initially = self.amount(strings=True)
-        end = self.end_line((_SIGNAL_ORDER,))
+        end = self.end_line((_SIGNAL_ORDER,), self.replaced_by(_SIGNAL_WORDS))
         return Signal(start, end, name, unit, source, behaviour, fresh, initially)
 
     def context(self) -> Context:
@@ -511,6 +515,8 @@ class Parser(NodeParser):
             notes = ("a port stands in the block of a model or BehaviorTree, indented",)
         elif self.kind == STRING and unquote(self.raw) in ITEM_WORDS:
             notes = ("a word in quotes is a name and begins no item",)
+        elif self.at("<"):
+            notes = (XML,)
         elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
         self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
@@ -532,6 +538,7 @@ class Parser(NodeParser):
 
 
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
+_SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
 ITEM_WORDS: Final = (
     *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),

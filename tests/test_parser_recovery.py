@@ -331,3 +331,71 @@ def test_a_root_without_a_block_leaves_no_column_behind() -> None:
     text = "Root A\n    BehaviorTree A\n        X\n    Root\n  QualityReq rq1\n"
     found = [(problem.rule, problem.span.start) for problem in parse(text).diagnostics]
     assert found == [("second-root", 40), ("inconsistent-indentation", 45)]
+
+
+# ---- slips, and what is said of them --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "problem", "mended"),
+    [
+        ("X satisifes r", "`satisifes` attaches nothing to a node: did you mean `satisfies`?", "X satisfies r"),
+        ("X (a = 1) tag b", "`tag` attaches nothing to a node: did you mean `tags`?", "X (a = 1) tags b"),
+        ("--> Go", "expected a node: its kind, or a symbol: -> ? || …, found `-`", "-> Go"),
+        ("- > Go", "expected a node: its kind, or a symbol: -> ? || …, found `-`", "-> Go"),
+        ("=> Go", "expected a node: its kind, or a symbol: -> ? || …, found `=`", "-> Go"),
+        ("r->", "the symbol is written `R->`", "R->"),
+        ("R -> Go", "the symbol is written `R->`", "R-> Go"),
+    ],
+)
+def test_a_slip_on_the_line_of_a_node(line: str, problem: str, mended: str) -> None:
+    text = f"BehaviorTree t\n    {line}\n"
+    (only,) = parse(text).diagnostics
+    assert only.message == problem
+    (fix,) = only.fixes
+    assert apply_fix(text, fix) == f"BehaviorTree t\n    {mended}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "problem", "note", "mended"),
+    [
+        ("QualityReq r safety 't'\n", "expected a verb behind `safety` (takes, succeeds, needs, keeps, …), found `'t'`",
+         '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"', None),
+        ("QualityReq r : safety 'a' 'b'\n",
+         "expected a verb behind `'b'` (takes, succeeds, needs, keeps, …), found the end of the line",
+         "a requirement has one title; reasons are written `because …`", None),
+        ("QualityReq r\n    violation fail\n",
+         "expected a verb behind `violation` (takes, succeeds, needs, keeps, …), found `fail`",
+         "write `on violation fail`", None),
+        ("QualityReq r\n    at most 2 min\n",
+         "expected a verb behind `at` (takes, succeeds, needs, keeps, …), found `most`",
+         "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`", None),
+        ("QualityReq r\n    takes at most 0,5 s\n", "the decimals of a number stand behind a point", None,
+         "QualityReq r\n    takes at most 0.5 s\n"),
+        ("QualityReq r\n    keeps maen(a) < 3\n",
+         "expected a function (change, count, max, mean, min, p95, stddev), found `maen`", None,
+         "QualityReq r\n    keeps mean(a) < 3\n"),
+        ("signal a : m conter\n", "expected the end of the line, found `conter`",
+         "the order is: signal x : % from {x} level fresh within 5 s initially 100 %", "signal a : m counter\n"),
+        ("Action A\n    in b : c\n", "expected a port (input, output or inout), metadata or xml, found `in`", None,
+         "Action A\n    input b : c\n"),
+        ("Action A\n    input b c\n", "expected the end of the line, found `c`",
+         "a port's type stands behind `:`, its text in quotes", None),
+        ("quality a safety\n", "expected the end of the line, found `safety`",
+         "the quality it belongs to stands behind `:`, its definition in quotes", None),
+        ("<!-- hello -->\n", "expected an item: BehaviorTree, QualityReq, include, signal, …, found `<`",
+         "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`",
+         None),
+    ],
+)  # fmt: skip
+def test_a_slip_outside_of_trees(text: str, problem: str, note: str | None, mended: str | None) -> None:
+    (only,) = parse(text).diagnostics
+    assert (only.message, only.notes) == (problem, (note,) if note else ())
+    assert [apply_fix(text, fix) for fix in only.fixes] == ([mended] if mended else [])
+
+
+def test_a_lost_quote_before_a_string_that_begins_with_a_sign() -> None:
+    text = 'BehaviorTree t\n    ->\n        A (p = "x)\n        B (q = {r})\n        Script (code = "@a := 1")\n'
+    parsed = parse(text + '        C (p = "z")\n\nBehaviorTree u\n    D (p = "y")\n')
+    (only,) = parsed.diagnostics
+    assert (only.rule, only.message, parsed.text[only.span.start : only.span.end]) == ("unclosed-string", LOST, '"x)')

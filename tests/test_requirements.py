@@ -490,7 +490,7 @@ def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> Non
         ("tries at most 3 s", "a number is expected, `3 s` is time"),
         ("runs at least 3 per 1 m", "a time is expected, `1 m` is length"),
         ("takes at most 3 s in at least 3 s of runs", "a percentage is expected, `3 s` is time"),
-        ("takes at most 3 s goal 3 m", "a goal of what the bound is of is expected, `3 m` is length"),
+        ("takes at most 3 s goal 3 m", "a goal of the same dimension as the bound is expected, `3 m` is length"),
         ("takes at most 3 s over last 3 m", "a time is expected, `3 m` is length"),
         ("takes at most 3 s if fast else 4 m", "a time is expected, `4 m` is length"),
     ],

@@ -37,7 +37,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             "unknown-quality",
             use.span,
             f"`{use.name}` is no quality of {view.edition}",
-            notes=(f"a quality of your own is declared with a line `quality {written(_last(use))}`",),
+            notes=() if meant else (f"a quality of your own is declared with a line `quality {written(_last(use))}`",),
             fixes=tuple(
                 replace_fix(f"Replace `{use.name}` by `{name}`", _whole(view, entry, use), name) for name in meant
             ),

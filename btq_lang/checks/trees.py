@@ -159,6 +159,11 @@ def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     first, extra = (
         child.head.span if isinstance(child, Node) else Span(child.start, child.end) for child in tree.children[:2]
     )
+    second = tree.children[1]
+    if isinstance(second, Node) and second.head.text == "BehaviorTree":
+        message = "a BehaviorTree begins where the one before it begins: this one is indented"
+        yield Diagnostic("tree-root-count", extra, message)
+        return
     yield Diagnostic(
         "tree-root-count",
         extra,

@@ -278,7 +278,7 @@ def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
         else:
             dimensions |= {NO_DIMENSION: None, COUNT: None}
     unit = next(iter(dimensions.values())) if len(dimensions) == 1 else None
-    return Wanted("a goal of what the bound is of", tuple(dimensions), unit) if claims else None
+    return Wanted("a goal of the same dimension as the bound", tuple(dimensions), unit) if claims else None
 
 
 def _parameter(reader: Reader, written: WrittenParameter) -> Parameter:
