@@ -15,7 +15,7 @@ def timeout(value: str) -> str:
 
 
 @pytest.mark.parametrize(
-    "value", ["30000", '"30000"', "{limit}", '"{limit}"', "0", "30 s", "30s", "0.5 min", '"5 "', "1e3 ms"]
+    "value", ["30000", '"30000"', "{limit}", '"{limit}"', "1", "30 s", "30s", "0.5 min", '"5 "', "1e3 ms"]
 )
 def test_values_that_the_engine_reads(value: str) -> None:
     assert_clean(timeout(value))

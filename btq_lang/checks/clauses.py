@@ -1,4 +1,4 @@
-"""Clauses of one requirement that can be said once only."""
+"""Clauses of one requirement that can be said once only, or that need another one."""
 
 from __future__ import annotations
 
@@ -30,6 +30,27 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
                 yield _duplicate(view, entry, counts, clause)
+
+
+def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A confidence, or a number of experiments, where nothing is said of how often the requirement is to hold."""
+    for symbol in view.file.summary_of(entry).symbols:
+        requirement = symbol.target
+        if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
+            continue
+        if any(isinstance(clause, Odds) for clause in requirement.clauses):
+            continue
+        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+            continue  # the odds may be what could not be read
+        for clause in requirement.clauses:
+            if isinstance(clause, Confidence) or (isinstance(clause, Window) and clause.experiments is not None):
+                said = "a confidence" if isinstance(clause, Confidence) else "a number of experiments"
+                yield Diagnostic(
+                    "clause-without-odds",
+                    Span(clause.start, clause.end),
+                    f"{said} says nothing here: without odds one violation is enough",
+                    notes=("say how often it is to hold: `in at least 95 % of activations`",),
+                )
 
 
 def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diagnostic:

@@ -31,6 +31,7 @@ def all_demands(view: View) -> dict[int, list[Diagnostic]]:
         limits.limit_on_synchronous_node,
         limits.dead_bound,
         limits.outbid_bound,
+        limits.goal_beyond_bound,
         limits.attempts_mismatch,
         limits.contradicting_bounds,
         budgets.budget_exceeded,

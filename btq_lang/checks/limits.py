@@ -8,8 +8,12 @@ from math import inf
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
-from btq_lang.requirements.model import Claim, Compare, Read, SourceNode, Table, Target, Value
+from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
 from btq_lang.rules import Severity
+from btq_lang.syntax import Goal, walk
+from btq_lang.syntax import Requirement as WrittenRequirement
+from btq_lang.text import Span
+from btq_lang.units import Dimension
 
 _OF_TIME = frozenset(("takes", "succeeds"))
 
@@ -94,6 +98,29 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                     at = Place(at.span)  # without its item, which would be hashed for each of many claims
                 related = (Related(at, "the tighter bound"),) if tight[3].span != bound[3].span else ()
                 yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
+
+
+def goal_beyond_bound(demanded: Demanded) -> Iterator[Found]:
+    """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
+    for requirement in demanded.requirements.all.values():
+        goal = requirement.goal
+        clause = _goal_clause(requirement) if requirement.path == demanded.view.path else None
+        if clause is None or not isinstance(goal, Value):
+            continue
+        for claim in requirement.claims:
+            most, least = highest(claim), lowest(claim)
+            of = _dimension(claim)
+            if of is None or of != goal.unit.dimension:
+                continue
+            if most is not None and goal.si > most[0]:
+                message = f"the goal `{goal.text}` is worse than the bound, which is at most `{most[1]}`"
+            elif least is not None and most is None and goal.si < least[0]:
+                message = f"the goal `{goal.text}` is worse than the bound, which is at least `{least[1]}`"
+            else:
+                continue
+            place = Place(Span(clause.start, clause.end), requirement.path, requirement.entry.item)
+            related = (Related(claim.place, "the bound"),)
+            yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
 
 
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
@@ -198,6 +225,21 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
             return found
         at = at.parent
     return []
+
+
+def _goal_clause(requirement: Requirement) -> Goal | None:
+    """The clause that a goal stands in."""
+    for part in walk(requirement.entry.item):
+        if isinstance(part, WrittenRequirement) and part.name is not None and part.name.span == requirement.place.span:
+            return next((clause for clause in part.clauses if isinstance(clause, Goal)), None)
+    return None
+
+
+def _dimension(claim: Claim) -> Dimension | None:
+    """What the values of a claim's limit are of; None: that is not certain."""
+    value = claim.limit.value if claim.limit is not None else None
+    value = value.cases[0].value if isinstance(value, Table) else value
+    return value.unit.dimension if isinstance(value, Value) else None
 
 
 def _typed(claim: Claim) -> str:

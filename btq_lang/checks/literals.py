@@ -31,18 +31,22 @@ class _Target:
     Attributes:
         unit: of a number in the port, where one is known.
         converts: the engine reads a literal as the type; for a tree's port it keeps the text or number it finds.
+        is_output: no literal is right there, which is told.
     """
 
     port: str
     type: str
     unit: str | None = None
     converts: bool = True
+    is_output: bool = False
 
 
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose tail the engine drops."""
     version = view.workspace.project.target
     for target, value in _values(view, entry):
+        if target.is_output:
+            continue
         if value.kind == QUANTITY:
             yield from _converted(target, value, version)
             continue
@@ -69,8 +73,8 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A quantity where the port's unit is unknown or of another dimension."""
     for target, value in _values(view, entry, QUANTITY):
         quantity = parse_quantity(value.raw)
-        if quantity is None:
-            continue  # an unknown unit, which is told
+        if quantity is None or target.is_output:
+            continue  # an unknown unit, or a value for an output: both are told
         unit = quantity[1]
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
@@ -147,7 +151,8 @@ def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | No
     ports = subtree_ports(view, seen) if seen.is_subtree else seen.model.ports if seen.model else ()
     declared = next((port for port in ports if port.name is not None and port.name.text == key), None)
     if declared is not None:
-        return _declared(declared, not seen.is_subtree)
+        is_output = declared.direction.raw == "output"
+        return _declared(declared, not seen.is_subtree, is_output)
     # A node that nobody has described takes any literal, but there is no unit that a quantity could be converted to.
     return _Target(key, "") if value.kind == QUANTITY and is_port_name(key) else None
 
@@ -155,13 +160,14 @@ def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | No
 def _of_builtin(port: PortKind, version: str) -> _Target | None:
     if port.content != "value":
         return None
-    return _Target(port.name, port.literal or port_type(port, version), port.unit)
+    is_output = port.direction == "output"
+    return _Target(port.name, port.literal or port_type(port, version), port.unit, is_output=is_output)
 
 
-def _declared(port: Port, converts: bool) -> _Target | None:
+def _declared(port: Port, converts: bool, is_output: bool = False) -> _Target | None:
     if port.name is None:
         return None
-    return _Target(port.name.text, port.type.text if port.type else "", None, converts)
+    return _Target(port.name.text, port.type.text if port.type else "", None, converts, is_output)
 
 
 def _accepted(target: _Target, value: Word, version: str) -> tuple[Fix, ...]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.catalog.literals import is_known_type, is_pointer, plain_type
+from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import port_type
+from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.view import SeenNode, View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.entry_types import declared_type, is_text
@@ -109,9 +110,9 @@ class EntryTypes:
                 continue
             value = seen.node.attribute(key)
             if value is not None:
-                yield _key(key, value.text) or ""
+                yield pointed_at(key, value.text) or ""
             else:
-                yield key if _remaps_all(seen) and key[0] != "_" else None
+                yield key if remaps_all(seen) and key[0] != "_" else None
 
     def _met_in(self, tree: str) -> dict[str, list[_Meeting]]:
         found: dict[str, list[_Meeting]] = {}
@@ -124,7 +125,7 @@ class EntryTypes:
                     _add(found, key, _Meeting(below.type, seen, given, below.at))
                 continue
             for pair in seen.node.attributes:
-                entry = _key(pair.key.text, pair.value.text) if pair.value is not None else None
+                entry = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
                 if entry is not None:
                     type_ = _port_type(self._view, seen, pair.key.text)
                     _add(found, entry, _Meeting(type_, seen, pair, (definition, pair, seen)))
@@ -134,13 +135,13 @@ class EntryTypes:
         """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
         below = self._of.get(seen.node.id.text if seen.node.id is not None else "", {})
         given = {pair.key.text: pair for pair in reversed(seen.node.attributes) if pair.value is not None}
-        remaps_all = _remaps_all(seen)
+        shares_all = remaps_all(seen)
         for port, meetings in below.items():
             pair = given.get(port)
             key: str | None = port if port[0] == "@" else None
             if key is None and pair is not None and pair.value is not None:
-                key = _key(port, pair.value.text)
-            elif key is None and remaps_all and port[0] != "_":
+                key = pointed_at(port, pair.value.text)
+            elif key is None and shares_all and port[0] != "_":
                 key = port
             if key:
                 yield from ((key, pair, meeting) for meeting in meetings)
@@ -199,13 +200,6 @@ def _add(found: dict[str, list[_Meeting]], key: str, meeting: _Meeting) -> None:
         known.append(meeting)
 
 
-def _key(port: str, text: str) -> str | None:
-    """The entry that a value points to."""
-    if not is_pointer(text):
-        return None
-    return port if text == "{=}" else text[1:-1]
-
-
 def _port_type(view: View, seen: SeenNode, port: str) -> str:
     if seen.kind is not None:
         builtin = seen.kind.port(port)
@@ -213,11 +207,6 @@ def _port_type(view: View, seen: SeenNode, port: str) -> str:
     else:
         type_ = declared_type(seen.model.ports, port) if seen.model is not None else ""
     return plain_type(type_) if type_ not in _ANYTHING else ""
-
-
-def _remaps_all(seen: SeenNode) -> bool:
-    value = seen.node.attribute("_autoremap")
-    return value is not None and value.text in ("true", "True", "TRUE", "1")
 
 
 _ANYTHING: Final = frozenset(("", "BT::Any", "BT::AnyTypeAllowed", "Any", "AnyTypeAllowed", "any", "auto"))

@@ -122,6 +122,27 @@ def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
             first.setdefault(key, pair)
 
 
+def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """Two ports of one name in a model or a tree: the engine takes the last one, and tools the first."""
+    item = entry.item
+    for owner in item.models if isinstance(item, Models) else (item,):
+        if not isinstance(owner, Tree | Model) or len(owner.ports) < 2:
+            continue
+        first: dict[str, Word] = {}
+        for port in owner.ports:
+            name = port.name
+            if name is None or not name.text:
+                continue
+            if first.setdefault(name.text, name) is not name:
+                yield Diagnostic(
+                    "duplicate-definition",
+                    name.span,
+                    f"there are two ports `{name.text}`",
+                    related=(Related(Place(first[name.text].span), "the first one"),),
+                    severity=Severity.WARNING,
+                )
+
+
 def is_case(seen: SeenNode, key: str) -> bool:
     """Whether an attribute is a case of a Switch; which ones there are depends on the number of its children."""
     is_switch = seen.kind is not None and seen.kind.tag.startswith("Switch")

@@ -23,7 +23,7 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
             expects_value = _expects_value(seen, pair)
             if expects_value is None or pair.value is None:
                 continue
-            for problem in _problems(pair.value.text, project.engines, expects_value):
+            for problem in _problems(view, pair.value.text, expects_value):
                 found = moved(problem, pair.value)
                 if problem.rule == "empty-script":
                     yield _empty(seen, pair.value, found)
@@ -32,6 +32,11 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     yield replace(found, notes=(*found.notes, pin))
                 else:
                     yield found
+
+
+def is_script(seen: SeenNode, pair: Pair) -> bool:
+    """Whether an attribute holds a script."""
+    return _expects_value(seen, pair) is not None
 
 
 def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
@@ -46,10 +51,11 @@ def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
     return seen.kind is not None and seen.kind.tag != "Script"
 
 
-def _problems(script: str, versions: tuple[str, ...], expects_value: bool) -> tuple[Diagnostic, ...]:
-    from btq_lang.script import check_script, parse_script  # most files have no script, and it is large
+def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
+    from btq_lang.script import check_script  # most files have no script, and it is large
 
-    return check_script(parse_script(script), versions=versions, expects_value=expects_value)
+    versions = view.workspace.project.engines
+    return check_script(view.script(script), versions=versions, expects_value=expects_value)
 
 
 def _empty(seen: SeenNode, value: Word, found: Diagnostic) -> Diagnostic:

@@ -26,6 +26,7 @@ from btq_lang.syntax import (
     Model,
     Models,
     Node,
+    Pair,
     Port,
     Qualities,
     Requirement,
@@ -39,11 +40,13 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    from btq_lang.checks.entries import Blackboards, Mention
     from btq_lang.checks.mixed_types import EntryTypes
     from btq_lang.checks.results import TreeResults
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.budgets import Budgets
+    from btq_lang.script import Script
 
 
 Question: TypeAlias = tuple[str, Kind | None, str]
@@ -106,6 +109,8 @@ class View:
         self._near: dict[tuple[Kind | None, str], tuple[str, ...]] = {}
         self._compared = 0
         self._constraints: dict[int, tuple[tuple[Constraint, bool], ...]] = {}
+        self._mentions: dict[int, tuple[Mention, ...]] = {}
+        self._scripts: dict[str, Script] = {}
         self._qualities: dict[str, QualityMatch | None] = {}
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
@@ -253,6 +258,38 @@ class View:
     def calls(self) -> Calls:
         """Which tree runs which, of all trees in scope."""
         return Calls(self.workspace, self.scope)
+
+    def script(self, text: str) -> Script:
+        """What a script says; several checks ask of each."""
+        known = self._scripts.get(text)
+        if known is None:
+            from btq_lang.script import parse_script  # most files have no script, and it is large
+
+            known = self._scripts[text] = parse_script(text)
+        return known
+
+    def mentions(self, entry: Entry) -> tuple[Mention, ...]:
+        """The blackboard entries that a tree names, in document order."""
+        known = self._mentions.get(id(entry))
+        if known is None:
+            from btq_lang.checks.entries import mentions  # it asks views, too
+
+            known = self._mentions[id(entry)] = tuple(mentions(self, entry))
+        return known
+
+    @cached_property
+    def blackboards(self) -> Blackboards:
+        """Which names in which trees are one blackboard entry, and what is done with it."""
+        from btq_lang.checks.entries import Blackboards  # it asks views, too
+
+        return Blackboards(self)
+
+    @cached_property
+    def named_output(self) -> Pair | None:
+        """The first value for an output, in a file that gives values to outputs as a rule."""
+        from btq_lang.checks.outputs import named_output  # it asks views, too
+
+        return named_output(self)
 
     @cached_property
     def entry_types(self) -> EntryTypes:

@@ -1,0 +1,62 @@
+"""Counts and times with which a node does nothing.
+
+Source: the tick functions of RepeatNode, RetryNode and TimeoutNode in 4.6.2, 4.8.4 and 4.10.0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.quantities import parse_quantity
+from btq_lang.syntax import Entry, Word
+from btq_lang.tokens import QUANTITY
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
+    for seen in view.nodes(entry):
+        if seen.kind is None or seen.kind.tag not in _PORTS:
+            continue
+        port, does_nothing = _PORTS[seen.kind.tag]
+        value = seen.node.attribute(port)
+        number = _number(value) if value is not None else None
+        if value is None or number is None or not does_nothing(number):
+            continue
+        yield _timeout(value) if port == "msec" else _loop(seen, value, number)
+
+
+def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
+    fixes = (replace_fix("Write `-1`: without end", value.span, "-1"),) if number < 0 else ()
+    return Diagnostic(
+        "count-of-nothing",
+        value.span,
+        f"with `{value.raw}` {seen.shown} never runs its child",
+        notes=("-1 means without end, other numbers below 1 mean never",),
+        fixes=fixes,
+    )
+
+
+def _timeout(value: Word) -> Diagnostic:
+    message = f"to the engine a Timeout of `{value.raw}` is none: it never ends its child"
+    return Diagnostic("count-of-nothing", value.span, message)
+
+
+def _number(value: Word) -> float | None:
+    if value.kind == QUANTITY:
+        quantity = parse_quantity(value.raw)
+        return quantity[0] if quantity is not None else None
+    text = value.text
+    return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
+
+
+_PORTS: Final = {
+    "Repeat": ("num_cycles", lambda number: number < 1 and number != -1),
+    "RetryUntilSuccessful": ("num_attempts", lambda number: number < 1 and number != -1),
+    "Timeout": ("msec", lambda number: number == 0),
+}

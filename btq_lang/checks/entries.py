@@ -1,0 +1,202 @@
+"""What the nodes of trees do with blackboard entries, and which names in which trees are one entry.
+
+One invariant: what is not known counts as everything: a port without a model may read and write.  It does not know what
+the robot's program does with entries, nor whether a name is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.scripts import is_script
+from btq_lang.checks.strings import in_source
+from btq_lang.checks.view import SeenNode, View
+from btq_lang.record import record
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Entry, Model, Pair, Port, Signal, Tree
+from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+# A name in a tree; an empty tree stands for the root blackboard.
+Name: TypeAlias = tuple[str, str]
+
+
+@record
+class Mention:
+    """A place where a tree names an entry.
+
+    Attributes:
+        name: as the tree calls it, with the `@` of the root blackboard.
+        span: the name itself.
+        reads, writes: what may happen to it there; of a SubTree neither, for that is what happens in its tree.
+        creates: it need not exist before.
+        in_script: it stands in a script.
+    """
+
+    name: str
+    span: Span
+    node: SeenNode
+    reads: bool
+    writes: bool
+    creates: bool
+    in_script: bool
+
+
+def mentions(view: View, entry: Entry) -> Iterator[Mention]:
+    """Every name of an entry in a tree."""
+    for seen in view.nodes(entry):
+        for pair in seen.node.attributes:
+            value = pair.value
+            if value is None:
+                continue
+            raw = value.raw
+            if "{" in raw and (name := pointed_at(pair.key.text, value.text)) is not None:
+                inner = Span(value.start, value.end) if name == pair.key.text else _inside(pair, name)
+                yield Mention(name, inner, seen, *_use(view, seen, pair), False)
+            elif is_script(seen, pair):
+                yield from _in_script(view, seen, pair)
+            elif seen.kind is not None and (port := seen.kind.port(pair.key.text)) and port.content == "key":
+                creates = port.direction != "input"
+                yield Mention(value.text, value.span, seen, not creates, creates, creates, False)
+
+
+class Blackboards:
+    """The entries of the trees in scope.
+
+    Attributes:
+        root_names: how often each name of the root blackboard is mentioned.
+    """
+
+    def __init__(self, view: View) -> None:
+        self._view = view
+        self._same: dict[Name, Name] = {}
+        self._uses: dict[Name, list[Mention]] = {}
+        self._ports: set[Name] = set()
+        self._signals: set[Name] = set()
+        self.root_names: dict[str, int] = {}
+        for tree in view.scope.names(Kind.TREE):
+            self._add(tree)
+        for signal in view.scope.names(Kind.SIGNAL):
+            self._add_signal(signal)
+
+    def of(self, tree: str, name: str) -> list[Mention]:
+        """All that is done with an entry, wherever it is handed to."""
+        if self._merged is None:
+            merged: dict[Name, list[Mention]] = {}
+            for key, uses in self._uses.items():
+                merged.setdefault(self._first(key), []).extend(uses)
+            self._merged = merged
+        return self._merged.get(self._first(self.place(tree, name)), [])
+
+    def is_port(self, tree: str, name: str) -> bool:
+        """Whether the entry is a port of the tree."""
+        return self.place(tree, name) in self._ports
+
+    def is_given(self, tree: str, name: str) -> bool:
+        """Whether the entry comes from outside: it is a port, or a signal is read from it."""
+        place = self.place(tree, name)
+        return place in self._ports or place in self._signals
+
+    def is_one(self, tree: str, name: str, other: str) -> bool:
+        """Whether two names of a tree are one entry."""
+        return self._first(self.place(tree, name)) == self._first(self.place(tree, other))
+
+    def place(self, tree: str, name: str) -> Name:
+        """Where an entry stands: in the tree's own blackboard or in that of the root."""
+        if name[:1] == "@":
+            return "", name[1:]
+        return ("", name) if self.is_root(tree) else (tree, name)
+
+    def is_root(self, tree: str) -> bool:
+        """Whether the tree's own blackboard is that of the root."""
+        return not self._view.calls.callers(tree)
+
+    _merged: dict[Name, list[Mention]] | None = None
+
+    def _add(self, tree: str) -> None:
+        definition = self._view.scope.find(Kind.TREE, tree)
+        if definition is None or not isinstance(target := definition.symbol.target, Tree):
+            return
+        model = self._view.scope.find(Kind.MODEL, tree)
+        ports = (
+            *target.ports,
+            *(model.symbol.target.ports if model and isinstance(model.symbol.target, Model) else ()),
+        )
+        self._ports.update(self.place(tree, port.name.text) for port in ports if port.name is not None)
+        for mention in self._view.mentions(definition.entry):
+            place = self.place(tree, mention.name)
+            self._uses.setdefault(place, []).append(mention)
+            if not place[0]:
+                self.root_names[place[1]] = self.root_names.get(place[1], 0) + 1
+        for seen in self._view.nodes(definition.entry):
+            if seen.is_subtree and seen.node.id is not None:
+                self._hand_on(tree, seen, seen.node.id.text)
+
+    def _hand_on(self, tree: str, seen: SeenNode, below: str) -> None:
+        given = {pair.key.text for pair in seen.node.attributes}
+        for pair in seen.node.attributes:
+            name = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
+            if name is not None:
+                self._join(self.place(tree, name), (below, pair.key.text))
+        definition = self._view.scope.find(Kind.TREE, below) if remaps_all(seen) else None
+        if definition is not None:
+            for mention in self._view.mentions(definition.entry):
+                if mention.name not in given and mention.name[:1] not in ("_", "@"):
+                    self._join(self.place(tree, mention.name), (below, mention.name))
+
+    def _add_signal(self, name: str) -> None:
+        definition = self._view.scope.find(Kind.SIGNAL, name)
+        signal = definition.symbol.target if definition is not None else None
+        if isinstance(signal, Signal) and signal.source is not None:
+            self._signals.add(("", signal.source.text.strip("{}").removeprefix("@")))
+
+    def _join(self, one: Name, other: Name) -> None:
+        first, second = self._first(one), self._first(other)
+        if first != second:
+            self._same[second] = first
+
+    def _first(self, name: Name) -> Name:
+        while (above := self._same.get(name)) is not None:
+            name = above
+        return name
+
+
+def _use(view: View, seen: SeenNode, pair: Pair) -> tuple[bool, bool, bool]:
+    """Whether a port reads, writes and makes the entry that it is given."""
+    key = pair.key.text
+    if seen.is_subtree:
+        definition = view.scope.find(Kind.TREE, seen.node.id.text) if seen.node.id is not None else None
+        unknown = definition is None
+        return unknown, unknown, unknown
+    direction: str | None = None
+    if seen.kind is not None:
+        builtin = seen.kind.port(key)
+        direction = builtin.direction if builtin is not None else None
+    elif seen.model is not None:
+        direction = next((port.direction.raw for port in seen.model.ports if _is_called(port, key)), None)
+    return direction != "output", direction != "input", True
+
+
+def _is_called(port: Port, name: str) -> bool:
+    return port.name is not None and port.name.text == name
+
+
+def _inside(pair: Pair, name: str) -> Span:
+    """The name in `{name}`, in quotes or not."""
+    assert pair.value is not None, "there is a pointer"
+    at = pair.value.raw.find(name)
+    start = pair.value.start + at
+    return Span(start, start + len(name)) if at > 0 else pair.value.span
+
+
+def _in_script(view: View, seen: SeenNode, pair: Pair) -> Iterator[Mention]:
+    from btq_lang.script import variables  # most files have no script, and it is large
+
+    assert pair.value is not None, "there is a script"
+    for variable in variables(view.script(pair.value.text)):
+        span = in_source(pair.value, variable.span)
+        yield Mention(variable.name, span, seen, variable.reads, variable.writes, variable.creates, True)

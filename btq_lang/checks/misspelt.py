@@ -1,0 +1,169 @@
+"""Blackboard entries whose name is a slip.
+
+Every name is an entry to the engine, and the robot's program may write and read any, so an unused name alone says
+nothing.  Here a name stands in one place only, what happens there leads nowhere, and another name in the same tree
+differs from it as only slips do.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from btq_lang.checks.entries import Blackboards, Mention
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.near import distance
+from btq_lang.syntax import Entry, Tree, Verbatim
+
+
+def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An entry that is named once, and read though nothing writes it, or written though nothing reads it, where
+    another entry has nearly the same name."""
+    tree = entry.item
+    mentions = view.mentions(entry)
+    if not isinstance(tree, Tree) or tree.name is None or not mentions or not view.scope.complete:
+        return
+    if any(isinstance(child, Verbatim) for node in view.nodes(entry) for child in node.node.children):
+        return  # XML that nobody reads here may name any entry
+    yield from _misspelt_booleans(mentions, view, tree.name.text)
+    counts = Counter(mention.name for mention in mentions)
+    others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
+    if any(mention.name[:1] == "@" for mention in mentions):
+        others |= dict.fromkeys(f"@{name}" for name in view.blackboards.root_names)
+    alike = _Alike(others)
+    told: set[str] = set()
+    for mention in mentions:
+        if counts[mention.name] > 1:
+            continue
+        for meant in alike.to(mention.name):
+            if meant in told or _stand_together(mentions, mention, meant):
+                continue
+            if _is_meant(view.blackboards, tree.name.text, mention, meant, counts):
+                told.add(mention.name)
+                yield _told(mentions, mention, meant, counts[meant] == 1)
+                break
+
+
+def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> Iterator[Diagnostic]:
+    """`True` in a script, which is the name of an entry there."""
+    for mention in mentions:
+        meant = mention.name.lower()
+        if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
+            continue
+        if not any(each.creates for each in view.blackboards.of(tree, mention.name)):
+            message = f"in a script `{mention.name}` is the name of an entry: the engine's word is `{meant}`"
+            fix = replace_fix(f"Write `{meant}`", mention.span, meant)
+            yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
+
+
+def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -> bool:
+    """Whether one node is given both entries at its ports, or makes both: who writes so means two."""
+    return any(
+        each.name == other
+        and each.node is mention.node
+        and not (each.in_script and not (each.writes and mention.writes))
+        for each in mentions
+    )
+
+
+def _is_meant(boards: Blackboards, tree: str, mention: Mention, meant: str, counts: Counter[str]) -> bool:
+    """Whether what happens to one entry leads nowhere, and to the other one where it would."""
+    name = mention.name
+    if boards.is_given(tree, name) or boards.is_one(tree, name, meant):
+        return False
+    place = boards.place(tree, name)
+    if not place[0] and boards.root_names.get(place[1], 0) > 1:
+        return False
+    uses, others = boards.of(tree, name), boards.of(tree, meant)
+    is_port = boards.is_port(tree, meant)
+    if not any(each.writes for each in uses):  # read only
+        return is_port or any(each.writes for each in others)
+    if _is_skeleton(name, meant):
+        return False
+    if not any(each.reads for each in uses):  # written only
+        is_told = len(others) == 1 and not others[0].writes  # there, where it is read
+        return is_port or (any(each.reads for each in others) and not is_told)
+    return len(uses) == 1 and (is_port or counts[meant] > 0)
+
+
+def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
+    """is_single: the other name stands in one place, too, so that it may be the slip."""
+    name = mention.name
+    other = next((each for each in mentions if each.name == meant), None)
+    message = f"nothing else names `{name}`: is it `{meant}`?"
+    if not mention.writes and mention.reads:
+        message = f"this reads `{name}`, and nothing writes it: is it `{meant}`?"
+    elif not mention.reads and mention.writes:
+        message = f"this writes `{name}`, and nothing reads it: is it `{meant}`?"
+    fixes = [replace_fix(f"Replace `{name}` by `{meant}`", mention.span, meant)]
+    if is_single and other is not None:
+        fixes.append(replace_fix(f"Replace `{meant}` by `{name}`", other.span, name))
+    related = (Related(Place(other.span), f"`{meant}`"),) if other is not None else ()
+    return Diagnostic("misspelt-entry", mention.span, message, related=related, fixes=tuple(fixes))
+
+
+class _Alike:
+    """Names that differ as only slips do, found without comparing each with each: two names with one edit between
+    them are one, or one of each, after one letter is left out."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self._by_piece: dict[str, list[str]] = {}
+        for name in names:
+            for piece in _pieces(name):
+                self._by_piece.setdefault(piece, []).append(name)
+
+    def to(self, name: str) -> list[str]:
+        """The names that may be meant by another one, the nearest first."""
+        found = {other for piece in _pieces(name) for other in self._by_piece.get(piece, ()) if other != name}
+        likely = [other for other in found if _is_slip(name, other)]
+        return sorted(likely, key=lambda other: (distance(name, other), other))
+
+
+def _is_slip(word: str, meant: str) -> bool:
+    """Whether a name is so near another one that nobody would call two things so: `traget`, `batteryLevel`, `imgg`.
+
+    Numbered names, plurals and letters of the alphabet are two things: `goal1` and `goal2`, `goals`, `goal_x`.
+    """
+    if any((word[:1] == sign) != (meant[:1] == sign) for sign in "@_"):
+        return False  # of the root, or private: that is no slip
+    word, meant = word.removeprefix("@"), meant.removeprefix("@")
+    folded, other = _folded(word), _folded(meant)
+    if folded == other or _is_skeleton(folded, other):
+        return len(folded) > 2
+    if _without_digits(folded) == _without_digits(other):
+        return False
+    short, long = sorted((folded, other), key=len)
+    if len(long) < 4 or long in (f"{short}s", f"{short}es") or distance(folded, other) > 1:
+        return False
+    if len(short) < len(long):
+        at = next((i for i in range(len(short)) if short[i] != long[i]), len(short))
+        is_doubled = long[at] in (long[at - 1 : at] + long[at + 1 : at + 2])
+        at_an_end = at in (0, len(long) - 1)
+        return is_doubled or (len(long) > 5 if not at_an_end else len(long) > 7)
+    if sorted(short) == sorted(long):
+        return True
+    pieces = zip(word.split("_"), meant.split("_"), strict=False)
+    return any(one != two and min(len(one), len(two)) > 5 for one, two in pieces)
+
+
+def _pieces(name: str) -> set[str]:
+    name = _folded(name)
+    return {name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))}
+
+
+def _is_skeleton(word: str, meant: str) -> bool:
+    """`cnt` for `count`."""
+    return len(word) > 2 and word != meant and word == _without_vowels(meant)
+
+
+def _folded(name: str) -> str:
+    return name.removeprefix("@").replace("_", "").casefold()
+
+
+def _without_vowels(name: str) -> str:
+    return "".join(letter for letter in name if letter not in "aeiou")
+
+
+def _without_digits(name: str) -> str:
+    return "".join(letter for letter in name if not letter.isdigit())

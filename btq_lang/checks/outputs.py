@@ -1,0 +1,90 @@
+"""Values where a node puts something out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.checks.view import SeenNode, View, subtree_ports
+from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.placeholders import is_placeholder
+from btq_lang.rules import Severity
+from btq_lang.syntax import Entry, Pair, Port, Word, is_name
+
+
+def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A value for an output, which needs an entry to write to: the node's own writing fails when it is ticked.  A value
+    that is none of the output's type is refused before.
+
+    Some programs take such a value for the name of an entry, by means of their own, so where a file does so as a rule,
+    that is told once, and as a hint.
+    """
+    for seen, pair, type_ in outputs(view, entry):
+        value = pair.value
+        if value is None or not _is_literal(value):
+            continue
+        problem = check_literal(type_, value.text, view.workspace.project.target)
+        is_refused = problem is not None and problem.kind == "refused"
+        is_custom = not is_refused and view.named_output is not None
+        if is_custom and view.named_output is not pair:
+            continue
+        name = value.text if is_name(value.text) else pair.key.text
+        fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
+        notes = ("so it is at many outputs here: right if the program takes the value for an entry's name",)
+        message = (
+            f"`{pair.key.text}` of {seen.shown} is an output: it is written to an entry, and `{value.raw}` is none"
+        )
+        yield Diagnostic(
+            "literal-for-output",
+            value.span,
+            message,
+            notes=notes
+            if is_custom
+            else (f"the engine refuses it: it {problem.reason}",)
+            if is_refused and problem
+            else (),
+            fixes=() if is_custom else fixes,
+            severity=Severity.HINT if is_custom else Severity.ERROR if is_refused else None,
+        )
+
+
+def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
+    """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
+    keep whatever they are given."""
+    for seen in view.nodes(entry):
+        if not seen.node.attributes or is_placeholder(seen.node):
+            continue
+        types = _types(view, seen)
+        for pair in seen.node.attributes if types else ():
+            if (type_ := types.get(pair.key.text)) is not None:
+                yield seen, pair, type_
+
+
+def named_output(view: View) -> Pair | None:
+    """The first value for an output, in a file that gives values to outputs as a rule."""
+    given = [pair for entry in view.trees for _, pair, _ in outputs(view, entry) if pair.value is not None]
+    values = [pair for pair in given if pair.value is not None and _is_literal(pair.value)]
+    is_custom = len(values) > 2 and (len(values) > len(given) / 2 or len(values) > 9)
+    return values[0] if is_custom else None
+
+
+def _is_literal(value: Word) -> bool:
+    """Whether a value is neither an entry nor nothing, as tools write it for a port that is not used; `=` is `{=}`."""
+    return value.text not in ("", "=") and not is_pointer(value.text)
+
+
+def _types(view: View, seen: SeenNode) -> dict[str, str]:
+    """The outputs that a node has, and their types."""
+    if seen.kind is not None:
+        return {port.name: port.type for port in seen.kind.ports if port.direction == "output"}
+    if seen.is_subtree:
+        return dict.fromkeys(_outputs(subtree_ports(view, seen)), "")
+    return _outputs(seen.model.ports) if seen.model is not None else {}
+
+
+def _outputs(ports: tuple[Port, ...]) -> dict[str, str]:
+    return {
+        port.name.text: port.type.text if port.type is not None else ""
+        for port in ports
+        if port.direction.raw == "output" and port.name is not None
+    }

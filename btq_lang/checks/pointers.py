@@ -1,0 +1,19 @@
+"""Blackboard entries as attributes name them.  It knows words only, no trees."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.view import SeenNode
+
+
+def pointed_at(port: str, text: str) -> str | None:
+    """The entry that the text of a port points to; None: it is no pointer."""
+    if not is_pointer(text):
+        return None
+    return port if text == "{=}" else text[1:-1]
+
+
+def remaps_all(seen: SeenNode) -> bool:
+    """Whether a SubTree gets every entry under its own name; private ones, which begin with `_`, it never gets."""
+    value = seen.node.attribute("_autoremap")
+    return value is not None and value.text in ("true", "True", "TRUE", "1")

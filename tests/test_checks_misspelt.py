@@ -1,0 +1,138 @@
+"""Misspelt entries: the slips that are told, and all that only looks like one."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import findings, fixes
+
+RULE = "misspelt-entry"
+
+MODELS = """Action Take
+    output image
+Action Store
+    input image
+Action Any
+    inout image
+"""
+
+
+def told(lines: str, head: str = "") -> list[str]:
+    """What is told of a tree of these lines, without the line and the severity."""
+    body = "".join(f"        {line}\n" for line in lines.strip("\n").split("\n"))
+    text = f"{MODELS}{head}BehaviorTree Main\n    ->\n{body}"
+    return [found.split(" ", 2)[2] for found in findings(text, RULE)]
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("traget", "target"),
+        ("tarrget", "target"),
+        ("taget", "target"),
+        ("batteryLevel", "battery_level"),
+        ("battery__level", "battery_level"),
+        ("Picture", "picture"),
+        ("imgg", "img"),
+        ("taxget", "target"),
+        ("cnt", "count"),
+    ],
+)
+def test_slips(word: str, meant: str) -> None:
+    assert told(f"Take (image = {{{meant}}})\nStore (image = {{{meant}}})\nStore (image = {{{word}}})") == [
+        f"«{word}» this reads `{word}`, and nothing writes it: is it `{meant}`?"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("word", "other"),
+    [
+        ("goal1", "goal2"),
+        ("goal", "goal2"),
+        ("goals", "goal"),
+        ("boxes", "box"),
+        ("goal_x", "goal_y"),
+        ("pose", "post"),
+        ("pos", "pose"),
+        ("path", "paths"),
+        ("left_hand", "lift_hand"),
+        ("_target", "target"),
+        ("in", "inn"),
+        ("start_pose", "goal_pose"),
+    ],
+)
+def test_two_names(word: str, other: str) -> None:
+    assert told(f"Take (image = {{{other}}})\nStore (image = {{{other}}})\nStore (image = {{{word}}})") == []
+
+
+def test_what_is_written_and_never_read() -> None:
+    assert told('Script (code = "count := 1.0; cuont := (count + 1.0)")\nStore (image = {count})') == [
+        "«cuont» this writes `cuont`, and nothing reads it: is it `count`?"
+    ]
+
+
+def test_without_models_two_places_that_are_alone_are_told_once_and_either_may_be_meant() -> None:
+    text = "BehaviorTree Main\n    ->\n        A (x = {picture})\n        B (x = {pictuer})\n"
+    assert findings(text, RULE) == ["3 warning «picture» nothing else names `picture`: is it `pictuer`?"]
+    assert fixes(text, RULE) == [
+        ("Replace `picture` by `pictuer`", False, text.replace("picture", "pictuer")),
+        ("Replace `pictuer` by `picture`", False, text.replace("pictuer", "picture")),
+    ]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "Take (image = {picture})\nStore (image = {picture})\nStore (image = {pictuer})\nTake (image = {pictuer})",
+        "Store (image = {pictuer})\nStore (image = {picture})",  # the robot's program may write both
+        # Who says both means both.
+        "Take (image = {picture})\nStore (image = {picture})\nB (x = {pictuer} y = {picture})",
+        "Take (image = {picture})\nStore (image = {picture})\nxml '<A x=\"{pictuer}\"/>'",
+    ],
+)
+def test_what_is_used_is_right(lines: str) -> None:
+    assert told(lines) == []
+
+
+def test_a_tree_below_writes_what_is_read_here() -> None:
+    below = "BehaviorTree Below\n    Take (image = {picture})\n"
+    here = "Take (image = {picture})\nStore (image = {picture})\nStore (image = {pictuer})"
+    assert told(f"SubTree Below (picture = {{pictuer}})\n{here}", below) == []
+    lines = "Store (image = {picture})\nStore (image = {pictuer})"
+    assert told(f"SubTree Below (_autoremap = true)\n{lines}", below) == [
+        "«pictuer» this reads `pictuer`, and nothing writes it: is it `picture`?"
+    ]
+    assert told(f"SubTree Below\n{lines}", below) == []
+
+
+def test_the_root_blackboard_is_one_for_all_trees() -> None:
+    below = 'BehaviorTree Below\n    ScriptCondition (code = "@cuont > 1")\n'
+    text = f'{MODELS}BehaviorTree Main\n    ->\n        Script (code = "@count := 1")\n        SubTree Below\n{below}'
+    assert findings(text, RULE) == ["12 warning «@cuont» this reads `@cuont`, and nothing writes it: is it `@count`?"]
+    written = text.replace("@count := 1", "@count := 1; @cuont := 2")
+    assert findings(written, RULE) == []
+    by_the_root = text.replace("@count := 1", "@count := 1; cuont := 2")
+    assert findings(by_the_root, RULE) == []
+
+
+def test_an_entry_of_a_signal_comes_from_outside() -> None:
+    signal = "signal battery : % from {battery_leve}\n"
+    assert told("Store (image = {battery_leve})\nTake (image = {battery_level})", signal) == []
+
+
+def test_an_include_that_is_missing_may_hold_anything() -> None:
+    lines = "Take (image = {picture})\nStore (image = {pictuer})"
+    assert told(lines, 'include "gone.btq"\n') == []
+    assert len(told(lines)) == 1
+
+
+def test_the_words_for_yes_and_no() -> None:
+    assert told('Script (code = "a := True; b := FALSE; c := true")') == [
+        "«True» in a script `True` is the name of an entry: the engine's word is `true`",
+        "«FALSE» in a script `FALSE` is the name of an entry: the engine's word is `false`",
+    ]
+    assert told('Script (code = "True := 1; a := True")') == []
+
+
+def test_many_names_are_no_trouble() -> None:
+    lines = "\n".join(f"Take (image = {{place_{number:05d}}})" for number in range(3000))
+    assert told(lines) == []

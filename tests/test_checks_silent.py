@@ -1,0 +1,149 @@
+"""What the engine says nothing about, nor any parser: counts of nothing, values for outputs, clauses about nothing."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import findings, fixes
+
+MODELS = """Action Plan
+    output path : Path
+    output cost : double
+Action Follow
+    input path : Path
+"""
+
+
+def tree(*lines: str) -> str:
+    return "BehaviorTree Main\n    ->\n" + "".join(f"        {line}\n" for line in lines)
+
+
+# ---- count-of-nothing ----
+
+COUNT = "count-of-nothing"
+
+
+@pytest.mark.parametrize(
+    ("node", "problem"),
+    [
+        ("Repeat (num_cycles = 0)", "«0» with `0` `Repeat` never runs its child"),
+        ("Repeat (num_cycles = -2)", "«-2» with `-2` `Repeat` never runs its child"),
+        ('Retry (num_attempts = "0")', '«"0"» with `"0"` `Retry` never runs its child'),
+        ("RetryUntilSuccessful (num_attempts = -5)", "«-5» with `-5` `RetryUntilSuccessful` never runs its child"),
+        ("Timeout (msec = 0)", "«0» to the engine a Timeout of `0` is none: it never ends its child"),
+        ("Timeout (msec = 0 s)", "«0 s» to the engine a Timeout of `0 s` is none: it never ends its child"),
+        ("Repeat (num_cycles = -1)", None),
+        ("Repeat (num_cycles = 1)", None),
+        ("Repeat (num_cycles = {n})", None),
+        ("Timeout (msec = 1)", None),
+        ("Timeout", None),
+        ("Delay (delay_msec = 0)", None),
+        ("Decorator Mine (num_cycles = 0)", None),
+    ],
+)
+def test_counts(node: str, problem: str | None) -> None:
+    text = tree(node, "    Action Work")
+    assert findings(text, COUNT) == ([f"3 warning {problem}"] if problem else [])
+
+
+def test_a_negative_count_is_probably_meant_for_no_end() -> None:
+    text = tree("Repeat (num_cycles = -2)", "    Action Work")
+    assert fixes(text, COUNT) == [("Write `-1`: without end", False, text.replace("-2", "-1"))]
+    assert fixes(text.replace("-2", "0"), COUNT) == []
+
+
+# ---- literal-for-output ----
+
+OUTPUT = "literal-for-output"
+
+
+def test_a_value_for_an_output() -> None:
+    text = MODELS + tree("Plan (path = path cost = 3)")
+    assert findings(text, OUTPUT) == [
+        "8 warning «path» `path` of `Plan` is an output: it is written to an entry, and `path` is none",
+        "8 warning «3» `cost` of `Plan` is an output: it is written to an entry, and `3` is none",
+    ]
+    assert fixes(text, OUTPUT) == [
+        ("Write the entry `{path}`", False, text.replace("= path", "= {path}")),
+        ("Write the entry `{cost}`", False, text.replace("= 3", "= {cost}")),
+    ]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ("Plan (path = {path})", "Plan (path = {=})", 'Plan (path = "=")', 'Plan (path = "")'),
+        ("Follow (path = home)", "SetBlackboard (value = 3 output_key = place)", "Unknown (path = home)"),
+    ],
+)
+def test_no_value_for_an_output(lines: tuple[str, ...]) -> None:
+    assert findings(MODELS + tree(*lines), OUTPUT) == []
+
+
+def test_the_outputs_of_trees_and_of_built_ins() -> None:
+    text = tree("SubTree Find (pose = here)", 'LoopInt (queue = "1;2" value = 3)', "    Action Work")
+    text += "BehaviorTree Find\n    output pose : Pose\n    Action Look\n"
+    assert [found.split(" ", 1)[0] for found in findings(text, OUTPUT)] == ["3", "4"]
+
+
+def test_a_value_that_is_none_of_the_type_is_refused() -> None:
+    text = MODELS + tree("Plan (cost = low)")
+    assert [found.split(" ", 3)[:3] for found in findings(text, OUTPUT, "invalid-literal")] == [["8", "error", "«low»"]]
+
+
+def test_a_file_that_does_so_as_a_rule_is_told_once() -> None:
+    text = MODELS + tree('Plan (path = "a" cost = "3")', 'Plan (path = "c")', "Plan (path = {d})")
+    assert [found.split(" ", 3)[:3] for found in findings(text, OUTPUT)] == [["8", "hint", '«"a"»']]
+    assert fixes(text, OUTPUT) == []
+
+
+# ---- clause-without-odds, goal-beyond-bound ----
+
+
+def requirement(*clauses: str) -> str:
+    lines = "".join(f"    {clause}\n" for clause in clauses)
+    return f'QualityReq q : safety "Q"\n{lines}BehaviorTree Main\n    Action Work satisfies q\n'
+
+
+@pytest.mark.parametrize(
+    ("clauses", "told"),
+    [
+        (("takes at most 3 s", "confidence 95 %"), ["«confidence 95 %»"]),
+        (("takes at most 3 s", "over last 20 runs"), ["«over last 20 runs»"]),
+        (("takes at most 3 s", "over last 7 d"), []),
+        (("takes at most 3 s", "in at least 9 % of runs", "confidence 95 %", "over last 20 runs"), []),
+        (("takes at most 3 s", "in at least of runs", "confidence 95 %"), []),
+    ],
+)
+def test_clauses_that_need_odds(clauses: tuple[str, ...], told: list[str]) -> None:
+    found = findings(requirement(*clauses), "clause-without-odds")
+    assert ["«" + each.split("«")[1].split("»")[0] + "»" for each in found] == told
+
+
+@pytest.mark.parametrize(
+    ("clauses", "told"),
+    [
+        (("takes at most 60 s", "goal 90 s"), "`90 s` is worse than the bound, which is at most `60 s`"),
+        (("takes at most 1 min", "goal 90 s"), "`90 s` is worse than the bound, which is at most `1 min`"),
+        (("takes at least 60 s", "goal 50 s"), "`50 s` is worse than the bound, which is at least `60 s`"),
+        (("takes between 10 s and 20 s", "goal 30 s"), "`30 s` is worse than the bound, which is at most `20 s`"),
+        (("takes between 10 s and 20 s", "goal 5 s"), None),
+        (("takes at most 60 s", "goal 60 s"), None),
+        (("takes at most 60 s", "goal 30 s"), None),
+        (("takes at most 60 s", "in at least 90 % of runs", "goal 95 %"), None),
+    ],
+)
+def test_goals(clauses: tuple[str, ...], told: str | None) -> None:
+    found = findings(requirement(*clauses), "goal-beyond-bound")
+    assert [each.split("the goal ", 1)[1] for each in found] == ([told] if told else [])
+
+
+# ---- ports ----
+
+
+def test_two_ports_of_one_name() -> None:
+    model = "Action A\n    input a : int\n    output a : double\n    input b\n"
+    text = f"{model}BehaviorTree Main\n    input c\n    input c\n    A\n"
+    assert findings(text, "duplicate-definition") == [
+        "3 warning «a» there are two ports `a`",
+        "7 warning «c» there are two ports `c`",
+    ]
