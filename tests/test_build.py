@@ -338,3 +338,10 @@ def test_the_authors_example_builds_for_every_target(btq: Btq, shared: Path) -> 
     for target in ("4.6", "4.8", "4.10"):
         assert btq.build("--target", target)[0] == 0
     assert '<RetryUntilSuccessful num_attempts="6">' in btq.read("paper.xml")
+
+
+def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
+    btq.write(empty="", models=SKILLS, mission='include "nothing.btq"\nBehaviorTree Main\n    A\n', nothing="# none\n")
+    told = "btq build: empty.btq has no tree, so there is nothing in it to run\n"
+    code, _, messages = btq.build(".")
+    assert (code, messages) == (0, told)

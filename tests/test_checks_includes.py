@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 
+from btq_lang.checks import check
 from btq_lang.project import Project
+from btq_lang.rules import Severity
 
 
 def test_includes_that_are_found() -> None:
@@ -62,3 +64,32 @@ def test_a_quality_that_a_missing_file_may_declare_is_not_called_unknown() -> No
         missing,
         "3:25 warning unknown-quality «relability» `relability` is no quality of iso25010-2023",
     )
+
+
+def test_a_file_that_cannot_be_read_is_told_where_it_is_included() -> None:
+    skills = "//- skills.btq\nAction Go\n    input goal string\nAction Dock\n    input \n    input id string\n"
+    message = "has 2 errors: expected the end of the line"
+    workspace = workspace_of(
+        split_files(f'//- main.btq\ninclude "more.btq"\n//- more.btq\ninclude "skills.btq"\n{skills}')
+    )
+    for path, which in (("main.btq", "`skills.btq`, which it includes,"), ("more.btq", "`skills.btq`")):
+        (found,) = check(workspace, path)
+        assert (found.rule, found.effective_severity) == ("include-with-errors", Severity.ERROR)
+        assert found.message.startswith(f"{which} {message}")
+        ((place, told),) = [(related.place, related.message) for related in found.related]
+        assert (place.path, place.span.start, told) == ("skills.btq", 25, "the first one")
+
+
+def test_what_a_check_of_the_included_file_finds_is_told_there_alone() -> None:
+    text = (
+        '//- main.btq\ninclude "other.btq"\n//- other.btq\nBehaviorTree A\n    Repeat (num_cycles = "x")\n        B\n'
+    )
+    workspace = workspace_of(split_files(text))
+    assert check(workspace, "main.btq") == ()
+    assert [each.rule for each in check(workspace, "other.btq")] == ["invalid-literal"]
+
+
+def test_included_xml_that_cannot_be_read() -> None:
+    text = '//- main.btq\ninclude "nav.xml"\n//- nav.xml\n<root>\n'
+    (found,) = check(workspace_of(split_files(text)), "main.btq")
+    assert (found.rule, found.related) == ("include-with-errors", ())

@@ -338,6 +338,19 @@ def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path:
     assert file.read_bytes() == b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n"
 
 
+def test_bytes_that_are_no_text_are_told_once(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "latin.btq").write_bytes(b"BehaviorTree M\xfc\n    SequenceStar\n        A\n")
+    (tmp_path / "program.btq").write_bytes(b"\x7fELF\xff\xfe\x00(\n")
+    done = btq("check", "--output-format", "concise")
+    assert done.returncode == 2
+    assert done.stderr == (
+        "btq: latin.btq:1:15: this is no UTF-8: byte 0xfc\nbtq: program.btq:1:5: this is no UTF-8: byte 0xff\n"
+    )
+    assert [line.split(" ", 1)[1].split("]")[0] for line in done.stdout.splitlines()[:-1]] == [
+        "warning[not-an-engine-node"
+    ]
+
+
 def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> None:
     file = tmp_path / "main.btq"
     file.write_text("BehaviorTree Main\n    SequenceStar\n        Dock\n")

@@ -70,6 +70,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     Include: (
         includes.missing_include,
         includes.cyclic_include,
+        includes.include_with_errors,
         trees.duplicate_tree,
         kinds.duplicate_definition,
         requirements.conflicting_requirement,

@@ -1,4 +1,4 @@
-"""Included files that are missing, or that include themselves."""
+"""Included files that are missing, that include themselves, or that cannot be read."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import posixpath
 from collections.abc import Iterator
 
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.text import Span
+from btq_lang.workspace import File
 
 
 def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -48,6 +50,42 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
         f"this file includes {how}",
         notes=("the engine follows such a circle until it crashes",),
     )
+
+
+def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """An included file that cannot be read as it stands, or one that includes such a file."""
+    include = entry.item
+    target = view.workspace.included_by(view.path, include) if isinstance(include, Include) else None
+    if target is None or not isinstance(include, Include) or include.path is None:
+        return
+    for path in reversed(view.workspace.closure(target)):
+        errors = _errors(view.workspace.files[path]) if path != view.path else []
+        if not errors:
+            continue
+        place, message = errors[0]
+        shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
+        which = f"`{shown}`" if path == target else f"`{shown}`, which it includes,"
+        yield Diagnostic(
+            "include-with-errors",
+            include.path.span,
+            f"{which} has {len(errors)} error{'s' if len(errors) > 1 else ''}: {message}",
+            related=(Related(place, "the first one" if len(errors) > 1 else "here"),) if place is not None else (),
+            notes=("no file that includes it can be built",),
+        )
+        return
+
+
+def _errors(file: File) -> list[tuple[Place | None, str]]:
+    """What keeps a file from being read, without what a check of its own would find; no places in XML, whose text is
+    not known here."""
+    if file.origin is not None:
+        return [(None, each.message) for each in file.origin.diagnostics if each.effective_severity is Severity.ERROR]
+    return [
+        (Place(problem.span, file.path, entry.item), problem.message)
+        for entry in file.parsed.entries
+        for problem in entry.diagnostics
+        if problem.effective_severity is Severity.ERROR
+    ]
 
 
 def include_fix(view: View, path: str) -> Fix:

@@ -22,6 +22,7 @@ from btq_lang.record import record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
+from btq_lang.symbols import Kind
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
@@ -117,6 +118,9 @@ def build(options: Namespace, files: Files) -> Outcome:
         return Outcome(1, watched)
     for _, _, done in made:
         _tell(done.export.repairs, "repaired", groups)
+    for group in groups:
+        for path in _without_tree(group):
+            print(f"btq build: {shown(path)} has no tree, so there is nothing in it to run", file=sys.stderr)
     _tell_clauses([done for _, _, done in made], groups, options.verbose)
     if STDIN in options.paths:
         for path, _, done in made:
@@ -149,6 +153,16 @@ def _missions(group: Group) -> tuple[str, ...]:
     """The files that were asked for and that none of them includes."""
     included = group.workspace.included_files
     return tuple(path for path in group.given if path not in included) or group.given
+
+
+def _without_tree(group: Group) -> Iterator[str]:
+    """The files that were asked for, have no tree, and declare nothing that another file could use."""
+    for path in group.given:
+        workspace = group.workspace
+        if path in workspace.included_files or not is_mission(workspace, path) or workspace.defined_in(path):
+            continue
+        if not workspace.scope(path).names(Kind.TREE):
+            yield path
 
 
 # ---- what is wrong ----

@@ -16,7 +16,7 @@ from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
-from btq_lang.rules import Severity
+from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.workspace import Workspace
 
 _ORDER = tuple(Severity)
@@ -65,6 +65,8 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     for group in groups:
         for path, found in _found(group, options.jobs):
             text = group.workspace.files[path].source
+            if path in group.damaged:  # what cannot be read there is told already: the bytes
+                found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
     checked = tuple(path for group in groups for path in group.given)

@@ -104,6 +104,7 @@ _TABLE = (
     Rule("unknown-main-tree", _W, "no way to tell which tree is the mission"),
     Rule("tree-named-like-node", _E, "a tree whose ID is the name of a node"),
     Rule("missing-include", _E, "an included file that cannot be found"),
+    Rule("include-with-errors", _E, "an included file that cannot be read"),
     Rule("cyclic-include", _E, "a file that includes itself: the engine crashes"),
     Rule("duplicate-definition", _E, "two definitions of one name"),
     # Scripts.
