@@ -137,6 +137,24 @@ def test_goals(clauses: tuple[str, ...], told: str | None) -> None:
     assert [each.split("the goal ", 1)[1] for each in found] == ([told] if told else [])
 
 
+# ---- unused-parameter ----
+
+
+@pytest.mark.parametrize(
+    ("clause", "unused"),
+    [
+        ("keeps speed <= limit", ["top"]),
+        ("keeps speed <= limit * top", []),
+        ("keeps speed <= 0.5 m/s if speed > top else limit", []),
+        ("keeps speed <=", []),  # what it is for may be what could not be read
+    ],
+)
+def test_parameters(clause: str, unused: list[str]) -> None:
+    text = f"signal speed : m/s\nQualityReq slow(limit : m/s, top : m/s) : safety\n    {clause}\n"
+    told = [found.split("«")[1].split("»")[0] for found in findings(text, "unused-parameter")]
+    assert told == unused
+
+
 # ---- ports ----
 
 

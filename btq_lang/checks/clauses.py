@@ -1,13 +1,13 @@
-"""Clauses of one requirement that can be said once only, or that need another one."""
+"""Clauses of one requirement: said twice, about nothing, or without what they should name."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Clause, Confidence, Entry, Goal, How, Odds, OnViolation, Requirement, Window
+from btq_lang.syntax import Clause, Confidence, Entry, Goal, How, Odds, OnViolation, Requirement, Window, Word, walk
 from btq_lang.text import Span
 
 _ONCE: dict[type, str] = {
@@ -51,6 +51,21 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     f"{said} says nothing here: without odds one violation is enough",
                     notes=("say how often it is to hold: `in at least 95 % of activations`",),
                 )
+
+
+def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A parameter that no clause of its requirement names, so that its value changes nothing."""
+    for symbol in view.file.summary_of(entry).symbols:
+        requirement = symbol.target
+        if not isinstance(requirement, Requirement) or not requirement.parameters:
+            continue
+        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+            continue  # what it is for may be what could not be read
+        named = {word.text for word in walk(requirement.clauses) if isinstance(word, Word)}
+        for parameter in requirement.parameters:
+            if parameter.name.text not in named:
+                message = f"no clause names the parameter `{parameter.name.text}`, so its value changes nothing"
+                yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
 def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diagnostic:

@@ -116,6 +116,7 @@ _TABLE = (
     Rule("unknown-requirement", _E, "a requirement that is defined nowhere"),
     Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
     Rule("unused-requirement", _W, "a requirement that nothing refers to"),
+    Rule("unused-parameter", _W, "a parameter that no clause of its requirement names"),
     Rule("requirement-without-text", _W, "a requirement that says nothing, or nothing that could be violated"),
     Rule("duplicate-clause", _E, "a second clause of a kind that can be said once only"),
     Rule("clause-without-odds", _W, "a confidence or a window where nothing says how often"),
