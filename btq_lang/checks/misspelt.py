@@ -59,10 +59,11 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
 
 def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -> bool:
     """Whether one node is given both entries at its ports, or makes both: who writes so means two."""
+    other = other.removeprefix("@")
     return any(
-        each.name == other
-        and each.node is mention.node
-        and not (each.in_script and not (each.writes and mention.writes))
+        each.node is mention.node
+        and each.name.removeprefix("@") == other
+        and (not each.in_script or (each.writes and mention.writes))
         for each in mentions
     )
 

@@ -125,8 +125,10 @@ class EntryTypes:
                     _add(found, key, _Meeting(below.type, seen, given, below.at))
                 continue
             for pair in seen.node.attributes:
-                entry = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
-                if entry is not None:
+                value = pair.value
+                if value is None or "{" not in value.raw:
+                    continue
+                if (entry := pointed_at(pair.key.text, value.text)) is not None:
                     type_ = _port_type(self._view, seen, pair.key.text)
                     _add(found, entry, _Meeting(type_, seen, pair, (definition, pair, seen)))
         return found

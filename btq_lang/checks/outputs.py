@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 from btq_lang.catalog.literals import check_literal, is_pointer
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.placeholders import is_placeholder
@@ -76,10 +78,15 @@ def _is_literal(value: Word) -> bool:
 def _types(view: View, seen: SeenNode) -> dict[str, str]:
     """The outputs that a node has, and their types."""
     if seen.kind is not None:
-        return {port.name: port.type for port in seen.kind.ports if port.direction == "output"}
+        return _outputs_of(seen.kind.tag)
     if seen.is_subtree:
         return dict.fromkeys(_outputs(subtree_ports(view, seen)), "")
     return _outputs(seen.model.ports) if seen.model is not None else {}
+
+
+@cache
+def _outputs_of(tag: str) -> dict[str, str]:
+    return {port.name: port.type for port in BUILTINS[tag].ports if port.direction == "output"}
 
 
 def _outputs(ports: tuple[Port, ...]) -> dict[str, str]:
