@@ -165,3 +165,19 @@ def test_two_ports_of_one_name() -> None:
         "3 warning «a» there are two ports `a`",
         "7 warning «c» there are two ports `c`",
     ]
+
+
+@pytest.mark.parametrize(
+    ("type_", "meant"),
+    [("strng", "string"), ("dooble", "double"), ("boool", "bool"), ("uint32_r", "uint32_t"), ("flaot", "float")],
+)
+def test_misspelt_types(type_: str, meant: str) -> None:
+    text = f"Action A\n    input a : {type_}\nBehaviorTree Main\n    A (a = {{x}})\n"
+    assert fixes(text, "misspelt-type") == [(f"Replace `{type_}` by `{meant}`", False, text.replace(type_, meant))]
+
+
+@pytest.mark.parametrize(
+    "type_", ["string", "std::string", "int", "uint8_t", "Strings", "String", "int8", "pose", "uint16"]
+)
+def test_types_that_may_be_ones_own(type_: str) -> None:
+    assert findings(f"Action A\n    input a : {type_}\n", "misspelt-type") == []

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from functools import cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import SeenNode, View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.near import near
+from btq_lang.near import distance, near
 from btq_lang.placeholders import is_placeholder
 from btq_lang.record import record
 from btq_lang.rules import Severity
@@ -141,6 +142,22 @@ def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     related=(Related(Place(first[name.text].span), "the first one"),),
                     severity=Severity.WARNING,
                 )
+
+
+def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`strng`: no type of C++ and probably no type of the robot's program; its values are then held against nothing."""
+    item = entry.item
+    for owner in item.models if isinstance(item, Models) else (item,):
+        for port in owner.ports if isinstance(owner, Tree | Model) else ():
+            name = port.type.text if port.type is not None else ""
+            if not name.islower() or len(name) < 4 or is_known_type(plain_type(name)):
+                continue
+            likely = [known for known in _TYPES if abs(len(known) - len(name)) < 2 and distance(name, known) == 1]
+            if port.type is None or not likely:
+                continue
+            fix = replace_fix(f"Replace `{name}` by `{likely[0]}`", port.type.span, likely[0])
+            message = f"is the type `{name}` one of the robot's program, or is it `{likely[0]}`?"
+            yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
 def is_case(seen: SeenNode, key: str) -> bool:
@@ -280,6 +297,20 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
 def _said(port: Port) -> dict[str, Word | None]:
     return {"name": port.name, "type": port.type, "default": port.default}
 
+
+_TYPES = (
+    "string",
+    "double",
+    "float",
+    "bool",
+    "unsigned",
+    "long",
+    "short",
+    "int32_t",
+    "uint32_t",
+    "int64_t",
+    "uint64_t",
+)
 
 # At a node with hundreds of ports and as many mistakes nobody reads what each may mean.
 _MOST_COMPARED = 2_000

@@ -25,6 +25,7 @@ from btq_lang.requirements.model import (
     Trace,
 )
 from btq_lang.requirements.reader import Reader
+from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax import Argument as WrittenArgument
@@ -175,7 +176,7 @@ def _applies(
 ) -> None:
     reader.begin(path, entry)
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
-    excepted = {id(target.node) for selector in apply.exceptions for target, _ in _selected(reader, selector)}
+    excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
         requirement = requirements.get(reference.name.text)
         if requirement is None:
@@ -188,6 +189,19 @@ def _applies(
         for target, rank in targets:
             if id(target.node) not in excepted:
                 uses[requirement.name].append(_Use(target, arguments, rank, place, path, entry, "apply"))
+
+
+def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
+    """The nodes behind `except`; those of a selector should be among the ones applied to."""
+    excepted: set[int] = set()
+    for selector in apply.exceptions:
+        nodes = {id(target.node) for target, _ in _selected(reader, selector)}
+        if nodes and applied_to and nodes.isdisjoint(applied_to) and reader.knows_all_nodes:
+            message = "nothing of what this excepts is among what is applied to"
+            span = Span(selector.start, selector.end)
+            reader.complain("unmatched-path", span, message, severity=Severity.WARNING)
+        excepted |= nodes
+    return excepted
 
 
 def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]]:

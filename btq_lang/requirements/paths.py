@@ -11,6 +11,7 @@ from btq_lang.near import near
 from btq_lang.record import record
 from btq_lang.requirements.model import Condition, Parameter, Signal, Target
 from btq_lang.requirements.nodes import Nodes, kinds
+from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Path, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.workspace import Scope, Workspace
@@ -84,8 +85,9 @@ class PathReader:
         notes: tuple[str, ...] = (),
         fixes: tuple[Fix, ...] = (),
         related: tuple[Related, ...] = (),
+        severity: Severity | None = None,
     ) -> None:
-        diagnostic = Diagnostic(rule, span, message, related, notes, fixes)
+        diagnostic = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
         self.problems.setdefault((id(self.entry), diagnostic), Problem(self.path, self.entry, diagnostic))
 
     def place(self, span: Span) -> Place:

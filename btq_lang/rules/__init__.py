@@ -86,6 +86,7 @@ _TABLE = (
     Rule("number-for-text", _E, "a number that a SubTree gives to a port of text below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that ports of two types are given"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or of another dimension"),
+    Rule("misspelt-type", _W, "a port's type that is nearly one of C++"),
     Rule("literal-for-output", _W, "a value where a node puts something out"),
     Rule("count-of-nothing", _W, "a count or a time with which a Repeat, a Retry or a Timeout does nothing"),
     Rule("child-count", _E, "more or fewer children than the node takes"),
