@@ -86,6 +86,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.tree_root_count,
         trees.tree_named_like_node,
         kinds.unknown_node,
+        kinds.no_models,
         kinds.not_an_engine_node,
         kinds.newer_engine_node,
         kinds.category_mismatch,

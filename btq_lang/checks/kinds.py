@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btq_lang.catalog.names import model_name_problem
+from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks.view import SeenNode, View, misspelt_clause
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance
+from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
@@ -87,6 +88,26 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 notes=() if project.pinned else (pin,),
                 severity=None if project.pinned else Severity.WARNING,
             )
+
+
+def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A mission of many nodes with ports and not one model: an include may be forgotten, and nothing says so."""
+    if view.is_xml or not view.trees or entry is not view.trees[0] or view.scope.names(Kind.MODEL):
+        return
+    nodes = [seen for tree in view.trees for seen in view.nodes(tree)] if view.scope.complete and view.is_read else []
+    given = dict.fromkeys(seen.node.head.text for seen in nodes if _gives_ports(seen))
+    own = view.nodes(entry)
+    if own and len(given) >= _MANY:
+        shown = ", ".join(f"`{name}`" for name in tuple(given)[:3])
+        message = f"no node has a model here, so the ports of {len(given)} are not checked: {shown} …"
+        notes = ("declare them, `Action …` with its ports, or include the file that does",)
+        yield Diagnostic("no-models", own[0].node.head.span, message, notes=notes)
+
+
+def _gives_ports(seen: SeenNode) -> bool:
+    if seen.kind is not None or seen.is_subtree or seen.node.id is None or is_placeholder(seen.node):
+        return False
+    return any(is_port_name(pair.key.text) for pair in seen.node.attributes)
 
 
 def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -295,6 +316,9 @@ def _interface(symbol: Symbol) -> object:
     ports = [(port.direction, port.name, port.type, port.default) for port in model.ports]
     return model.category.raw, shape(tuple(ports))
 
+
+# So many nodes with ports nobody writes without a file that declares them, once models are known of.
+_MANY: Final = 5
 
 # Words of version 3 that an import says in another way.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))

@@ -75,6 +75,7 @@ _TABLE = (
     Rule("xml-ignored", _W, "text in XML where the engine looks for none"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
+    Rule("no-models", _H, "many nodes with ports, and no model of any of them"),
     Rule("not-an-engine-node", _W, "a word of the published language that is no node of the engine"),
     Rule("newer-engine-node", _E, "a built-in that the target version of the engine does not have"),
     Rule("category-mismatch", _W, "a node used as another category than its model declares"),
