@@ -23,12 +23,15 @@ def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.nodes(entry):
         if seen.kind is None or seen.kind.tag not in _PORTS:
             continue
-        port, does_nothing = _PORTS[seen.kind.tag]
-        value = seen.node.attribute(port)
+        value = seen.node.attribute(_PORTS[seen.kind.tag])
         number = _number(value) if value is not None else None
-        if value is None or number is None or not does_nothing(number):
+        if value is None or number is None:
             continue
-        yield _timeout(value) if port == "msec" else _loop(seen, value, number)
+        if seen.kind.tag == "Timeout":
+            if number == 0:
+                yield _timeout(value)
+        elif number < 1 and number != -1:
+            yield _loop(seen, value, number)
 
 
 def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
@@ -55,8 +58,4 @@ def _number(value: Word) -> float | None:
     return int(text) if text.removeprefix("-").isdecimal() and len(text) < 12 else None
 
 
-_PORTS: Final = {
-    "Repeat": ("num_cycles", lambda number: number < 1 and number != -1),
-    "RetryUntilSuccessful": ("num_attempts", lambda number: number < 1 and number != -1),
-    "Timeout": ("msec", lambda number: number == 0),
-}
+_PORTS: Final = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts", "Timeout": "msec"}
