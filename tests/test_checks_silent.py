@@ -181,3 +181,19 @@ def test_misspelt_types(type_: str, meant: str) -> None:
 )
 def test_types_that_may_be_ones_own(type_: str) -> None:
     assert findings(f"Action A\n    input a : {type_}\n", "misspelt-type") == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "type_", "told"),
+    [("%", "string", True), ("%", "double", False), ("text", "string", False), ("%", "", False)],
+)
+def test_a_signal_that_is_a_number_and_an_entry_that_is_a_text(unit: str, type_: str, told: bool) -> None:
+    value = '"ok"' if unit == "text" else "3 %"
+    text = (
+        f"signal battery : {unit} from {{battery}}\n"
+        f"Action Read\n    output battery{' : ' if type_ else ''}{type_}\n"
+        f'QualityReq q : safety "Q"\n    leaves battery == {value}\n'
+        "BehaviorTree Main\n    Read (battery = {=}) satisfies q\n"
+    )
+    message = "«battery» `battery` is a number, and `battery` of `Read` writes a text there"
+    assert findings(text, "unit-mismatch") == ([f"1 warning {message}"] if told else [])

@@ -39,6 +39,7 @@ def all_demands(view: View) -> dict[int, list[Diagnostic]]:
         odds.odds_beyond_children,
         odds.window_too_small,
         signals.signal_never_written,
+        signals.signal_of_text,
         signals.signal_may_be_unset,
         swallowing.swallowed_failure,
     ):

@@ -9,6 +9,7 @@ from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.demanded import Demanded, Found, is_enforced
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.entry_types import is_text
 from btq_lang.near import near
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import Signal, SourceNode
@@ -54,6 +55,39 @@ def signal_never_written(demanded: Demanded) -> Iterator[Found]:
                 severity=None if likely else Severity.HINT,
             ),
         )
+
+
+def signal_of_text(demanded: Demanded) -> Iterator[Found]:
+    """A signal that is a number, whose entry a port of texts writes: a script that compares it converts the text, and
+    throws where it is no number."""
+    found, view = demanded.requirements, demanded.view
+    numbers = {
+        (signal.key or "").removeprefix("@"): signal
+        for signal in found.signals.values()
+        if signal.place.path == view.path and signal.key is not None and signal.sort == "number"
+    }
+    told: set[str] = set()
+    for node in found.nodes.all if numbers else ():
+        for pair in node.node.attributes:
+            text = pair.value.text if pair.value is not None else ""
+            key = (pair.key.text if text == "{=}" else text[1:-1].strip()) if is_pointer(text) else ""
+            is_root = key[:1] == "@" or (found.mission is not None and node.tree == found.mission.tree)
+            signal = numbers.get(key.removeprefix("@")) if is_root else None
+            port = _declared(view, node, pair.key.text) if signal is not None else None
+            if signal is None or port is None or port.type is None or port.direction.raw == "input":
+                continue
+            if not is_text(port.type.text) or signal.name in told:
+                continue
+            told.add(signal.name)
+            message = (
+                f"`{signal.name}` is a number, and `{pair.key.text}` of `{node.node.head.text}` writes a text there"
+            )
+            related = (Related(node.place, "written here"),)
+            notes = ("the engine reads a number from the text, and ends the mission where there is none",)
+            yield (
+                signal.place,
+                Diagnostic("unit-mismatch", signal.place.span, message, related, notes, severity=Severity.WARNING),
+            )
 
 
 def signal_may_be_unset(demanded: Demanded) -> Iterator[Found]:
@@ -161,11 +195,16 @@ def _may_write(view: View, node: SourceNode, port: str) -> bool:
     if node.kind is not None:
         builtin = node.kind.port(port)
         return builtin is not None and builtin.direction != "input"
+    declared = _declared(view, node, port)
+    return declared is None or declared.direction.raw != "input"
+
+
+def _declared(view: View, node: SourceNode, port: str) -> Port | None:
+    """The port as the node's model, or the tree behind a SubTree, declares it."""
     name = node.node.id
     ports: tuple[Port, ...] = ()
     for kind in (Kind.TREE, Kind.MODEL):
         definition = view.scope.find(kind, name.text) if name is not None else None
         if definition is not None and isinstance(target := definition.symbol.target, Tree | Model):
             ports = ports or target.ports
-    declared = next((each for each in ports if each.name is not None and each.name.text == port), None)
-    return declared is None or declared.direction.raw != "input"
+    return next((each for each in ports if each.name is not None and each.name.text == port), None)
