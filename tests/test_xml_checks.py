@@ -47,9 +47,11 @@ def test_what_no_included_xml_has_is_nowhere() -> None:
 
 def test_what_could_not_be_read_may_hold_anything() -> None:
     text = SKILLS.format(more="        SubTree Pikc\n").replace("</TreeNodesModel>", "</TreeNodes>")
+    told = "</TreeNodes> stands where </TreeNodesModel> is expected"
     assert_problems(
         text,
-        "skills.xml:5:3 error xml-syntax «</TreeNodes>» </TreeNodes> stands where </TreeNodesModel> is expected",
+        f'main.btq:1:9 error include-with-errors «"skills.xml"» `skills.xml` has 1 error: {told}',
+        f"skills.xml:5:3 error xml-syntax «</TreeNodes>» {told}",
     )
 
 
