@@ -54,6 +54,7 @@ def is_pointer(text: str) -> bool:
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
 
 
+@lru_cache(1000)
 def plain_type(port_type: str) -> str:
     """One name for a type that has several: `int32_t` is `int`, `std::vector<double, …>` is `std::vector<double>`."""
     item = _list_item(port_type)

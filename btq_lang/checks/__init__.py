@@ -209,8 +209,11 @@ _NARROW: frozenset[Check] = frozenset(
         ports.missing_port,
         ports.unknown_attribute,
         ports.duplicate_attribute,
+        ports.duplicate_port,
+        ports.misspelt_type,
         literals.invalid_literal,
         literals.quantity_on_unitless_port,
+        counts.count_of_nothing,
         children.child_count,
         children.switch_cases,
         children.parallel_threshold,
@@ -222,6 +225,8 @@ _NARROW: frozenset[Check] = frozenset(
         qualities.ambiguous_quality,
         conditions.subtraction_without_blanks,
         clauses.duplicate_clause,
+        clauses.clause_without_odds,
+        clauses.unused_parameter,
     )
 )
 

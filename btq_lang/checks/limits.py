@@ -10,7 +10,7 @@ from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
 from btq_lang.rules import Severity
-from btq_lang.syntax import Goal, walk
+from btq_lang.syntax import Goal
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.text import Span
 from btq_lang.units import Dimension
@@ -104,8 +104,10 @@ def goal_beyond_bound(demanded: Demanded) -> Iterator[Found]:
     """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
     for requirement in demanded.requirements.all.values():
         goal = requirement.goal
-        clause = _goal_clause(requirement) if requirement.path == demanded.view.path else None
-        if clause is None or not isinstance(goal, Value):
+        if not isinstance(goal, Value) or requirement.path != demanded.view.path:
+            continue
+        clause = _goal_clause(demanded, requirement)
+        if clause is None:
             continue
         for claim in requirement.claims:
             most, least = highest(claim), lowest(claim)
@@ -227,11 +229,12 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
     return []
 
 
-def _goal_clause(requirement: Requirement) -> Goal | None:
+def _goal_clause(demanded: Demanded, requirement: Requirement) -> Goal | None:
     """The clause that a goal stands in."""
-    for part in walk(requirement.entry.item):
-        if isinstance(part, WrittenRequirement) and part.name is not None and part.name.span == requirement.place.span:
-            return next((clause for clause in part.clauses if isinstance(clause, Goal)), None)
+    for symbol in demanded.view.file.summary_of(requirement.entry).symbols:
+        written = symbol.target
+        if symbol.span == requirement.place.span and isinstance(written, WrittenRequirement):
+            return next((clause for clause in written.clauses if isinstance(clause, Goal)), None)
     return None
 
 
