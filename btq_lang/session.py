@@ -17,6 +17,7 @@ from btq_lang.rules import RULES, Severity
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks import Kept
     from btq_lang.commands.files import Files
+    from btq_lang.symbols import Kind
     from btq_lang.workspace import Workspace
 
 
@@ -58,9 +59,8 @@ class Session:
         if old.included_paths != new.included_paths:
             return (path, *self.reload())
         linked = set(_linked(after, path))
-        # Of a name that a file does not find it is told where else it is defined.
-        if renamed := {name for _, name in old.defined_names ^ new.defined_names}:
-            linked.update(other for other, file in after.files.items() if not renamed.isdisjoint(file.used_names))
+        if renamed := old.defined_names ^ new.defined_names:
+            linked.update(other for other in after.files if _misses(after, other, renamed))
         return self._in_order(path, linked)
 
     def close(self, path: str) -> tuple[str, ...]:
@@ -150,6 +150,12 @@ class Session:
         """What the user has set, if it is a yes or a no."""
         value = self.settings.get(name)
         return value if isinstance(value, bool) else default
+
+
+def _misses(workspace: Workspace, path: str, names: frozenset[tuple[Kind, str]]) -> bool:
+    """Whether a file uses one of the names and does not find it: then it is told where else it is defined."""
+    missed = names & workspace.files[path].used_names
+    return any(workspace.scope(path).find(kind, name) is None for kind, name in missed)
 
 
 def _linked(workspace: Workspace, path: str) -> list[str]:

@@ -204,8 +204,8 @@ class File:
         return frozenset((symbol.kind, symbol.name) for summary in self.summaries for symbol in summary.symbols)
 
     @cached_property
-    def used_names(self) -> frozenset[str]:
-        return frozenset(use.name for summary in self.summaries for use in summary.uses)
+    def used_names(self) -> frozenset[tuple[Kind, str]]:
+        return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
 
     def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
         return File, (self.path, self.text, self.origin)

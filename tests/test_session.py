@@ -108,9 +108,13 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
     assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == linked
     assert list(session.edit(skills, SKILLS)) == linked
-    every = [*linked[:2], f"{folder}/other.btq", linked[2]]  # that one has a `Pick`
-    assert list(session.edit(skills, SKILLS.replace("Pick", "Take"))) == every
+    other = f"{folder}/other.btq"
+    assert session.edit(other, OTHER + "    SubTree Carry\n") == (other,)
+    every = [skills, other, *linked[1:]]  # that one uses the tree, and is told where it is
+    assert list(session.edit(skills, SKILLS.replace("Carry", "Bring"))) == every
     assert list(session.edit(skills, SKILLS)) == every
+    assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
+    assert list(session.edit(skills, SKILLS)) == linked
     assert session.close(skills) == (skills,)
 
 
