@@ -100,12 +100,12 @@ class NodeParser(ClauseParser):
             if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
                 plain = plain_node(self.text, lexer.position, lexer.blanks, self.base)
             if plain is not None:
-                node, lexer.position = plain
-                self.more = lexer.open_line()
+                node, behind = plain
+                self.open_next(behind)
             elif not block.children and (line := plain_clauses(self.text, lexer.position, self.base)):
-                clauses, lexer.position = line
+                clauses, behind = line
                 block.clauses += clauses
-                self.more = lexer.open_line()
+                self.open_next(behind)
                 self.no_block(inner)
             else:
                 self.scan()
@@ -271,8 +271,8 @@ class NodeParser(ClauseParser):
         """ReqItem, the head of it plain"""
         if self.lexer.ended_early or (head := plain_requirement(self.text, start, self.base)) is None:
             return None
-        requirement, self.lexer.position = head
-        self.more = self.lexer.open_line()
+        requirement, behind = head
+        self.open_next(behind)
         return self.clause_block(requirement, level)
 
     def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
@@ -329,9 +329,9 @@ class NodeParser(ClauseParser):
             if plain and not self.lexer.ended_early:
                 line = plain_clause_line(self.text, self.lexer.position, self.base)
             if line is not None:
-                found, end, self.lexer.position = line
+                found, end, behind = line
                 clauses += found
-                self.more = self.lexer.open_line()
+                self.open_next(behind)
             else:
                 self.scan()
                 clauses += self.clauses(at_least_one=True)

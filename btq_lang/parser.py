@@ -307,7 +307,8 @@ class Parser(NodeParser):
                 (shifted(problem, -self.base) for problem in found if problem.span.start < end),
                 key=lambda problem: problem.span,
             )
-        self.entries.append(Entry(self.base, item, in_root, _root_causes(found, self.inside_out - self.base)))
+        causes = _root_causes(found, self.inside_out - self.base) if found else ()
+        self.entries.append(Entry(self.base, item, in_root, causes))
 
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
@@ -498,8 +499,8 @@ class Parser(NodeParser):
             return self.plain_req_item(start, level)
         if lexer.ended_early or (head := plain_head(self.text, start, self.base)) is None:
             return None
-        name, lexer.position = head
-        self.more = lexer.open_line()
+        name, behind = head
+        self.open_next(behind)
         ports, clauses, children = self.tree_block(level)
         return Tree(start - self.base, name.end, name, (), ports, clauses, children)
 
