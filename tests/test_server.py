@@ -775,13 +775,14 @@ def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None
 
 
 def test_a_cancelled_request_is_answered_as_cancelled(tmp_path: Path) -> None:
-    for number in range(300):
+    for number in range(100):  # enough to show progress
         (tmp_path / f"main{number}.btq").write_text(WRONG, encoding="utf-8")
-    editor = Editor(tmp_path, capabilities=PULLS)
+    editor = Editor(tmp_path, capabilities={**PULLS, "window": {"workDoneProgress": True}})
     editor.send(id="slow", method="workspace/diagnostic", params={"previousResultIds": []})
-    editor.notify("$/cancelRequest", id="slow")
+    editor.notify("$/cancelRequest", id="slow")  # behind it stands the answer that the server needs to go on
     answer = editor.wait_for(lambda message: message.get("id") == "slow")
     assert answer["error"]["code"] == -32800
+    assert [each["method"] for each in editor.asked][-1:] == ["window/workDoneProgress/create"]
     assert editor.close() == ""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
@@ -22,7 +23,7 @@ async def checking(server: Server, files: int) -> AsyncIterator[Callable[[int], 
     server.count += 1
     token = f"btq/check/{server.count}"
     shown = server.work_done_progress
-    await shown.create_async(token)
+    await asyncio.shield(shown.create_async(token))  # it is answered even if nobody waits any more
     shown.begin(token, types.WorkDoneProgressBegin("btq", message="checking", percentage=0))
     try:
         yield lambda done: shown.report(token, types.WorkDoneProgressReport(percentage=100 * max(done, 0) // files))
