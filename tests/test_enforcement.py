@@ -319,6 +319,31 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     )
 
 
+def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:  # noqa: F811  # the fixture
+    loose = f"signal force : N initially 0 N\n{QUICK}".replace("5 s\n", "5 s\n    never force >= 50 N\n")
+    btq.write(mission=loose)
+    assert btq.build("mission.btq")[2] == (
+        "mission.btq:4:5: not held: quick, `never force >= 50 N` is about no node\n"
+        "clauses of requirements: 1 enforced, 1 monitored, 1 about no node\n"
+    )
+    side: Any = json.loads(btq.read("mission.qreq.json"))
+    assert [each.get("clauses_without_nodes") for each in side["requirements"]] == [["never force >= 50 N"], None]
+    held = [(clause["clause"], clause["held"]) for applied in side["applied"] for clause in applied["clauses"]]
+    assert held == [("Move takes at most 5 s", "enforced"), ("Rest takes at most 2 s", "monitored")]
+
+
+def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> None:  # noqa: F811  # the fixture
+    rules = "QualityReq quick\n    Move takes at most 5 s\n    succeeds\nBehaviorTree Go\n    Move\n"
+    main = 'include "rules.btq"\nRoot Main\nBehaviorTree Main\n    ->\n        SubTree Go\n        Rest{}\n'
+    btq.write(rules=rules, mission=main.format(" satisfies quick"))
+    assert btq.build("mission.btq")[2] == "clauses of requirements: 2 monitored\n"
+    btq.write(mission=main.format(""))
+    assert btq.build("mission.btq")[2] == (
+        "rules.btq:3:5: not held: quick, `succeeds` is about no node\n"
+        "clauses of requirements: 1 monitored, 1 about no node\n2 files left as they are\n"
+    )
+
+
 def test_a_plain_tree_can_be_had(btq: Btq) -> None:  # noqa: F811  # the fixture
     btq.write(mission=QUICK)
     for option in ("--no-enforce", "--verbatim"):

@@ -291,6 +291,7 @@ def test_json() -> None:
         "hard_requirements_not_enforced": ["r1"],
         "qualities_without_requirements": ["q2"],
         "requirements_without_nodes": ["r4", "r5"],
+        "clauses_without_nodes": [],
         "nodes_without_qualities": ["n6", "n9"],
         "trees_without_qualities": ["Pause", "Bare"],
     }
@@ -640,3 +641,101 @@ def test_of_the_published_example_the_overview_the_side_file_and_the_xml_say_the
     xml = (tmp_path / "mission.xml").read_text(encoding="utf-8")
     described = re.findall(r"&#10;(rq\d)[^:]*: ([^\"]*?)\"", xml)
     assert sorted(described) == sorted((name, title) for name, title, _ in said)
+
+
+LOOSE = """\
+signal force : N from {force} initially 0 N
+QualityReq r5 : safety "Heat safely"
+    Heat takes at most 40 s
+    never force >= 50 N
+    on violation halt
+Action Heat
+BehaviorTree Main
+    Heat
+"""
+
+
+@pytest.mark.parametrize(
+    ("form", "told"),
+    [
+        (
+            "table",
+            (
+                "  Heat safely                                       not attached\n",
+                "`never force >= 50 N` is about no node\n",
+                "Hard requirements that are not enforced everywhere\n  r5, m.btq:2\n",
+                "Clauses without a node\n  r5, m.btq:2: never force >= 50 N\n",
+                "1 requirement (2 clauses: 1 enforced, 1 about no node), 1 of them hard and not enforced everywhere",
+            ),
+        ),
+        (
+            "markdown",
+            (
+                " | enforced, not attached<br>`never force >= 50 N` is about no node | ",
+                "* Hard requirements that are not enforced everywhere: r5 (m.btq:2)\n",
+                "* Clauses without a node: r5 (m.btq:2): `never force >= 50 N`\n",
+                "1 requirement (2 clauses: 1 enforced, 1 about no node), 1 of them hard and not enforced everywhere",
+            ),
+        ),
+        (
+            "csv",
+            (
+                "requirement,r5,Heat safely,safety,safety,Heat,Main,Heat takes at most 40 s,enforced,,subject,",
+                "clause without node,r5,Heat safely,safety,safety,,,never force >= 50 N,,,,,,m.btq,2\n",
+                "hard requirement not enforced,r5,",
+            ),
+        ),
+        (
+            "html",
+            (
+                'data-way="enforced, not attached"',
+                '<span class="way none">not attached</span> <small><code>never force &gt;= 50 N</code> is about no',
+                "<h3>Clauses without a node (1)</h3>",
+                "</small> <code>never force &gt;= 50 N</code></li>",
+                "<h3>Hard requirements that are not enforced everywhere (1)</h3>",
+                "(2 clauses: 1 enforced, 1 about no node)",
+            ),
+        ),
+    ],
+)
+def test_enforced_covers_no_clause_about_no_node(
+    tmp_path: Path,
+    form: str,
+    told: tuple[str, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "m.btq").write_text(LOOSE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main(["trace", "m.btq", "--format", form]) == 0
+    text = capsys.readouterr().out.replace("\r\n", "\n")
+    assert [part for part in told if part not in text] == []
+
+
+def test_clauses_about_no_node_as_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "m.btq").write_text(LOOSE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main(["trace", "m.btq", "--format", "json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    (requirement,) = document["requirements"]
+    assert requirement["how"] == "enforced, not attached"
+    assert requirement["clauses_without_nodes"] == ["never force >= 50 N"]
+    assert [use["clauses"] for use in requirement["holds_for"]] == [
+        [{"text": "Heat takes at most 40 s", "how": "enforced", "why": ""}]
+    ]
+    assert document["gaps"]["clauses_without_nodes"] == [{"requirement": "r1", "clause": "never force >= 50 N"}]
+    assert document["gaps"]["hard_requirements_not_enforced"] == ["r1"]
+
+
+def test_what_one_mission_attaches_is_about_a_node() -> None:
+    rules = "QualityReq quick\n    Move takes at most 5 s\n    succeeds\nBehaviorTree Go\n    Move\n"
+    plain = 'include "rules.btq"\nRoot One\nBehaviorTree One\n    SubTree Go\n'
+    attached = (
+        'include "rules.btq"\nRoot Two\nBehaviorTree Two\n    ->\n        SubTree Go\n        Rest satisfies quick\n'
+    )
+    assert [text for _, text in overview_of(rules=rules, one=plain).loose] == ["succeeds"]
+    assert overview_of(rules=rules, one=plain, two=attached).loose == ()
+    # Nobody asks the engine to hold it, so it is not among the hard ones.
+    assert overview_of(rules=rules, one=plain).unenforced == ()

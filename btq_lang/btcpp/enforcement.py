@@ -68,10 +68,12 @@ class Enforcement:
 
     Attributes:
         held: for each of `requirements(…).applied`, in its order, its clauses.
+        loose: what `requirements(…).about_no_node()` says.
     """
 
     export: Export
     held: tuple[tuple[Held, ...], ...]
+    loose: tuple[tuple[Requirement, Claim], ...] = ()
 
 
 @record
@@ -113,7 +115,7 @@ def enforced(workspace: Workspace, path: str, export: Export, bundled: bool = Fa
     if wrappers:
         _put(document, {id(export.elements[key]): each for key, each in wrappers.items()})
         document = Document([Comment(GUARDS_NOTE), *document.contents])
-    return Enforcement(replace(export, document=document), plan.held)
+    return Enforcement(replace(export, document=document), plan.held, found.about_no_node())
 
 
 def how_held(workspace: Workspace, path: str, bundled: bool = False) -> tuple[tuple[Held, ...], ...]:

@@ -74,6 +74,9 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
     import hashlib
 
     found = requirements(workspace, built.path)
+    loose: dict[str, list[Json]] = {}
+    for requirement, claim in found.about_no_node():
+        loose.setdefault(requirement.name, []).append(claim.text)
     place = _Places(workspace, posixpath.dirname(built.place))
     main = built.documents[-1].root.get("main_tree_to_execute")
     running = _Running(built, found.nodes, main)
@@ -90,7 +93,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             **({"sources": _sources(workspace, paths)} if len(built.documents) < len(paths) else {}),
             "main_tree": main,
             "signals": [_plain(signal, place) for signal in found.signals.values()],
-            "requirements": [_plain(each, place) for each in found.all.values()],
+            "requirements": [_requirement(each, loose.get(each.name), place) for each in found.all.values()],
             "applied": [
                 _applied(each, built.held[index] if built.held else (), running, place)
                 for index, each in enumerate(found.applied)
@@ -178,6 +181,12 @@ def _node(instance: Instance, node: SourceNode | None, place: _Places) -> Json:
     if (generated := instance.element.get(MARK)) is not None:
         found["enforces"] = generated
     return {**found, **place.of(node.place)} if node is not None else found
+
+
+def _requirement(requirement: Requirement, loose: list[Json] | None, place: _Places) -> Json:
+    plain = _plain(requirement, place)
+    assert isinstance(plain, dict), "a requirement has fields"
+    return {**plain, "clauses_without_nodes": loose} if loose else plain
 
 
 def _applied(applied: Applied, held: tuple[Held, ...], running: _Running, place: _Places) -> Json:

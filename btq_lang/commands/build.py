@@ -213,12 +213,20 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         why = f": {held.why}" if held.why else ""
         remark = Remark(*_absolute(held.place, groups), f"{held.requirement}, `{held.clause}`{where}{why}")
         _tell((remark,), way, groups)
+    known = {(held.requirement, held.clause, held.place.path, held.place.span) for held in clauses.values()}
+    loose = {
+        (requirement.name, claim.text, claim.place.path, claim.place.span): claim.place
+        for done in made
+        for requirement, claim in done.loose
+    }
+    loose = {key: place for key, place in loose.items() if key not in known}  # one file's may be another's
+    for (requirement, clause, *_), place in loose.items():
+        remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` is about no node")
+        _tell((remark,), "not held", groups)
     if clauses:
-        counted = [
-            f"{sum(held.way == way for held in clauses.values())} {way}"
-            for way in ("enforced", "monitored", "reviewed")
-            if any(held.way == way for held in clauses.values())
-        ]
+        ways = [held.way for held in clauses.values()]
+        counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
+        counted += [f"{len(loose)} about no node"] if loose else []
         print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)
 
 

@@ -21,7 +21,7 @@ from btq_lang.record import record
 from btq_lang.requirements.attach import attach
 from btq_lang.requirements.classic import with_constraints
 from btq_lang.requirements.clauses import read_signal, resolve
-from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, SourceNode, Trace
+from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
@@ -68,6 +68,20 @@ class Requirements:
     def of(self, node: SourceNode) -> tuple[Applied, ...]:
         """What holds for a node."""
         return tuple(each for each in self.applied if each.node is node)
+
+    def about_no_node(self) -> tuple[tuple[Requirement, Claim], ...]:
+        """The claims that hold for nothing, of requirements that hold for something by their other claims; a
+        requirement that holds for nothing at all is not used, which is another matter."""
+        used = {each.requirement.name for each in self.applied}
+        # Claims of one text have one subject, or none.
+        held = {(each.requirement.name, claim.text) for each in self.applied for claim in each.requirement.claims}
+        return tuple(
+            (requirement, claim)
+            for requirement in self.all.values()
+            if requirement.name in used
+            for claim in requirement.claims
+            if (requirement.name, claim.text) not in held
+        )
 
 
 def requirements(workspace: Workspace, path: str) -> Requirements:

@@ -30,7 +30,7 @@ from btq_lang.trace.overview import (
     Use,
 )
 from btq_lang.trace.overview import Total as TotalRow
-from btq_lang.trace.ways import declared_ways
+from btq_lang.trace.ways import declared_ways, is_hard
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -158,6 +158,11 @@ class _Collector:
         """Add what requirements hold for; the nodes that carry something themselves, by `id`."""
         own = {id(source): None for source in found.nodes.all if any(True for _ in concerns(source))}
         rows = {each.name: self._requirements[_place_of(each)] for each in found.all.values()}
+        loose = {(requirement.name, claim.text) for requirement, claim in found.about_no_node()}
+        for name in dict.fromkeys(each.requirement.name for each in found.applied):
+            row = rows[name]
+            known = row.loose if row.loose is not None else [claim.text for claim in row.requirement.claims]
+            row.loose = [text for text in known if (name, text) in loose]
         for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
             row = rows[applied.requirement.name]
             sources = _sources(applied)
@@ -223,7 +228,8 @@ class _Node:
 
 
 class _Requirement:
-    """A requirement; uses: what it holds for, in a dict that keeps their order and has each once."""
+    """A requirement; uses: what it holds for, in a dict that keeps their order and has each once; loose: the clauses
+    that are about no node in any mission in which others of them are about one, None: there is no such mission yet."""
 
     def __init__(self, key: str, requirement: Requirement, meaning: Meaning, at: At) -> None:
         self.key = key
@@ -232,12 +238,21 @@ class _Requirement:
         self.meaning = meaning
         self.at = at
         self.uses: dict[Use, None] = {}
+        self.loose: list[str] | None = None
 
     def row(self, quality_key: str | None) -> RequirementRow:
         each = self.requirement
-        title = " ".join((each.title or "").split())
         return RequirementRow(
-            self.key, each.name, title, each.quality, quality_key, tuple(_said(each)), self.at, tuple(self.uses)
+            self.key,
+            each.name,
+            " ".join((each.title or "").split()),
+            each.quality,
+            quality_key,
+            tuple(_said(each)),
+            self.at,
+            tuple(self.uses),
+            tuple(self.loose or ()),
+            is_hard(each),
         )
 
 

@@ -3,6 +3,7 @@
 The columns, which later versions add to but do not change:
 
     kind            requirement | concern | quality without requirement | requirement without node |
+                    clause without node | hard requirement not enforced |
                     node without quality | tree without quality
     requirement, title, quality, characteristic
     holds_for       the subject, or the node that has the concern, or the node or tree of a gap
@@ -55,6 +56,8 @@ def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
             held = {**row, "holds_for": use.subject + use.arguments, "tree": tree, "attached_by": use.how}
             for clause in use.clauses or (None,):
                 yield {"kind": "requirement", **held, **_clause(clause), **_source(use.at)}
+        for loose in each.loose:
+            yield {"kind": "clause without node", **row, "clause": loose}
     for each in overview.unenforced:
         row = _requirement(each, characteristics.get(each.quality_key or "", ""))
         yield {"kind": "hard requirement not enforced", **row}

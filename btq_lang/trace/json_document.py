@@ -5,6 +5,7 @@ The document, format 1; a later btq adds keys but changes none without a new num
     {"format": 1, "tool": "btq", "version": VERSION, "quality_model": "iso25010-2023", "files": [PATH],
      "requirements": [{"key": KEY, "id": NAME, "title": TEXT, "quality": NAME | null, "quality_key": KEY | null,
                        "how": TEXT, "clauses": [TEXT], "at": PLACE,
+                       "clauses_without_nodes": [TEXT],
                        "holds_for": [{"subject": TEXT, "nodes": [KEY], "arguments": TEXT, "at": PLACE,
                                       "attached_by": "subject" | "satisfies" | "apply" | "link",
                                       "clauses": [{"text": TEXT, "why": TEXT,
@@ -17,7 +18,8 @@ The document, format 1; a later btq adds keys but changes none without a new num
      "totals": [{"characteristic": NAME | null, "name": TEXT, "concerns": N, "requirements": N,
                  "enforced": N, "monitored": N, "reviewed": N}],
      "gaps": {"hard_requirements_not_enforced": [KEY], "qualities_without_requirements": [KEY],
-              "requirements_without_nodes": [KEY], "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
+              "requirements_without_nodes": [KEY], "clauses_without_nodes": [{"requirement": KEY, "clause": TEXT}],
+              "nodes_without_qualities": [KEY], "trees_without_qualities": [NAME]},
      "skills": {"own": N, "above": N, "none": N}}
 
     PLACE = {"path": PATH, "line": N, "column": N}, counted from 1, columns in Unicode code points
@@ -82,6 +84,7 @@ def json_text(overview: Overview) -> str:
             "hard_requirements_not_enforced": [each.key for each in overview.unenforced],
             "qualities_without_requirements": [each.key for each in overview.unmeasured],
             "requirements_without_nodes": [each.key for each in overview.unattached],
+            "clauses_without_nodes": [{"requirement": each.key, "clause": clause} for each, clause in overview.loose],
             "nodes_without_qualities": [each.key for each in overview.bare_nodes],
             "trees_without_qualities": [each.name for each in overview.bare_trees],
         },
@@ -100,6 +103,7 @@ def _requirement(each: RequirementRow) -> Json:
         "how": each.way,
         "clauses": list(each.clauses),
         "at": _at(each.at),
+        "clauses_without_nodes": list(each.loose),
         "holds_for": [
             {
                 "subject": use.subject,

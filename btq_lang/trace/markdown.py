@@ -52,8 +52,7 @@ def _requirement(each: RequirementRow) -> tuple[str, ...]:
     for use in each.uses:
         how = told(each, use)
         subjects.append(_node(use.subject + use.arguments, use.at) + (f", {how}" if how else ""))
-    whys = [clause.why for use in each.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
-    how = "<br>".join((each.way, *(dict.fromkeys(whys))))
+    how = "<br>".join((each.way, *each.whys))
     return (
         "<br>".join(said),
         _escaped(each.quality or ""),
@@ -68,6 +67,7 @@ def _gaps(overview: Overview) -> Iterator[str]:
         "unenforced": [f"{_escaped(each.name)} ({each.at})" for each in overview.unenforced],
         "unmeasured": [f"{_escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
         "unattached": [f"{_escaped(each.name)} ({each.at})" for each in overview.unattached],
+        "loose": [f"{_escaped(each.name)} ({each.at}): {_code(clause)}" for each, clause in overview.loose],
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],
         "bare_nodes": [_node(each.name, each.at) for each in overview.bare_nodes],
     }

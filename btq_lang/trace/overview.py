@@ -77,6 +77,8 @@ class RequirementRow:
         quality_key: of the quality's row.
         clauses: all of them, as typed.
         uses: what it holds for; none: it is attached to nothing.
+        loose: the clauses that are about no node, where others of them are about one.
+        is_hard: the engine is to enforce it.
     """
 
     key: str
@@ -87,12 +89,22 @@ class RequirementRow:
     clauses: tuple[str, ...]
     at: At
     uses: tuple[Use, ...]
+    loose: tuple[str, ...]
+    is_hard: bool
 
     @property
     def way(self) -> str:
-        """How it is held: one way, `enforced, monitored` where clauses differ, `not attached`."""
+        """How it is held: one way, `enforced, monitored` or `enforced, not attached` where clauses differ, `not
+        attached`."""
         found = {clause.way for use in self.uses for clause in use.clauses}
-        return ", ".join(way for way in WAYS if way in found) or ("linked" if self.uses else "not attached")
+        ways: list[str] = [way for way in WAYS if way in found] or (["linked"] if self.uses else [])
+        return ", ".join(ways if ways and not self.loose else [*ways, "not attached"])
+
+    @property
+    def whys(self) -> tuple[str, ...]:
+        """Why no more is done about its clauses, each reason once."""
+        found = [clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
+        return tuple(dict.fromkeys((*found, *(f"`{clause}` is about no node" for clause in self.loose))))
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -198,12 +210,18 @@ class Overview:
         return tuple(requirement for requirement in self.requirements if not requirement.uses)
 
     @property
+    def loose(self) -> tuple[tuple[RequirementRow, str], ...]:
+        """Clauses about no node, of requirements that have a node by others."""
+        return tuple((requirement, clause) for requirement in self.requirements for clause in requirement.loose)
+
+    @property
     def unenforced(self) -> tuple[RequirementRow, ...]:
-        """Hard requirements, some clause of which is only monitored somewhere."""
+        """Hard requirements, some clause of which is only monitored somewhere, or about no node."""
         return tuple(
             requirement
             for requirement in self.requirements
-            if any(clause.asked and clause.way == "monitored" for use in requirement.uses for clause in use.clauses)
+            if (requirement.is_hard and requirement.loose)
+            or any(clause.asked and clause.way == "monitored" for use in requirement.uses for clause in use.clauses)
         )
 
     @property

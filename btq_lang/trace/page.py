@@ -139,6 +139,9 @@ def _ways(each: RequirementRow) -> str:
         code = _CODE.sub(r"<code>\1</code>", escape(why))
         said = f" <small>{code}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{said}</li>')
+    for clause in each.loose:
+        said = f"<small><code>{escape(clause)}</code> is about no node</small>"
+        lines.append(f'<li><span class="way none">not attached</span> {said}</li>')
     return f"<ul>{''.join(lines)}</ul>"
 
 
@@ -177,6 +180,10 @@ def _gaps(overview: Overview) -> Iterator[str]:
             f'<a href="#{each.key}">{escape(shown_quality(each))}</a> {_at(each.at)}' for each in overview.unmeasured
         ],
         "unattached": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.unattached],
+        "loose": [
+            f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)} <code>{escape(clause)}</code>'
+            for each, clause in overview.loose
+        ],
         "bare_trees": [
             f'<a href="#{each.nodes[0]}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_trees
         ],

@@ -44,6 +44,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
         "unenforced": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unenforced],
         "unmeasured": [f"{shown_quality(each)}, {_at(each.at, folder)}" for each in overview.unmeasured],
         "unattached": [f"{each.name}, {_at(each.at, folder)}" for each in overview.unattached],
+        "loose": [f"{each.name}, {_at(each.at, folder)}: {clause}" for each, clause in overview.loose],
         "bare_trees": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_trees],
         "bare_nodes": [f"{each.name}, {_at(each.at, folder)}" for each in overview.bare_nodes],
     }
@@ -95,9 +96,7 @@ def _requirement(each: RequirementRow, folder: str) -> tuple[Sequence[str], ...]
     said = [f"{each.name}, {_at(each.at, folder)}", *([each.title] if each.title else []), *each.clauses]
     said += [f"for {each.quality}"] if each.quality else []
     said[1:] = [f"  {line}" for line in said[1:]]
-    ways = each.way.split(", ")
-    whys = [clause.why for use in each.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
-    return said, subjects or ("nothing",), (*ways, *dict.fromkeys(whys))
+    return said, subjects or ("nothing",), (*each.way.split(", "), *each.whys)
 
 
 def _table(

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from btq_lang.graph.missions import said
 from btq_lang.requirements import Requirements
-from btq_lang.requirements.model import Applied
+from btq_lang.requirements.model import Applied, Requirement
 from btq_lang.trace.overview import Clause
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from typing import TypeAlias
+    from typing import Final, TypeAlias
 
     # For each of `applied` of a mission's requirements, in its order, its clauses.
     Ways: TypeAlias = Callable[[Workspace, str, Requirements], Sequence[Sequence[Clause]]]
@@ -25,13 +25,21 @@ def declared_ways(workspace: Workspace, path: str, found: Requirements) -> Seque
     return [_clauses(applied) for applied in found.applied]
 
 
+def is_hard(requirement: Requirement) -> bool:
+    """Whether the engine is to enforce a requirement, rather than people to look after it."""
+    return requirement.action in ("fail", "halt") and requirement.method not in _BY_PEOPLE
+
+
 def _clauses(applied: Applied) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         return tuple(Clause(text, "reviewed", "it is not measurable") for text in said(applied)[:1])
-    if requirement.method in ("review", "analysis", "test"):
+    if requirement.method in _BY_PEOPLE:
         why = f"verified by {requirement.method}"
         return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
-    asked = requirement.action in ("fail", "halt")
+    asked = is_hard(requirement)
     why = f"nothing enforces `on violation {requirement.action}`" if asked else ""
     return tuple(Clause(claim.text, "monitored", why, asked) for claim in requirement.claims)
+
+
+_BY_PEOPLE: Final = ("review", "analysis", "test")

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 def summary(overview: Overview) -> str:
     """How many there are of everything, in a sentence."""
     ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
+    ways["about no node"] = len(overview.loose)
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     said = f"{counted(len(overview.requirements), 'requirement')}"
     said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
@@ -50,6 +51,7 @@ GAPS: Final = {
     "unenforced": "Hard requirements that are not enforced everywhere",
     "unmeasured": "Qualities without a requirement",
     "unattached": "Requirements without a node",
+    "loose": "Clauses without a node",
     "bare_trees": "Trees without any quality",
     "bare_nodes": "Skills without any quality",
 }
