@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import extension_manifest
+import kate_syntax
 import language_configuration
 import textmate
 import vim_syntax
@@ -21,6 +22,7 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "editors/vscode/syntaxes/btq.tmLanguage.json": textmate.grammar,
     "editors/vscode/package.json": extension_manifest.manifest,
     "editors/vscode/language-configuration.json": language_configuration.configuration,
+    "editors/kate/btq.xml": kate_syntax.syntax,
     "editors/nvim/syntax/btq.vim": vim_syntax.syntax,
     "editors/nvim/autoload/btq/words.vim": vim_syntax.openers,
 }
