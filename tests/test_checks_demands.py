@@ -188,8 +188,21 @@ def test_odds() -> None:
         "takes at most 9 s|in at least 95 % of activations",
         "takes at most 9 s|in at least 99 % of runs",
         "takes at most 7 s|in at least 99 % of activations",
+        "takes at most 9 s",  # hard, with time to spare for a step that is late
     ):
         assert findings(mission(tree, f"q Work {clauses}", *steps), "odds-beyond-children") == []
+
+
+@pytest.mark.parametrize(
+    ("root", "subject", "called"),
+    [("->", "mission", "`mission`"), ("->", "Main", "`Main`"), ("-> Work", "Main", "`-> Work`")],
+)
+def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
+    root: str, subject: str, called: str
+) -> None:
+    text = mission(f"{root}\n    Action A", f"q {subject} succeeds", "a A succeeds|in at least 99 % of activations")
+    (found,) = problems(text, "odds-beyond-children")
+    assert found.message == f"{called} is to do so in 100 %; what is demanded below it ensures 99 %"
 
 
 def test_windows() -> None:

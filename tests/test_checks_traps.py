@@ -31,6 +31,8 @@ REACTIVE = "reactive-multiple-async"
         ("R->", "    Unknown", "    Action Work"),
         ("R->", '    ScriptCondition (code = "x")', "    Script (code = 'y := 1')", "    Sleep (msec = 1 s)"),
         ("R?", "    -> A", "        Condition Low", "        Action Charge", "    -> B", "        Action Work"),
+        # Priorities, the one with a guard that is asked all the while.
+        ("R?", "    R-> A", "        Condition Low", "        Action Charge", "    -> B", "        Action Work"),
         (
             "R->",
             "    ?",
@@ -135,6 +137,24 @@ def test_the_fix_asks_at_every_tick(kind: str, mended: str) -> None:
     assert problems(after(text, fix), *TRAPS) == []
 
 
+WATCHED_DRIVE = ("    R->", "        Condition NotCancelled", "        Action Drive")
+GIVE_UP = ("    -> GiveUp", "        Action CallOperator", "        AlwaysFailure")
+
+
+@pytest.mark.parametrize("other", [WATCHED_DRIVE, ("    Action Drive",), ("    SubTree Elsewhere",)], ids=" ".join)
+def test_no_fix_where_another_branch_would_start_again(other: tuple[str, ...]) -> None:
+    """While `GiveUp` runs, `R?` would start `Drive` again at the next tick."""
+    for lines in ((*PRIORITY[1:4], *other, *GIVE_UP), (*other, *PRIORITY[1:4], *GIVE_UP)):
+        (found,) = problems(tree("?", *lines), RECHECK)
+        assert found.message.endswith(", `Low` is not asked again")
+        assert found.fixes == ()
+
+
+def test_the_last_branch_may_take_its_time() -> None:
+    (found,) = problems(tree(*PRIORITY[:4], *GIVE_UP), RECHECK)
+    assert [fix.title for fix in found.fixes] == ["Ask at every tick: `R?`"]
+
+
 @pytest.mark.parametrize(
     "lines",
     [
@@ -148,6 +168,10 @@ def test_the_fix_asks_at_every_tick(kind: str, mended: str) -> None:
         ("?", "    ->", "        Action Look", "        Condition Low", "    Action Work"),
         ("?", "    ->", "        Unknown", "        Action Charge", "    Action Work"),
         ("?", "    ->", "        Condition Low", "    Action Work"),
+        # What to do when a branch has failed that is watched all the while.
+        ("?", *WATCHED_DRIVE, *GIVE_UP),
+        ("?", "    Condition IsDocked", *WATCHED_DRIVE, *GIVE_UP),
+        ("?", "    ->", *(f"    {line}" for line in WATCHED_DRIVE), *GIVE_UP),
         # A step of a longer plan.
         ("->", "    Action Start", *(f"    {line}" for line in PRIORITY)),
         ("?", *(f"    {line}" for line in PRIORITY), "    Action Call"),

@@ -283,6 +283,14 @@ def test_other_subjects() -> None:
     assert [claim.text for claim in total.requirement.claims] == ["sum of Walk, Left takes at most 30 s"]
 
 
+def test_a_tag_that_nothing_has() -> None:
+    text = 'QualityReq slow "t"\n    takes at most 9 s\napply slow to every node tagged drivng\n'
+    text += "BehaviorTree Main\n    A Home tags driving, heavy\n"
+    (problem,) = resolved(text).problems
+    assert problem.diagnostic.message == "no node has the tag `drivng`"
+    assert [fix.title for fix in problem.diagnostic.fixes] == ["Replace `drivng` by `driving`"]
+
+
 def test_every() -> None:
     found = resolved(PATHS.replace("{path}", "every Turn"))
     assert where(found, "rq1") == ["Turn Left in Leg", "Turn Right in Leg", "Turn - in Other"]

@@ -8,14 +8,19 @@ from math import ceil, inf, log
 from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Claim, SourceNode
+from btq_lang.requirements.model import Applied, Claim, Mission, SourceNode
 
 
 def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
-    """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures."""
+    """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures.
+
+    A limit without odds is none of them: a step that is late now and then leaves the whole with time to spare.
+    """
     for applied, claim, node, place in demanded.claims:
         odds = applied.requirement.odds
         if (odds is not None and odds.experiments == "runs") or not (node.children or node.category == "SubTree"):
+            continue
+        if odds is None and claim.verb != "succeeds":
             continue
         wanted = odds.probability if odds is not None else 1.0
         ensured = _ensured(demanded.budgets, claim, node)
@@ -23,7 +28,8 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
             continue
         likely, parts = ensured
         message = (
-            f"{node.shown} is to do so in {_percent(wanted)}; what is demanded below it ensures {_percent(likely)}"
+            f"{_called(applied, node)} is to do so in {_percent(wanted)}; "
+            f"what is demanded below it ensures {_percent(likely)}"
         )
         related = tuple(Related(part.place, f"misses in up to {_percent(share)}") for part, share in parts if share)
         notes = ("what each of several steps may miss adds up (the union bound)",) if len(related) > 1 else ()
@@ -75,6 +81,14 @@ def _ensured(budgets: Budgets, claim: Claim, node: SourceNode) -> tuple[float, l
         shares = [(child, 1.0 - budgets.of(child).probability) for child in node.children]
         return budget.probability, shares
     return None
+
+
+def _called(applied: Applied, node: SourceNode) -> str:
+    """As people call it: the mission, or a tree where its root has no name of its own."""
+    if isinstance(applied.subject, Mission):
+        return "`mission`"
+    is_unnamed_root = node.parent is None and node.node.name is None and node.tree is not None
+    return f"`{node.tree}`" if is_unnamed_root else node.shown
 
 
 def _percent(share: float) -> str:

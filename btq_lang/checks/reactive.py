@@ -15,7 +15,7 @@ from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word, quote
 
-_SEQUENCES = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory"))
+_SEQUENCES = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory"))  # a reactive one asks at every tick itself
 
 
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -72,7 +72,7 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
         guard: SeenNode | None = None
         for child in seen.node.nodes:
             if guard is not None and view.results.of(entry, child).usual & RUNNING:
-                yield _not_asked_again(seen, guard, child)
+                yield _not_asked_again(seen, guard, child, fixable=_can_be_asked_again(view, entry, nodes, seen))
                 break
             guard = guard or _guard(nodes, nodes[id(child)])
 
@@ -120,7 +120,7 @@ def _is_at_the_top(seen: SeenNode) -> bool:
 
 def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
     """The condition in front of a branch `-> [condition, …]`; a condition alone is no branch: what follows it in the
-    Fallback brings about what it asks for."""
+    Fallback brings about what it asks for. One in `R->` watches over what runs beside it: it is asked all the while."""
     if branch.kind is None or branch.kind.tag not in _SEQUENCES or len(branch.node.children) < 2:
         return None
     seen: SeenNode | None = branch
@@ -131,7 +131,16 @@ def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
     return seen
 
 
-def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node) -> Diagnostic:
+def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], seen: SeenNode) -> bool:
+    """Whether `R?` would start again only what its condition asks for: any other child that takes time and fails would
+    start again at the next tick, and halt what was to follow it."""
+    return all(
+        _guard(nodes, nodes[id(child)]) is not None or not view.results.of(entry, child).ever & RUNNING
+        for child in seen.node.nodes[:-1]
+    )
+
+
+def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: bool) -> Diagnostic:
     kind = seen.node.head
     return Diagnostic(
         "condition-without-recheck",
@@ -145,7 +154,7 @@ def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node) -> Diagnosti
             f"{seen.shown} goes on with the child that is running; `R?` begins with the first one at every tick",
             "that is right where the choice is to be made once",
         ),
-        fixes=(replace_fix("Ask at every tick: `R?`", kind.span, _reactive(kind)),),
+        fixes=(replace_fix("Ask at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
     )
 
 

@@ -208,8 +208,8 @@ def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]
     """The nodes that a selector means, and how specific it is."""
     if selector.tag is not None:
         nodes = reader.nodes.tagged(selector.tag.text)
-        if not nodes and reader.knows_all_nodes:
-            reader.complain("unmatched-path", selector.tag.span, f"no node has the tag `{selector.tag.text}`")
+        if not nodes:
+            reader.no_tag(selector.tag)
         yield from ((Target(node), _EVERY) for node in nodes)
     elif selector.every is not None:
         nodes = reader.nodes.every(selector.every.text)

@@ -91,6 +91,10 @@ class Nodes:
         """The nodes with a tag; a tag of a tree is one of its root."""
         return tuple(node for node in self.all if tag in _tags(node))
 
+    def tags(self) -> frozenset[str]:
+        """Every tag that a node has."""
+        return frozenset(tag for node in self.all for tag in _tags(node))
+
     def under(self, nodes: Sequence[SourceNode], top: Target) -> tuple[SourceNode, ...]:
         """Those of the nodes that stand below a node, or in a tree that runs below it."""
         below = self._below(top.node)

@@ -6,6 +6,8 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.record import record
@@ -120,14 +122,17 @@ class PathReader:
         if not self.knows_all_nodes:
             return
         known = {name for node in self.nodes.all for name in kinds(node)}
-        fixes = tuple(
-            replace_fix(f"Replace `{name.text}` by `{other}`", name.span, _written(other))
-            for other in near(name.text, known)
-        )
         notes: tuple[str, ...] = ()
         if self.nodes.find((name.text,)):
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
+        fixes = _replaced(name, known)
         self.complain("unmatched-path", name.span, f"no node is a `{name.text}`", notes=notes, fixes=fixes)
+
+    def no_tag(self, tag: Word) -> None:
+        """Complain of `tagged x` where nothing has that tag."""
+        if self.knows_all_nodes:
+            fixes = _replaced(tag, self.nodes.tags())
+            self.complain("unmatched-path", tag.span, f"no node has the tag `{tag.text}`", fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
         """Complain of a path that names several nodes."""
@@ -170,6 +175,13 @@ class PathReader:
             if len(found) == 1 and found[0].node is node:
                 return "/".join(map(_written, names))
         return None
+
+
+def _replaced(word: Word, known: Iterable[str]) -> tuple[Fix, ...]:
+    return tuple(
+        replace_fix(f"Replace `{word.text}` by `{other}`", word.span, _written(other))
+        for other in near(word.text, known)
+    )
 
 
 def _written(name: str) -> str:
