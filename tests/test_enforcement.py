@@ -344,6 +344,18 @@ def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> N
     )
 
 
+def test_a_build_names_trees_and_the_mission_as_the_claim_does(btq: Btq) -> None:  # noqa: F811  # the fixture
+    claims = "".join(f"    {subject} takes at most 5 s\n" for subject in ("SubTree/Go", "mission", "Go/Move"))
+    trees = "BehaviorTree Main\n    ->\n        SubTree Go\n        Rest\nBehaviorTree Go\n    R->\n        Move\n"
+    btq.write(mission=f"QualityReq quick\n{claims}{FAIL}Root Main\n{trees}")
+    assert btq.build("mission.btq", "--verbose")[2] == (
+        "mission.btq:2:5: enforced: quick, `SubTree/Go takes at most 5 s` at `Go`\n"
+        "mission.btq:3:5: enforced: quick, `mission takes at most 5 s` at `mission`\n"
+        "mission.btq:4:5: enforced: quick, `Go/Move takes at most 5 s` at `Move`\n"
+        "clauses of requirements: 3 enforced\n"
+    )
+
+
 def test_a_plain_tree_can_be_had(btq: Btq) -> None:  # noqa: F811  # the fixture
     btq.write(mission=QUICK)
     for option in ("--no-enforce", "--verbatim"):

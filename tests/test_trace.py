@@ -739,3 +739,10 @@ def test_what_one_mission_attaches_is_about_a_node() -> None:
     assert overview_of(rules=rules, one=plain, two=attached).loose == ()
     # Nobody asks the engine to hold it, so it is not among the hard ones.
     assert overview_of(rules=rules, one=plain).unenforced == ()
+
+
+def test_trees_and_the_mission_are_called_what_the_claim_calls_them() -> None:
+    claims = "".join(f"    {subject} takes at most 5 s\n" for subject in ("SubTree/Go", "mission", "Go/Move"))
+    trees = "BehaviorTree Main\n    ->\n        SubTree Go\n        Rest\nBehaviorTree Go\n    R->\n        Move\n"
+    (row,) = overview_of(f"QualityReq quick\n{claims}Root Main\n{trees}").requirements
+    assert [use.subject for use in row.uses] == ["Go", "mission", "Move"]

@@ -51,6 +51,7 @@ class Held:
         way: by the engine, by looking at logs, or by people.
         why: why no more is done about it, or what is to be known of what is done; mostly empty.
         asked: it is to be enforced.
+        subject: the node as the claim names it: as itself, as its tree, or as the mission.
     """
 
     requirement: str
@@ -60,6 +61,7 @@ class Held:
     way: Way
     why: str = ""
     asked: bool = False
+    subject: str = ""
 
 
 @record
@@ -218,8 +220,10 @@ class _Planner:
         """What is done about a clause; what it needs is remembered."""
         requirement = applied.requirement
         if (known_way := unasked(requirement.method, requirement.action)) is not None:
-            return Held(requirement.name, claim.text, claim.place, applied.node, *known_way)
-        held = Held(requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True)
+            return Held(requirement.name, claim.text, claim.place, applied.node, *known_way, subject=applied.shown)
+        held = Held(
+            requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True, subject=applied.shown
+        )
         try:
             node = self._node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)

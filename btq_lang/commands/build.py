@@ -208,7 +208,7 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
     for held in clauses.values():
         if not verbose and (not held.asked or (held.way == "enforced" and not held.why)):
             continue
-        where = f" at {held.node.shown}" if held.node is not None else ""
+        where = f" at {held.subject}" if held.subject else ""
         way = "not enforced, monitored" if held.asked and held.way == "monitored" else held.way
         why = f": {held.why}" if held.why else ""
         remark = Remark(*_absolute(held.place, groups), f"{held.requirement}, `{held.clause}`{where}{why}")

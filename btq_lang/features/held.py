@@ -40,8 +40,8 @@ def held(workspace: Workspace, path: str, found: Definition, *, is_attached: boo
         for each in _plan(workspace, mission):
             if (each.requirement, each.place.path) == (found.symbol.name, found.path):
                 nodes = ways.setdefault(each.clause, {}).setdefault((_way(each), each.why), {})
-                if each.node is not None:
-                    nodes[each.node.shown] = None
+                if each.subject:
+                    nodes[each.subject] = None
     return _lines(ways)
 
 

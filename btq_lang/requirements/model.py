@@ -469,6 +469,26 @@ class Applied:
         """The node that it holds for; None for a span, a sum, and a mission that nobody knows."""
         return self.subject.node if isinstance(self.subject, Target | Mission) else None
 
+    @property
+    def tree(self) -> str | None:
+        """The tree whose root it holds for, where the claim names that by its tree."""
+        node = self.node
+        if self.how != "subject" or isinstance(self.subject, Mission) or node is None or node.parent is not None:
+            return None
+        claim = self.requirement.claims[0]
+        last = claim.text.partition(f" {claim.verb} ")[0].rpartition("/")[2]
+        return node.tree if last == node.tree else None
+
+    @property
+    def shown(self) -> str:
+        """Its node as a message names it: as the mission or the tree that it is the root of, where the claim does so;
+        empty where there is none."""
+        if self.node is None:
+            return ""
+        if isinstance(self.subject, Mission):
+            return "`mission`"
+        return f"`{self.tree}`" if self.tree is not None else self.node.shown
+
 
 @record
 class Trace:

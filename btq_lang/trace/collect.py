@@ -348,7 +348,7 @@ def _sources(applied: Applied) -> tuple[SourceNode, ...]:
 def _subject(applied: Applied) -> str:
     subject = applied.subject
     if isinstance(subject, Target):
-        return "/".join((*subject.through, _name(subject.node)))
+        return "/".join((*subject.through, applied.tree or _name(subject.node)))
     if isinstance(subject, Mission):
         return "mission"
     claim = applied.requirement.claims[0]
