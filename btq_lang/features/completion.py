@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.features import proposals as offer
 from btq_lang.features.clause_words import Expected, expected
@@ -32,6 +34,29 @@ class Completion:
 
 def complete(workspace: Workspace, path: str, offset: int) -> Completion:
     """What may stand where an offset is."""
+    found = _complete(workspace, path, offset)
+    proposals = tuple(one for one in found.proposals if not _is_typed_here(workspace, path, found.span, one))
+    return Completion(found.span, proposals)
+
+
+def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -> bool:
+    """Whether a name is known from nothing but the word that is being typed."""
+    name = one.label.strip("{}")
+    if one.kind not in ("node", "instance", "tag", "key") or one.include or lookup(name) is not None:
+        return False
+    if name not in workspace.files[path].text[span.start : span.end]:
+        return False
+    places = (
+        (other, mention.span.shifted(entry.start))
+        for other, file in workspace.files.items()
+        if name in file.text
+        for entry, mention in file.mentioned.get(name, ())
+    )
+    found = [other == path and span.start <= at.start and at.end <= span.end for other, at in places]
+    return bool(found) and all(found)
+
+
+def _complete(workspace: Workspace, path: str, offset: int) -> Completion:
     place = place_at(workspace, path, offset)
     text = workspace.files[path].text
     special = _in_comment(place, offset) or _in_braces(workspace, path, place, text, offset)
@@ -87,7 +112,7 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
     key = place.key
     entry = entry_at(workspace, path, offset)
     if key is not None and entry is not None and offer.is_script(workspace, path, place.node, key):
-        word = re.search(r"\w*$", place.text)
+        word = re.search(r"@?\w*$", place.text)
         begin = offset - len(word[0]) if word else offset
         return Completion(Span(begin, offset), tuple(offer.keys(workspace, path, entry, False)))
     whole = Span(offset - len(place.text) - 1, offset)
@@ -216,7 +241,9 @@ def _in_apply(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
             yield from offer.words(("to",), "keyword")
     elif place.last == "tagged":
         yield from offer.tags(workspace, path)
-    elif place.last in ("to", "except", ",", "every", "under", "/"):
+    elif place.last == "every":
+        yield from offer.kinds(workspace, path)
+    elif place.last in ("to", "except", ",", "under", "/"):
         yield from offer.words(("every", "every node tagged"), "keyword") if place.last in ("to", "except", ",") else ()
         yield from offer.node_names(workspace, path)
     elif "except" not in words:
@@ -253,7 +280,9 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Plac
         yield from offer.words(("not", "node", "max()", "min()", "mean()", "p95()"), "keyword")
     if wanted.signal:
         yield from offer.signals(workspace, path)
-    if wanted.node:
+    if wanted.node and place.last == "every":
+        yield from offer.kinds(workspace, path)
+    elif wanted.node:
         yield from offer.node_names(workspace, path)
     if wanted.clause:
         yield from offer.clauses(tuple(word.text for word in place.words))
@@ -288,8 +317,13 @@ def _in_node(workspace: Workspace, path: str, place: Place, first: str) -> Itera
         yield from offer.node_clause_words()
     elif key == "ID" and node.is_subtree:
         yield from offer.trees(workspace, path)
+    elif key in RESERVED_ATTRIBUTES:
+        yield from offer.attribute_values(key)
+    elif key in ("ID", "name"):
+        return
     else:
-        yield from offer.port_values(next((port for port in ports if port.name == key), None))
+        entry = entry_at(workspace, path, place.span.start)
+        yield from offer.port_values(workspace, path, entry, next((port for port in ports if port.name == key), None))
 
 
 def _open_list(place: Place) -> str | None:

@@ -23,7 +23,7 @@ from btq_lang.mentions import What
 from btq_lang.quantities import parse_quantity
 from btq_lang.rules import RULES, page
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree
+from btq_lang.syntax import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.text import Span
 from btq_lang.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.workspace import Definition, Workspace
@@ -91,7 +91,7 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
     """
     item = found.symbol.target
     assert isinstance(item, Requirement), "a requirement's symbol defines one"
-    lines = [f"**{found.symbol.name}**"]
+    lines = [f"**{found.symbol.name}**{_parameters(workspace, found, item)}"]
     quality = quality_of(found)
     if quality is not None:
         lines[0] += f" · {'.'.join(name.text for name in quality.names)}"
@@ -110,6 +110,16 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
         said = held(workspace, path, found, is_attached=bool(attached))
         lines.append(f"What `btq build` does about it:\n{said}" if said else "")
     return "\n\n".join(filter(None, (*lines, attached)))
+
+
+def _parameters(workspace: Workspace, found: Definition, item: Requirement) -> str:
+    """`` `(limit : m/s = 0.25 m/s)` ``, as it is written; empty where it has none."""
+    text = workspace.files[found.path].text
+    shown = []
+    for one in item.parameters:
+        end = max(word.end for word in walk(one) if isinstance(word, Word))
+        shown.append(" ".join(text[slice(*Span(one.name.start, end).shifted(found.entry.start))].split()))
+    return f" `({', '.join(shown)})`" if shown else ""
 
 
 def _clause(workspace: Workspace, found: Definition, span: Span) -> str:

@@ -58,11 +58,16 @@ def _asked(item: Requirement) -> tuple[str | None, str | None]:
 
 def _missions(workspace: Workspace, path: str, found: Definition) -> tuple[str, ...]:
     """The missions in which the requirement is looked at: the file itself, or those that it is a part of."""
+    missions = (one for one in missions_of(workspace, path) if found.path in workspace.scope(one).paths)
+    return tuple(missions)[:_MOST_MISSIONS]
+
+
+def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
+    """The file itself, or the missions that it is a part of."""
     if path not in workspace.included_files:
-        missions = [path]
-    else:
-        missions = [other for other in workspace.files if other not in workspace.included_files]
-    return tuple(one for one in missions if is_btq(one) and found.path in workspace.scope(one).paths)[:_MOST_MISSIONS]
+        return (path,) if is_btq(path) else ()
+    missions = (other for other in workspace.files if other not in workspace.included_files and is_btq(other))
+    return tuple(one for one in missions if path in workspace.closure(one))
 
 
 @lru_cache(_MOST_MISSIONS)  # who looks at one requirement looks at the next one

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from btq_lang.features import describe
+from btq_lang.features.held import missions_of
 from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, quality_of, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.mentions import What
 from btq_lang.record import record
+from btq_lang.requirements import requirements
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Requirement
+from btq_lang.syntax import Claim, Requirement
 from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace import Definition, Workspace
+
+_MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 
 
 @record
@@ -58,7 +64,7 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
 
 
 def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
-    """How many nodes satisfy a requirement, and how often a tree is run."""
+    """How often a requirement is named, for how many nodes it holds by its own words, and how often a tree is run."""
     found: list[Lens] = []
     for place in workspace.defined_in(path):
         kinds = {Kind.REQUIREMENT: (What.REQUIREMENT, "use", "uses"), Kind.TREE: (What.TREE, "call", "calls")}
@@ -70,5 +76,37 @@ def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
             for use in everywhere(workspace, Subject(what, place.symbol.name, home_of(place)))
             if (use.path, use.span) != (place.path, place.span)
         )
-        found.append(Lens(place.span, f"{len(uses)} {one if len(uses) == 1 else many}", uses))
+        titles = [f"{len(uses)} {one if len(uses) == 1 else many}"]
+        nodes: tuple[tuple[str, Span], ...] = ()
+        if _names_its_subject(place):
+            missions = missions_of(workspace, path)
+            nodes = tuple(dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _held(workspace, one, place)))
+            some = f"{len(nodes)} node{'s' if len(nodes) != 1 else ''}"
+            more = " or more" if len(missions) > _MOST_MISSIONS else ""
+            titles = [*(titles if uses or not nodes else ()), *((f"holds for {some}{more}",) if nodes else ())]
+        found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
     return tuple(found)
+
+
+def _names_its_subject(found: Definition) -> bool:
+    item = found.symbol.target
+    return isinstance(item, Requirement) and any(
+        isinstance(clause, Claim) and clause.subject is not None for clause in item.clauses
+    )
+
+
+def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
+    """The nodes that the claims of a requirement name themselves."""
+    return _by_subject(workspace, mission).get((found.symbol.name, found.path), ())
+
+
+@lru_cache(_MOST_MISSIONS)  # a file has many requirements, and they are resolved together
+def _by_subject(workspace: Workspace, mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
+    held: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
+    for applied in requirements(workspace, mission).applied:
+        if applied.how == "subject":
+            nodes = held.setdefault((applied.requirement.name, applied.requirement.path), {})
+            for source in applied.nodes:
+                word = source.node.head
+                nodes[source.path, word.span.shifted(source.entry.start)] = None
+    return {key: tuple(nodes) for key, nodes in held.items()}

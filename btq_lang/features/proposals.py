@@ -12,15 +12,16 @@ from btq_lang.catalog.language import beginning
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import qualities as standard_qualities
-from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, edition, subject
+from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, edition, is_main, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.mentions import What
-from btq_lang.record import record
+from btq_lang.record import record, replace
+from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote
+from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES, Token
 from btq_lang.units import dimension_name, parse_unit, symbols
 from btq_lang.workspace import Definition, Workspace
@@ -211,16 +212,26 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
         )
 
 
+def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
+    """What may stand behind `every`: kinds of nodes, be they only declared; a tree where its name is one."""
+    known = Nodes(workspace, workspace.scope(path))
+    names = [one for one in node_names(workspace, path) if one.kind == "node" or known.every(one.label)]
+    yield from (one for one in names if one.kind != "tree")
+    used = {node.kind.tag: node.kind for node in known.all if node.kind is not None}
+    for tag in sorted(used):
+        yield Proposal(tag, "node", used[tag].doc, tag, None, "", tag)
+    yield from (one for one in names if one.kind == "tree")
+
+
 def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[Proposal]:
-    """The entries of a tree's blackboard, or of the root's."""
-    seen: dict[str, Proposal] = {}
+    """The entries of a tree's blackboard, and with `@` those of the root's; or the root's alone, without."""
+    home = f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
+    places = (found for found in _mentioned(workspace, workspace.scope(path).paths, What.KEY))
+    of_root = sorted({found.mention.name for found in places if subject(workspace, found).home == home})
     if root or not isinstance(entry.item, Tree):
-        home = f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
-        places = (found for found in _mentioned(workspace, workspace.scope(path).paths, What.KEY))
-        names = {found.mention.name for found in places if subject(workspace, found).home == home}
-        for name in sorted(names):
-            yield Proposal(name, "key", "root blackboard", name)
+        yield from (Proposal(name, "key", "root blackboard", name) for name in of_root)
         return
+    seen: dict[str, Proposal] = {}
     for port in entry.item.ports:
         if port.name is not None:
             type_ = f" : {port.type.text}" if port.type else ""
@@ -230,6 +241,8 @@ def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[
             detail = mention.node.head.text if mention.node is not None else ""
             seen.setdefault(mention.name, Proposal(mention.name, "key", detail, mention.name))
     yield from seen.values()
+    own = seen if is_main(workspace, path, entry) else {}  # they are the root's too
+    yield from (Proposal(f"@{name}", "key", "root blackboard", f"@{name}") for name in of_root if name not in own)
 
 
 def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
@@ -312,15 +325,29 @@ def attributes(given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
         yield Proposal(kind.name, "attribute", kind.doc, f"{kind.name} = ", snippet)
 
 
-def port_values(port: NodePort | None) -> Iterator[Proposal]:
+def attribute_values(key: str) -> Iterator[Proposal]:
+    """What may be given to an attribute that is no port; entries may not."""
+    if RESERVED_ATTRIBUTES[key].is_script:
+        yield from words(('""',), "keyword")
+    elif key == "_autoremap":
+        yield from words(("true", "false"), "enum")
+
+
+def port_values(workspace: Workspace, path: str, entry: Entry | None, port: NodePort | None) -> Iterator[Proposal]:
     """What may be given to a port."""
+    if port is not None and port.content == "script":
+        yield from words(('""',), "keyword")
+        return
     yield Proposal("{=}", "key", "the entry that is called as the port", "{=}")
+    for one in keys(workspace, path, entry, False) if entry is not None else ():
+        yield replace(one, label=f"{{{one.label}}}", insert=f"{{{one.insert}}}")
     if port is not None and port.default:
         yield Proposal(port.default, "enum", "default", port.default if is_plain(port.default) else quote(port.default))
     if port is not None and port.type == "bool":
         yield from words(("true", "false"), "enum")
     if port is not None and port.type.endswith("NodeStatus"):
-        yield from words(("SUCCESS", "FAILURE", "RUNNING", "SKIPPED"), "enum")
+        said = [word for word in port.doc.replace(",", " ").split() if word in _STATUSES]  # by the engine's table
+        yield from words(said if port.type.startswith("BT::") and said else _STATUSES, "enum")
 
 
 def is_plain(value: str) -> bool:
@@ -380,7 +407,8 @@ def rules() -> Iterator[Proposal]:
 
 
 def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Definition, str]]:
-    """Every definition of a kind: those in scope, then those of other files with the file to include."""
+    """Every definition of a kind: those in scope, then those of other files with the file to include, where including
+    it defines nothing twice and goes in no circle."""
     scope = workspace.scope(path)
     for name in scope.names(kind):
         if (found := scope.find(kind, name)) is not None:
@@ -389,10 +417,23 @@ def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defi
     for other in sorted(workspace.files):
         if other in scope.paths:
             continue
-        for definition in workspace.defined_in(other):
-            if definition.symbol.kind is kind and definition.symbol.name not in seen:
-                seen.add(definition.symbol.name)
-                yield definition, other
+        new = [one for one in workspace.defined_in(other) if one.symbol.kind is kind and one.symbol.name not in seen]
+        if new and not _clashes(workspace, path, other):
+            seen.update(one.symbol.name for one in new)
+            yield from ((one, other) for one in new)
+
+
+def _clashes(workspace: Workspace, path: str, other: str) -> bool:
+    """Whether a file, or one that it includes, defines anew what is in scope; or includes the one that is looked at."""
+    scope = workspace.scope(path)
+    brought = workspace.closure(other)
+    return path in brought or any(
+        (first := scope.find(one.symbol.kind, one.symbol.name)) is not None
+        and not (isinstance(first.symbol.target, Model) and shape(first.symbol.target) == shape(one.symbol.target))
+        for file in brought
+        if file not in scope.paths
+        for one in workspace.defined_in(file)
+    )
 
 
 def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Found]:
@@ -451,6 +492,7 @@ def _hole(index: int, port: NodePort) -> str:
     return f"${{{index}:{{=\\}}}}"
 
 
+_STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
 _NUMBERS = ("int", "unsigned int", "double", "float", "int64_t", "uint64_t")
 _TYPES = (
     *("string", "bool", "int", "double", "float", "int64_t", "uint64_t", "std::vector<double>", "std::vector<string>"),

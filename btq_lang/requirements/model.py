@@ -489,6 +489,15 @@ class Applied:
             return "`mission`"
         return f"`{self.tree}`" if self.tree is not None else self.node.shown
 
+    @property
+    def nodes(self) -> tuple[SourceNode, ...]:
+        """The nodes that its subject speaks of: of a span those of its events."""
+        if isinstance(self.subject, Total):
+            return tuple(target.node for target in self.subject.targets)
+        events = (self.subject.first, self.subject.last) if isinstance(self.subject, Span) else ()
+        parts = [event.subject for event in events] if isinstance(self.subject, Span) else [self.subject]
+        return tuple(part.node for part in parts if part is not None and part.node is not None)
+
 
 @record
 class Trace:

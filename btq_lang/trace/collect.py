@@ -6,7 +6,7 @@ are written once.  What is wrong with the missions is not said here: an overview
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 
 from btq_lang.catalog.qualities import get, qualities
@@ -15,7 +15,7 @@ from btq_lang.graph.figure import Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
-from btq_lang.requirements.model import Applied, Event, Mission, Requirement, SourceNode, Span, Target, Total
+from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
 from btq_lang.syntax import QualityDecl, Tree
 from btq_lang.text import Span as TextSpan
 from btq_lang.trace.meanings import Meaning, Meanings
@@ -165,7 +165,7 @@ class _Collector:
             row.loose = [text for text in known if (name, text) in loose]
         for applied, clauses in zip(found.applied, self._ways(workspace, path, found), strict=True):
             row = rows[applied.requirement.name]
-            sources = _sources(applied)
+            sources = applied.nodes
             own.update((id(source), None) for source in sources)
             nodes = [self._nodes[id(source.node)] for source in sources]
             use = Use(
@@ -333,16 +333,6 @@ def _is_below(found: Requirements, source: SourceNode, own: dict[int, None]) -> 
                 seen.add(id(caller))
                 waiting.append(caller)
     return is_below
-
-
-def _sources(applied: Applied) -> tuple[SourceNode, ...]:
-    """The nodes that a subject speaks of."""
-    subject = applied.subject
-    if isinstance(subject, Total):
-        return tuple(target.node for target in subject.targets)
-    events: tuple[Event, ...] = (subject.first, subject.last) if isinstance(subject, Span) else ()
-    parts: Iterable[Target | Mission | None] = (each.subject for each in events) if events else (subject,)  # type: ignore[assignment]  # no Span is left
-    return tuple(part.node for part in parts if part is not None and part.node is not None)
 
 
 def _subject(applied: Applied) -> str:

@@ -60,10 +60,10 @@ def typed(line: str) -> str:
         ("BehaviorTree X\n    Pick satisfies slow $0", ("satisfies", "satisfices", "tags")),
         ("BehaviorTree X\n    Pick tags $0", ("heavy",)),
         # Entries of the blackboard.
-        ("BehaviorTree X\n    input shelf : string\n    Pick (from = {$0", ("=", "shelf")),
-        ("BehaviorTree X\n    Pick (a = {there} from = {t$0} b = 1)", ("=", "there", "t")),
+        ("BehaviorTree X\n    input shelf : string\n    Pick (from = {$0", ("=", "shelf", "@battery_level")),
+        ("BehaviorTree X\n    Pick (a = {there} from = {t$0} b = 1)", ("=", "there", "@battery_level")),
         ("BehaviorTree X\n    Pick (from = {@$0", ("battery_level",)),
-        ('BehaviorTree X\n    input shelf : string\n    Script (code = "a := sh$0', ("shelf",)),
+        ('BehaviorTree X\n    input shelf : string\n    Script (code = "a := sh$0', ("shelf", "@battery_level")),
         # The grammar of clauses.
         ('QualityReq a "t" takes $0', ("at most", "at least", "less than", "more than", "between")),
         ('QualityReq a "t" takes at $0', ("most", "least")),
@@ -156,6 +156,54 @@ def test_what_is_written(line: str, label: str, after: str, plain: str | None) -
     check_accept(f"{head}{line}", label, f"{head}{after}", plain=f"{head}{plain}" if plain else None)
 
 
+@pytest.mark.parametrize(
+    ("line", "labels"),
+    [
+        # Entries, in braces where they have none yet; the root's with their `@`.
+        ("BehaviorTree X\n    input shelf : string\n    Pick (from = $0)", ("{=}", "{shelf}", "{@battery_level}")),
+        (
+            "BehaviorTree X\n    MoveBase (station = {goal} speed = $0)",
+            ("{=}", "{goal}", "{@battery_level}", "0.5"),
+        ),
+        ('BehaviorTree X\n    Pick (_skipIf = "@$0")', ("@battery_level",)),
+        # What takes no entries.
+        ("BehaviorTree X\n    SubTree Dock (_autoremap = $0)", ("true", "false")),
+        ("BehaviorTree X\n    Pick (_skipIf = $0)", ('""',)),
+        ("BehaviorTree X\n    Pick (name = $0)", ()),
+        ("BehaviorTree X\n    Script (code = $0)", ('""',)),
+        # Statuses, those that the port takes.
+        (
+            "BehaviorTree X\n    LoopInt (if_empty = $0)",
+            ("{=}", "{@battery_level}", "SUCCESS", "FAILURE", "SKIPPED"),
+        ),
+        (
+            "Action Other\n    input status : NodeStatus\nBehaviorTree X\n    Other (status = $0)",
+            ("{=}", "{@battery_level}", "SUCCESS", "FAILURE", "RUNNING", "SKIPPED"),
+        ),
+        # The word that is typed is not known from itself; one that stands elsewhere is.
+        ("BehaviorTree X\n    Pick tags w$0", ("heavy",)),
+        ("BehaviorTree X\n    Pick (a = {there} b = {th$0})", ("=", "there", "@battery_level")),
+        ("BehaviorTree X\n    Pick (a = {there} b = {there$0})", ("=", "there", "@battery_level")),
+    ],
+)
+def test_values(line: str, labels: tuple[str, ...]) -> None:
+    check_completion(typed(line), *labels)
+
+
+def test_the_half_typed_word() -> None:
+    check_offers(typed("BehaviorTree X\n    Mov$0"), "MoveBase", absent=["Mov"])
+    check_offers(typed("BehaviorTree X\n    Sequence$0"), "Sequence")
+    check_offers(typed("BehaviorTree X\n    MoveBase$0"), "MoveBase")
+    check_offers(typed("BehaviorTree X\n    Action Mov$0"), "MoveBase", absent=["Mov"])
+    check_offers(typed("BehaviorTree X\n    ->\n        Grip\n        Grip$0"), "Grip")
+
+
+def test_what_every_is_followed_by() -> None:
+    files = typed("apply slow(limit = 1 m/s) to every $0")
+    check_completion(files, "MoveBase", "Near", "Wait", "Script", "Sequence", "Main", "Dock")
+    check_offers(typed('QualityReq a "t"\n    every $0'), "MoveBase", absent=["ToWard"])
+
+
 def test_documentation() -> None:
     check_documentation(
         typed("BehaviorTree X\n    Pick satisfies $0"),
@@ -180,3 +228,19 @@ def test_the_cursor_on_an_empty_line_between_others() -> None:
         "BehaviorTree Main\n    ->\n        $0\n        Pick\n", "Pick", "->", "SubTree", absent=["takes at most"]
     )
     check_offers('QualityReq a "t"\n    $0\n    on violation fail\n', "takes at most", absent=["SubTree"])
+
+
+def test_no_include_that_would_define_something_twice() -> None:
+    main = "Action Move\n    input to : string\nBehaviorTree Main\n    Move satisfies $0\n"
+    check_completion(
+        f"//- main.btq\n{main}"
+        '//- same_tree.btq\nQualityReq a "A"\nBehaviorTree Main\n    Pick\n'
+        '//- other_model.btq\nQualityReq b "B"\nAction Move\n    input speed : double\n'
+        '//- same_model.btq\nQualityReq c "C"\nAction Move\n    input to : string\n'
+        '//- brings_tree.btq\ninclude "same_tree.btq"\nQualityReq d "D"\n'
+        '//- circle.btq\ninclude "main.btq"\nQualityReq e "E"\n'
+        '//- apart.btq\nQualityReq f "F"\nBehaviorTree Far\n    Pick\n',
+        "f",
+        "c",
+        "QualityReq",
+    )

@@ -68,3 +68,59 @@ def test_classic_repeats_have_one_lens() -> None:
         "Main: 0 calls",
         "x: 1 use",
     )
+
+
+def test_requirements_that_name_their_own_subjects() -> None:
+    check_lenses(
+        """
+        Root Main
+        QualityReq soon "Soon"
+            MoveBase takes at most 3 s
+        QualityReq all_of_them "All"
+            every MoveBase takes at most 3 s
+            ToA succeeds
+        QualityReq run "Run"
+            mission takes at most 1 min
+        QualityReq between "Between"
+            from ToA starts to Pick succeeds takes at most 20 s
+        QualityReq added "Added"
+            sum of ToA, Pick takes at most 20 s
+        QualityReq both "Both"
+            takes at most 1 s
+            ToA takes at most 1 s
+        QualityReq nothing "Nothing"
+            Unknown takes at most 3 s
+        BehaviorTree Main
+            ->
+                MoveBase ToA satisfies both
+                MoveBase ToB
+                Pick
+        """,
+        "soon: 0 uses",
+        "all_of_them: holds for 2 nodes",
+        "run: holds for 1 node",
+        "between: holds for 2 nodes",
+        "added: holds for 2 nodes",
+        "both: 1 use, holds for 1 node",
+        "nothing: 0 uses",
+        "Main: 1 call",
+    )
+
+
+def test_a_library_holds_for_nodes_of_its_missions() -> None:
+    check_lenses(
+        """
+        //- lib.btq
+        QualityReq rq "Soon"
+            Pick takes at most 3 s
+        //- a.btq
+        include "lib.btq"
+        BehaviorTree A
+            Pick
+        //- b.btq
+        include "lib.btq"
+        BehaviorTree B
+            Pick
+        """,
+        "rq: holds for 2 nodes",
+    )

@@ -350,3 +350,17 @@ def test_a_rule() -> None:
     from btq_lang.rules import page
 
     check_hover("# btq: ignore[<hover>unused$0-tree</hover>]\nBehaviorTree Main\n    Pick\n", page("unused-tree"))
+
+
+def test_the_parameters_of_a_requirement() -> None:
+    check_hover(
+        """
+        context near : {people} > 0
+        QualityReq <hover>sl$0ow</hover>(limit : m/s, wait : s = 10 s if near else  -1 s) : safety "Slow"
+        """,
+        """
+        **slow** `(limit : m/s, wait : s = 10 s if near else -1 s)` · safety
+
+        Slow
+        """,
+    )
