@@ -12,7 +12,7 @@ from btq_lang.catalog.language import beginning
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import qualities as standard_qualities
-from btq_lang.features.meaning import ROOT_BLACKBOARD, Found, edition, is_main, subject
+from btq_lang.features.meaning import Found, edition, is_main
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
@@ -225,9 +225,7 @@ def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[Proposal]:
     """The entries of a tree's blackboard, and with `@` those of the root's; or the root's alone, without."""
-    home = f"{ROOT_BLACKBOARD}{workspace.missions[path]}"
-    places = (found for found in _mentioned(workspace, workspace.scope(path).paths, What.KEY))
-    of_root = sorted({found.mention.name for found in places if subject(workspace, found).home == home})
+    of_root = _keys_of_root(workspace, path)
     if root or not isinstance(entry.item, Tree):
         yield from (Proposal(name, "key", "root blackboard", name) for name in of_root)
         return
@@ -243,6 +241,16 @@ def keys(workspace: Workspace, path: str, entry: Entry, root: bool) -> Iterator[
     yield from seen.values()
     own = seen if is_main(workspace, path, entry) else {}  # they are the root's too
     yield from (Proposal(f"@{name}", "key", "root blackboard", f"@{name}") for name in of_root if name not in own)
+
+
+def _keys_of_root(workspace: Workspace, path: str) -> list[str]:
+    found: set[str] = set()
+    for other in workspace.scope(path).paths:
+        for entry in workspace.files[other].parsed.entries:
+            of_main = is_main(workspace, other, entry)
+            mentions = workspace.files[other].mentions_of(entry)
+            found.update(one.name for one in mentions if one.what is What.KEY and (one.root or of_main))
+    return sorted(found)
 
 
 def includes(workspace: Workspace, path: str, quoted: bool) -> Iterator[Proposal]:
