@@ -44,7 +44,7 @@ RUN_BY = {
     "toml": "test_a_project_file_is_read",
     "editors.md toml": "test_editors_recipes_are_well_formed",
     "editors.md json": "test_editors_recipes_are_well_formed",
-    "editors.md text": "editors/test_neovim.py",
+    "editors.md text": "test_the_extension_is_packed_and_installed",
     "lua": "editors/test_neovim.py",
     "vim": "editors/test_recipes.py",
     "elisp": "editors/test_recipes.py",
@@ -225,6 +225,35 @@ def test_editors_recipes_are_well_formed() -> None:
     assert kate["servers"]["btq"]["command"] == ["btq-lsp"]
     assert helix["language-server"]["btq"]["command"] == "btq-lsp"
     assert helix["language"][0]["file-types"] == ["btq", "qualitybtcpp"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the commands are for a POSIX shell")
+@pytest.mark.parametrize("page", ["docs/editors.md", "README.md"])
+def test_the_extension_is_packed_and_installed(page: str, tmp_path: Path) -> None:
+    """The commands of the page fit each other and the scripts; packing itself is for editors/test_package.py, since it
+    needs the network: here `npm run package` makes an empty file where the real one packs."""
+    (command,) = re.findall(r"^.*\bnpm ci .*--install-extension .*$", (ROOT / page).read_text("utf-8"), re.MULTILINE)
+    manifest = json.loads((ROOT / "editors" / "vscode" / "package.json").read_text("utf-8"))
+    assert manifest["scripts"]["package"] == "node scripts/package.mjs"
+    stubs = f"""
+        npm() {{
+            local folder=.
+            for word; do [ "$word" != --prefix ] || {{ folder=editors/vscode; }}; done
+            [ -f "$folder/package-lock.json" ] || return 1
+            case " $* " in
+                *" ci "*) ;;
+                *" package -- "*) : > "${{@: -1}}" ;;
+                *" package "*) : > "$folder/btq-{manifest["version"]}.vsix" ;;
+                *) return 1 ;;
+            esac
+        }}
+        code() {{ [ "$1" = --install-extension ] && [ -f "$2" ] && echo "$2" > "{tmp_path}/installed"; }}
+    """
+    for name in ("package.json", "package-lock.json"):
+        (tmp_path / "editors" / "vscode").mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / "editors" / "vscode" / name, tmp_path / "editors" / "vscode")
+    subprocess.run(["bash", "-euc", stubs + command], cwd=tmp_path, check=True)
+    assert (tmp_path / "installed").read_text().strip() in ("btq.vsix", f"btq-{manifest['version']}.vsix")
 
 
 def test_ci_knows_its_names() -> None:
