@@ -355,8 +355,9 @@ def test_how_a_mission_looks(code: Workbench, theme: str, artifacts: Path) -> No
     code.settings(**{**ENVIRONMENT, "workbench.colorTheme": f"Default {theme.title()} Modern"})
     code.see(".monaco-workbench.vs-dark" if theme == "dark" else ".monaco-workbench.vs:not(.vs-dark)")
     code.write("every_form.btq", (ROOT / "tests" / "every_form.btq").read_text(encoding="utf-8"))
-    code.open("every_form.btq")
     code.page.set_viewport_size({"width": 1500, "height": 2500})  # all of it
+    code.open("every_form.btq")
+    code.keys("Control+End")  # the window may still have its old size
     code.see(".view-line:has-text('Größe!')")
     # Comment, keyword, string, number, name of a node: five colours at least, or nothing is coloured.
     colours = code.page.evaluate(
