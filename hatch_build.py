@@ -1,11 +1,12 @@
-"""Compile the parser when a wheel is built with `BTQ_COMPILE=1`; without it the wheel is pure Python.
+"""Compile the parser and most checks when a wheel is built with `BTQ_COMPILE=1`; without it the wheel is pure Python.
 
 One invariant: nothing compiled ever lies in the checkout.  The package is copied, compiled in a folder that is removed
 when the wheel is made, and only the compiled modules are taken from there; the sources stay beside them in the wheel,
 for tracebacks, and Python prefers the compiled ones.
 
-Which modules: those where the parser spends its time.  `@record` makes classes while a module is loaded, which cannot
-be compiled, so modules with records stay as they are.
+Which modules: those where a check of many files spends its time.  A record in them stays a class as Python makes it,
+for it is made while the module is loaded; a class with a `cached_property` must not be there, for mypyc makes one of it
+that is worked out every time.
 """
 
 from __future__ import annotations
@@ -34,8 +35,40 @@ COMPILED = (
     "conditions",
     "clauses",
     "plain_requirements",
+    "plain_models",
+    "attributes",
     "nodes",
     "parser",
+    "symbols",
+    "placeholders",
+    "catalog/names",
+    "catalog/literals",
+    "checks/children",
+    "checks/clauses",
+    "checks/conditions",
+    "checks/constants",
+    "checks/counts",
+    "checks/entries",
+    "checks/kinds",
+    "checks/literals",
+    "checks/misspelt",
+    "checks/mixed_types",
+    "checks/names",
+    "checks/outputs",
+    "checks/placeholders",
+    "checks/pointers",
+    "checks/ports",
+    "checks/preconditions",
+    "checks/qualities",
+    "checks/reactive",
+    "checks/requirements",
+    "checks/results",
+    "checks/scripts",
+    "checks/seen",
+    "checks/statuses",
+    "checks/strings",
+    "checks/trees",
+    "checks/unreachable",
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
 REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")
@@ -85,4 +118,4 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     if done.returncode:
         raise RuntimeError(f"mypyc failed:\n{done.stdout}{done.stderr}")
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    return sorted((*folder.glob(f"*{suffix}"), *(folder / PACKAGE).glob(f"*{suffix}")))
+    return sorted((*folder.glob(f"*{suffix}"), *(folder / PACKAGE).rglob(f"*{suffix}")))

@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -23,11 +22,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import missions
+from report import ENVIRONMENT, Goal, as_data, machine, options, shown
 
 FILES, NODES_A_FILE = 1_000, 50
-
-# An installed btq has its bytecode beside it; where writing it is switched off, every start would compile all modules.
-_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
 @dataclass
@@ -48,26 +45,17 @@ class Command:
     exit_code: int = 0
 
 
-@dataclass(frozen=True)
-class Goal:
-    """A figure that btq must reach, with the figure reached."""
-
-    text: str
-    reached: float
-    met: bool
-
-
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print; the exit code says nothing about speed."""
-    options = _options(arguments)
+    given = _options(arguments)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        _write_missions(folder, options.spelling)
+        _write_missions(folder, given.spelling)
         measured = commands(folder, _btq())
-        run(measured, options.rounds, options.many_rounds)
+        run(measured, given.rounds, given.many_rounds)
     goals = compare(measured)
-    if options.json:
-        print(json.dumps(as_data(measured, goals), indent=2))
+    if given.json:
+        print(json.dumps(as_data({"commands": [_data(command) for command in measured]}, goals), indent=2))
     else:
         print(as_text(measured, goals))
 
@@ -128,7 +116,7 @@ def run(measured: Sequence[Command], rounds: int, many_rounds: int) -> None:
 
 def _first_run(argv: Sequence[str]) -> tuple[int, str]:
     """The exit code, and why the command does not work, or nothing: 1 is a check with findings, and also a crash."""
-    done = subprocess.run(argv, capture_output=True, text=True, check=False, env=_ENVIRONMENT)
+    done = subprocess.run(argv, capture_output=True, text=True, check=False, env=ENVIRONMENT)
     if "Traceback" in done.stderr or done.returncode not in (0, 1):
         last = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
         return done.returncode, last[0]
@@ -139,7 +127,7 @@ def _spawn(argv: tuple[str, ...]) -> tuple[float, float, int]:
     """Run a command, its output thrown away: seconds by the clock, seconds of processor, exit code."""
     silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_RDWR, 0) for number in (0, 1, 2)]
     start = time.perf_counter()
-    process = os.posix_spawn(argv[0], argv, _ENVIRONMENT, file_actions=silent)
+    process = os.posix_spawn(argv[0], argv, ENVIRONMENT, file_actions=silent)
     _, status, usage = os.wait4(process, 0)
     wall = time.perf_counter() - start
     return wall, usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
@@ -187,7 +175,7 @@ def as_text(measured: Sequence[Command], goals: Sequence[Goal]) -> str:
     """A table in Markdown."""
     base = statistics.median(measured[0].wall)
     lines = [
-        f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        machine(),
         "",
         "| command | median ms | fastest | over `python -c pass` | processor ms | runs |",
         "|---|---|---|---|---|---|",
@@ -198,38 +186,24 @@ def as_text(measured: Sequence[Command], goals: Sequence[Goal]) -> str:
             continue
         wall = statistics.median(command.wall)
         figures = (wall, min(command.wall), wall - base, statistics.median(command.cpu))
-        shown = " | ".join(f"{1000 * figure:.1f}" for figure in figures)
-        lines.append(f"| {command.name} | {shown} | {len(command.wall)} |")
-    lines.append("")
-    lines += [f"{'met   ' if goal.met else 'MISSED'}  {goal.text}: {goal.reached:,.2f}" for goal in goals]
-    return "\n".join(lines)
+        cells = " | ".join(f"{1000 * figure:.1f}" for figure in figures)
+        lines.append(f"| {command.name} | {cells} | {len(command.wall)} |")
+    return "\n".join([*lines, "", *shown(goals)])
 
 
-def as_data(measured: Sequence[Command], goals: Sequence[Goal]) -> dict[str, object]:
-    """Everything that was measured, for machines."""
+def _data(command: Command) -> dict[str, object]:
     return {
-        "python": platform.python_version(),
-        "platform": platform.platform(),
-        "cores": os.cpu_count(),
-        "commands": [
-            {
-                "name": command.name,
-                "failure": command.failure,
-                "wall_seconds": command.wall,
-                "cpu_seconds": command.cpu,
-            }
-            for command in measured
-        ],
-        "goals": [{"goal": goal.text, "reached": goal.reached, "met": goal.met} for goal in goals],
+        "name": command.name,
+        "failure": command.failure,
+        "wall_seconds": command.wall,
+        "cpu_seconds": command.cpu,
     }
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("--rounds", type=int, default=40, help="runs of each short command (default 40)")
     parser.add_argument("--many-rounds", type=int, default=5, help="runs of each long one (default 5)")
-    parser.add_argument("--spelling", choices=("short", "classic"), default="short")
-    parser.add_argument("--json", action="store_true", help="print JSON with every single time")
     return parser.parse_args(arguments)
 
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from btq_lang.conditions import HEADS, SUBJECT_HEADS, ConditionParser
 from btq_lang.cursor import shown
-from btq_lang.diagnostics import replace_fix
-from btq_lang.lexer import unknown_unit
+from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.near import near
-from btq_lang.scan import is_unit, unit_run
+from btq_lang.scan import is_unit, line_end, path_end, unit_run
+from btq_lang.slips import unknown_unit
 from btq_lang.syntax import (
     Amount,
     Argument,
@@ -41,6 +41,7 @@ from btq_lang.syntax import (
     Table,
     Window,
     Word,
+    quote,
     unquote,
 )
 from btq_lang.text import Span
@@ -72,12 +73,48 @@ class ClauseParser(ConditionParser):
         self.advance()
         if self.at_word("ID") and self.is_operator(self.index + 1, "="):
             return self.classic_requirement(start)
-        name = self.name("the requirement's ID")
+        name = self.requirement_id("the requirement's ID")
         parameters = self.params() if self.kind == OPEN and name is not None else ()
         quality = self.quality_path() if self.accept(":") else None
+        if quality is not None:
+            self.torn_quality(quality)
         title = self.take() if self.kind == STRING else None
+        if quality is None and title is not None and self.at(":"):
+            self.complain("syntax-error", self.here(), "a requirement's quality stands before its title")
+            self.advance()
+            quality = self.quality_path()
+        elif quality is not None and self.at(","):
+            self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
         clauses = self.clauses()
         return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
+
+    def requirement_id(self, what: str) -> Word | None:
+        """Name;  `REQ.001`, `1.2` and `4711` are told to need quotes, and taken"""
+        start = self.start()
+        first = self.starts[self.index]
+        if self.kind in (NUMBER, QUANTITY):
+            end = max(path_end(self.text, first), first + len(self.raw))
+        elif self.kind == NAME and self.is_operator(self.index + 1, ".") and self.adjacent(self.index + 1):
+            end = path_end(self.text, first)
+        else:
+            return self.name(what)
+        text = self.text[first:end].rstrip(",:")
+        fix = replace_fix("Put quotes around it", Span(first, first + len(text)), quote(text), safe=True)
+        self.complain("syntax-error", Span(first, first + len(text)), "this ID needs quotes", (), (fix,))
+        while self.kind != NEWLINE and self.starts[self.index] < first + len(text):
+            self.advance()
+        return Word(NAME, start, text)
+
+    def torn_quality(self, quality: QualityPath) -> None:
+        """Complain of `time behaviour`: a quality's name has no blanks."""
+        last = quality.names[-1]
+        if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
+            return
+        if self.raw not in VERBS and self.raw not in HEADS:
+            fix = replace_fix("Write `-`", Span(last.end + self.base, self.here().start), "-")
+            span = Span(last.start + self.base, self.here().end)
+            self.complain("syntax-error", span, "a quality's name has no blanks", (), (fix,))
+            self.advance()
 
     def classic_requirement(self, start: int) -> Requirement:
         """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
@@ -98,7 +135,12 @@ class ClauseParser(ConditionParser):
         self.group += 1
         found: list[Parameter] = []
         while name := self.plain_name("a parameter's name"):
-            unit = self.unit() if self.expect(":") else None
+            unit = None
+            if self.at("="):
+                note = "its unit stands behind `:`, and what it is by default behind that: `limit : m = 3 m`"
+                self.expected("`:` and the parameter's unit", (note,))
+            elif self.expect(":"):
+                unit = self.unit()
             default = self.bounded() if self.accept("=") else None
             found.append(Parameter(name, unit, default))
             if not self.accept(","):
@@ -113,13 +155,20 @@ class ClauseParser(ConditionParser):
         self.advance()
         self.group += 1
         found: list[Argument] = []
-        while key := self.plain_name("a parameter's name"):
+        while key := self.argument_name():
             value = self.bounded() if self.expect("=") else None
             found.append(Argument(key, value))
             if not self.accept(","):
                 break
         self.close_group("`,` or `)`")
         return ReqRef(name, tuple(found))
+
+    def argument_name(self) -> Word | None:
+        """NAME"""
+        if self.kind in (NUMBER, QUANTITY):
+            self.expected("a parameter's name", (f"a value stands behind the name of its parameter: `x = {self.raw}`",))
+            return None
+        return self.plain_name("a parameter's name")
 
     def quality_path(self) -> QualityPath | None:
         """QualityPath = Name [ "<" Name ">" ] { "." Name }"""
@@ -173,7 +222,7 @@ class ClauseParser(ConditionParser):
             return self.odds()
         if word == "confidence":
             self.advance()
-            value = self.quantity("a percentage: 95 %")
+            value = self.percentage("95 %")
             return Confidence(start, self.last_end(), value)
         if word == "over":
             return self.window()
@@ -188,7 +237,12 @@ class ClauseParser(ConditionParser):
             return Goal(start, self.last_end(), bounded)
         if word == "because":
             self.advance()
-            text = self.take() if self.kind == STRING else self.missing_word("the reason in quotes")
+            text = self.take() if self.kind == STRING else None
+            if text is None:
+                said = self.here().start
+                rest = self.text[said : line_end(self.text, said)].partition(" #")[0].rstrip()
+                fix = replace_fix("Put quotes around it", Span(said, said + len(rest)), quote(rest))
+                self.expected("the reason in quotes", (), (fix,) if rest and not self.group else ())
             return Because(start, self.last_end(), text)
         if word == "verified":
             self.advance()
@@ -204,25 +258,47 @@ class ClauseParser(ConditionParser):
         """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
         start = self.start()
         relation = ">="
+        value: Word | None = None
         experiments = None
         if self.accept_word("in"):
-            ok = self.expect_word("at") and self.expect_word("least")
-            value = self.quantity("a percentage: 98 %") if ok else None
-            if value is not None and self.expect_word("of"):
+            if self.kind == QUANTITY:
+                fix = replace_fix("Put `at least` before it", Span(self.here().start, self.here().start), "at least ")
+                self.complain("syntax-error", self.here(), f"odds are written `in at least {self.raw}`", (), (fix,))
+                value = self.take()
+            else:
+                ok = self.expect_word("at") and self.expect_word("least")
+                value = self.percentage("98 %") if ok else None
+            if value is not None and self.expect_word("of", forgotten=self.raw in EXPERIMENTS):
                 experiments = self.one_of(("activations", "runs"))
             return Odds(start, self.last_end(), relation, value, experiments)
         self.advance()
-        value = None
         if self.expect_word("probability"):
             if self.at(">=") or self.at(">"):
                 relation = self.raw
                 self.advance()
-                value = self.quantity("a percentage: 98 %")
+                value = self.percentage("98 %")
+            elif self.kind == QUANTITY:
+                fix = replace_fix("Put `>=` before it", Span(self.here().start, self.here().start), ">= ")
+                message = f"odds are written `with probability >= {self.raw}`"
+                self.complain("syntax-error", self.here(), message, (), (fix,))
+                value = self.take()
             else:
                 self.expected("`>=` or `>` and a percentage")
             if self.accept_word("of"):
                 experiments = self.one_of(("activations", "runs"))
         return Odds(start, self.last_end(), relation, value, experiments)
+
+    def percentage(self, example: str) -> Word | None:
+        """QUANTITY"""
+        fixes: tuple[Fix, ...] = ()
+        if self.kind == NUMBER:
+            share = float(self.raw)
+            percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
+            fixes = (replace_fix(f"Write `{percent}`", self.here(), percent),)
+        if self.kind == QUANTITY:
+            return self.take()
+        self.expected(f"a percentage: {example}", (), fixes)
+        return None
 
     def window(self) -> Window:
         """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
@@ -240,14 +316,16 @@ class ClauseParser(ConditionParser):
         return Window(start, self.last_end(), size, experiments)
 
     def one_of(self, words: tuple[str, ...]) -> Word | None:
+        self.skip_colon()
         if self.kind == NAME and self.raw in words:
             return self.take()
         what = f"{', '.join(words[:-1])} or {words[-1]}"
         meant = near(self.raw, words, limit=1) or tuple(word for word in words if self.raw.startswith(word))
+        meant = meant or tuple(word for word in _OTHER_WORDS.get(self.raw, ()) if word in words)
         if self.kind != NAME or not meant:
             return self.missing_word(what)
-        fix = replace_fix(f"Replace `{self.raw}` by `{meant[0]}`", self.here(), meant[0])
-        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), (fix,))
+        fixes = tuple(replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word) for word in meant)
+        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), fixes)
         self.advance()
         return None
 
@@ -276,10 +354,16 @@ class ClauseParser(ConditionParser):
         elif word == "succeeds":
             bound = self.within() if self.accept_word("within") else None
         elif word in _OF_CONDITIONS:
-            condition = self.cond()
+            if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
+                note = (
+                    "a node that never fails is one that `succeeds`; nodes that run are conditions: `never node Dock`"
+                )
+                self.expected("a condition", (note,))
+            else:
+                condition = self.cond()
         elif word == "uses":
             bound = self.bound()
-            resource = self.plain_name("a signal") if self.expect_word("of") else None
+            resource = self.plain_name("a signal") if self.expect_word("of", forgotten=self.kind == NAME) else None
         elif word == "tries":
             bound = self.bound()
             per = self.path("a node") if self.accept_word("per") else None
@@ -289,13 +373,27 @@ class ClauseParser(ConditionParser):
                 bound = self.within()
             else:
                 bound = self.bound()
-                per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
+                if self.kind == NEWLINE:
+                    self.expected("`per` and a time", ("a rate is written `runs at least 10 per 1 s`",))
+                else:
+                    per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
         elif word == "follows":
             event = self.event()
         else:
             bound = self.within() if self.expect_word("within") else None
-            event = self.event() if self.expect_word("after") else None
+            event = self.event() if self.expect_word("after", ("of", "from", "since")) else None
         return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
+
+    def every_meant(self) -> bool:
+        """`all MoveBase`: complain, and pass it as `every`."""
+        if self.kind != NAME or self.raw not in ("all", "each", "any"):
+            return False
+        if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERBS:
+            return False
+        fix = replace_fix(f"Replace `{self.raw}` by `every`", self.here(), "every")
+        self.complain("syntax-error", self.here(), "all nodes of a kind are `every …`", (), (fix,))
+        self.advance()
+        return True
 
     def is_verb(self, further: int) -> bool:
         """Whether the next word but `further` is a verb."""
@@ -304,7 +402,26 @@ class ClauseParser(ConditionParser):
 
     def no_verb(self, subject: Subject) -> None:
         """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
-        if self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
+        first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
+        if isinstance(subject, Path) and self.kind == NAME and self.raw in _MODALS:
+            self.expected("a verb: takes, succeeds, needs, keeps, …", (_MEANT[self.raw],))
+        elif isinstance(subject, Path) and self.at("."):
+            fix = replace_fix("Write `/`", self.here(), "/")
+            self.complain("syntax-error", self.here(), "the names of a path have `/` between them", (), (fix,))
+            self.recover()
+        elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
+            note = "a clause speaks of one node: write it for each, or `sum of A, B` for the time of both"
+            self.expected(_A_VERB, (note,))
+        elif first is not None and first.kind == NAME and first.raw in _MEANT:
+            self.expected(f"a verb behind `{first.raw}` (takes, succeeds, needs, keeps, …)", (_MEANT[first.raw],))
+        elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
+            at = first.start + self.base
+            fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
+            message = "a condition stands behind its verb: `keeps`, `never`, `needs` or `leaves`"
+            notes = ("`keeps` while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
+            self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
+            self.recover()
+        elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
         elif not isinstance(subject, Path):
             self.expected(_A_VERB)
@@ -317,8 +434,6 @@ class ClauseParser(ConditionParser):
                 note = "a requirement has one title; reasons are written `because …`"
             elif self.kind == STRING:
                 note = '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"'
-            elif len(subject.names) == 1:
-                note = _MEANT.get(name, note)
             self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
@@ -332,7 +447,7 @@ class ClauseParser(ConditionParser):
         start = self.start()
         if self.accept_word("mission"):
             return Mission(start, self.last_end())
-        if self.accept_word("every"):
+        if self.accept_word("every") or self.every_meant():
             name = self.name("a node's ID or kind")
             return Every(start, self.last_end(), name) if name else None
         if self.accept_word("from"):
@@ -345,7 +460,12 @@ class ClauseParser(ConditionParser):
                 return None
             while path := self.path("a node"):
                 paths.append(path)
-                if not self.accept(","):
+                if self.at_word("and"):
+                    gone = Span(self.last_end() + self.base, self.here().end)
+                    fix = replace_fix("Write `,`", gone, ",", safe=True)
+                    self.complain("syntax-error", self.here(), "`,` stands between them", (), (fix,))
+                    self.advance()
+                elif not self.accept(","):
                     break
             return Sum(start, self.last_end(), tuple(paths))
         return self.path("a node")
@@ -358,7 +478,8 @@ class ClauseParser(ConditionParser):
             return Event(start, self.last_end(), None, "when", condition)
         path = None if self.accept_word("mission") else self.path("an event: a node and what happens to it")
         if not (self.kind == NAME and self.raw in HAPPENINGS):
-            self.expected("starts, succeeds, fails, finishes or halts")
+            note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+            self.expected("starts, succeeds, fails, finishes or halts", (note,), self.replaced_by(HAPPENINGS))
             return None
         happening = self.take().raw
         return Event(start, self.last_end(), path, happening)
@@ -367,6 +488,7 @@ class ClauseParser(ConditionParser):
 
     def bound(self) -> Bound | None:
         """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
+        self.skip_colon()
         start = self.start()
         if self.accept_word("between"):
             lower = self.amount()
@@ -375,7 +497,9 @@ class ClauseParser(ConditionParser):
         relation = None
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
             relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
-        if relation is None:
+        if relation is None and (said := self.bound_in_other_words()):
+            relation = said
+        elif relation is None:
             meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
             if meant is None:
                 example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
@@ -391,6 +515,20 @@ class ClauseParser(ConditionParser):
         self.advance()
         value = self.bounded()
         return Bound(start, self.last_end(), relation, value)
+
+    def bound_in_other_words(self) -> str | None:
+        """`no more than`, `up to`: complain, and leave their last word at hand."""
+        for length in (3, 2):
+            words = tuple(self.raws[self.index : self.index + length])
+            meant = _BOUNDS_IN_WORDS.get(words)
+            if meant is not None:
+                span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
+                written = " ".join(meant)
+                fix = replace_fix(f"Write `{written}`", span, written, safe=True)
+                self.complain("syntax-error", span, f"this bound is written `{written}`", (), (fix,))
+                self.go_to(self.index + length - 1)
+                return RELATIONS[meant]
+        return None
 
     def within(self) -> Bound:
         """Bounded, as the upper bound that `within` and `every` mean"""
@@ -420,6 +558,7 @@ class ClauseParser(ConditionParser):
 
     def amount(self, strings: bool = False) -> Amount | None:
         """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
+        self.skip_colon()
         negative = self.accept("-")
         if self.kind == QUANTITY or self.kind == NUMBER:
             return Amount(self.take(), negative)
@@ -443,6 +582,10 @@ class ClauseParser(ConditionParser):
         elif self.kind == STRING:
             self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
+        elif word in _OTHER_SORTS:
+            fix = replace_fix(f"Write `{_OTHER_SORTS[word]}`", Span(first, end), _OTHER_SORTS[word])
+            message = f"`{word}` is no unit: did you mean `{_OTHER_SORTS[word]}`?"
+            self.report(Diagnostic("unknown-unit", Span(first, end), message, fixes=(fix,)))
         elif word not in UNITLESS and not is_unit(word):
             self.report(unknown_unit(self.text, first, end))
         while self.starts[self.index] < end and self.kind != NEWLINE:
@@ -453,12 +596,45 @@ class ClauseParser(ConditionParser):
 _MEANT: Final = {  # by what is read as a node in front of a verb
     "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
+    "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
+    "if": "what holds in a situation only is followed by `while humans_near`, or `when fragile`",
+    "unless": "write `while not humans_near`",
+    "after": "write `follows Look succeeds`, or `starts within 2 s after Look succeeds`",
+    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
+    "between": "a range is written `keeps 0 N <= force <= 3 N`",
+    "always": "write `keeps battery >= 15 %`",
+    "not": "write `never lamp_on`, or `keeps not lamp_on`",
+    **dict.fromkeys(
+        ("must", "shall", "should", "will", "may"),
+        "a clause begins with its verb, without such a word: `takes at most 30 s`",
+    ),
 }
+_OTHER_WORDS: Final = {  # for actions and methods
+    **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
+    **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
+    **dict.fromkeys(("inspection", "demonstration"), ("review", "test")),
+    **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
+}
+_MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
+_OTHER_SORTS: Final = {
+    **dict.fromkeys(("boolean", "Boolean", "Bool", "flag"), "bool"),
+    **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
+    **dict.fromkeys(("int", "integer", "float", "double", "number", "count"), "1"),
+}
+_COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
+_BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
+    **dict.fromkeys(
+        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to")), ("at", "most")
+    ),
+    **dict.fromkeys((("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than")), ("at", "least")),
+    **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
+    **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
+}
 _INSTEAD_OF_BOUNDS: Final = {
     "<=": ("at", "most"),
     ">=": ("at", "least"),
@@ -468,4 +644,7 @@ _INSTEAD_OF_BOUNDS: Final = {
     "below": ("less", "than"),
     "above": ("more", "than"),
     "within": ("at", "most"),
+    "over": ("more", "than"),
+    **dict.fromkeys(("max", "maximum", "maximal", "maximally"), ("at", "most")),
+    **dict.fromkeys(("min", "minimum", "minimal", "minimally"), ("at", "least")),
 }

@@ -40,6 +40,11 @@ def program() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; `arguments` without the program's name, None: those of the process."""
+    if sys.stdout is None or sys.stderr is None:  # closed before the start: `btq check >&-`
+        from io import BytesIO, TextIOWrapper
+
+        nobody = TextIOWrapper(BytesIO(), encoding="utf-8")
+        sys.stdout, sys.stderr = sys.stdout or nobody, sys.stderr or nobody
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given in (["--version"], ["-V"]):
         print(f"btq {__version__}")
@@ -79,9 +84,9 @@ def _finish(run: Callable[[Any], int], options: object) -> int:
         sys.stdout.flush()
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # the reader of our output has seen enough: `btq check | head`
+    except BrokenPipeError:  # the reader of our output has seen enough: `btq check | head`; ruff says 0, too
         sys.stderr.close()
-        return TROUBLE
+        return CLEAN
     except OSError as error:  # our own output cannot be written: a full disk
         print(f"btq: {error.strerror}", file=sys.stderr)
         return TROUBLE

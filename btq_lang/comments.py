@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import LINE_END
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     L = TypeVar("L", bound=CodeLine)
 
 
-@record
-class Comment:
+class Comment(Record):
     """A comment.
 
     Attributes:
@@ -57,8 +56,7 @@ class Comment:
         return LINE_END.sub("\n", inside)
 
 
-@record
-class Comments:
+class Comments(Record):
     """The comments of an element, by place, each in the order of the file.
 
     Attributes:
@@ -88,12 +86,11 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
     """
     if "#" not in parsed.text and "/" not in parsed.text:
         return {}
-    found: dict[int, dict[str, tuple[Comment, ...]]] = {}
+    found: dict[int, dict[str, list[Comment]]] = {}
 
     def add(line: _Line, place: str, remarks: list[Comment]) -> None:
         if remarks:
-            places = found.setdefault(line.start, {})
-            places[place] = (*places.get(place, ()), *remarks)
+            found.setdefault(line.start, {}).setdefault(place, []).extend(remarks)
 
     open_lines: list[_Line] = []  # the line above and those whose blocks it stands in
     for comment_lines, line in _lines(parsed.text):
@@ -112,7 +109,10 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
         while open_lines and open_lines[-1].level >= line.level:
             open_lines.pop()
         open_lines.append(line)
-    return {start: Comments(**places) for start, places in found.items()}
+    return {
+        start: Comments(**{place: tuple(remarks) for place, remarks in places.items()})
+        for start, places in found.items()
+    }
 
 
 def block_of(blanks: str, open_lines: Sequence[L], level: int) -> L | None:

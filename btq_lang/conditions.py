@@ -40,6 +40,10 @@ HEADS: Final = SUBJECT_HEADS | {
     "verified",
 }
 FUNCTIONS: Final = frozenset(("max", "min", "mean", "p95", "stddev", "change", "count"))
+_OTHER_FUNCTIONS: Final = {
+    **dict.fromkeys(("avg", "average"), "mean"),
+    **{"maximum": "max", "minimum": "min", "std": "stddev", "delta": "change", "diff": "change"},
+}
 COMPARISONS: Final = frozenset(("<=", ">=", "<", ">", "==", "!="))
 
 MAX_NESTING: Final = 50  # of brackets in one condition
@@ -217,7 +221,11 @@ class ConditionParser(Cursor):
             if not self.at_keyword():
                 if self.kinds[self.index + 1] == OPEN and self.adjacent(self.index + 1):
                     functions = ", ".join(sorted(FUNCTIONS))
-                    self.expected(f"a function ({functions})", (), self.replaced_by(FUNCTIONS))
+                    meant = _OTHER_FUNCTIONS.get(self.raw)
+                    fixes = self.replaced_by(FUNCTIONS)
+                    if meant is not None:
+                        fixes = (replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant),)
+                    self.expected(f"a function ({functions})", (), fixes)
                     return None
                 return Operand(self.take())
         if self.kind == OPEN:

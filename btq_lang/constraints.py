@@ -7,13 +7,13 @@ One invariant: the answer depends on the text and on the names of the nodes.  Wh
 from __future__ import annotations
 
 import re
-from collections.abc import Set
-from functools import cache
+from collections.abc import Container
+from functools import cache, lru_cache
 
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.parser import parse
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Claim, Path, Requirement, Word
 from btq_lang.text import Span
@@ -22,8 +22,7 @@ from btq_lang.text import Span
 _KEYWORDS = ("successif", "failureif", "failuerif")
 
 
-@record
-class Constraint:
+class Constraint(Record):
     """A keyword in a text, and what stands behind it.
 
     Attributes:
@@ -51,20 +50,26 @@ def constraints(word: Word) -> list[Constraint]:
     ]
 
 
-def can_be_checked(text: str, node_names: Set[str]) -> bool:
+def can_be_checked(text: str, node_names: Container[str]) -> bool:
     """Whether it is a script that the engine takes for a condition, or clauses of a requirement; `it takes at most 5 s`
     is none, unless there is a node `it`."""
+    needed = _nodes_needed(text)
+    return needed is not None and all(name in node_names for name in needed)
+
+
+@lru_cache(1_000)
+def _nodes_needed(text: str) -> frozenset[str] | None:
+    """The names that must be those of nodes, so that it can be checked; None where it cannot."""
     if is_script(text):
-        return True
+        return frozenset()
     words = text.replace(".", " ").split()
     if not words or (words[0] not in HEADS and VERBS.isdisjoint(words)):
-        return False
+        return None
     found = clauses_of(text)
-    return found is not None and all(
-        node_names >= {name.text for name in clause.subject.names}
-        for clause in found[0].clauses
-        if isinstance(clause, Claim) and isinstance(clause.subject, Path)
-    )
+    if found is None:
+        return None
+    subjects = [clause.subject for clause in found[0].clauses if isinstance(clause, Claim)]
+    return frozenset([name.text for subject in subjects if isinstance(subject, Path) for name in subject.names])
 
 
 def is_script(text: str) -> bool:

@@ -6,14 +6,15 @@ what stands in a file that is written in XML is shown where it stands there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
-from urllib.parse import unquote, urlsplit
-from urllib.request import pathname2url, url2pathname
+from urllib.parse import quote, unquote, urlsplit
 
 from lsprotocol import types
 
-from btq_lang.diagnostics import Diagnostic, Place, Tag
+from btq_lang.diagnostics import Diagnostic, Related, Tag
+from btq_lang.protocol import Plain
 from btq_lang.rules import Severity, page_path
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
 
@@ -50,19 +51,30 @@ class Converter:
         from btq_lang.loader import absolute  # it knows workspaces, which are not needed to start
 
         parts = urlsplit(uri)
-        return absolute(url2pathname(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
+        return absolute(_path_of(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")
+
+    def changed(self, lines: LineIndex, changes: Sequence[types.TextDocumentContentChangeEvent]) -> str:
+        """What a text says after changes, each of which counts in what the one before has made."""
+        for change in changes:
+            if isinstance(change, types.TextDocumentContentChangePartial):
+                start, end = (self._offset_in(lines, place) for place in (change.range.start, change.range.end))
+                lines = lines.replaced(Span(start, max(start, end)), change.text)
+            else:
+                lines = LineIndex(change.text)
+        return lines.text
 
     def offset(self, workspace: Workspace, path: str, position: types.Position) -> int:
-        place = Position(position.line, position.character)
-        return workspace.files[path].lines.offset(place, self.encoding)
+        return self._offset_in(workspace.files[path].lines, position)
+
+    def _offset_in(self, lines: LineIndex, position: types.Position) -> int:
+        return lines.offset(Position(position.line, position.character), self.encoding)
 
     def offset_made(self, workspace: Workspace, path: str, position: types.Position) -> int | None:
         """As `offset`; of a file in XML, where in this language that is; None: nowhere."""
         file = workspace.files[path]
         if file.origin is None:
             return self.offset(workspace, path, position)
-        place = Position(position.line, position.character)
-        return file.origin.places.made(file.source_lines.offset(place, self.encoding))
+        return file.origin.places.made(self._offset_in(file.source_lines, position))
 
     def span(self, workspace: Workspace, path: str, range_: types.Range) -> Span:
         start, end = (self.offset(workspace, path, position) for position in (range_.start, range_.end))
@@ -71,7 +83,7 @@ class Converter:
     # ---- to the editor ----
 
     def uri(self, path: str) -> str:
-        return self.uris.get(path) or ("file://" + pathname2url(path) if path.startswith("/") else path)
+        return self.uris.get(path) or ("file://" + _url_of(path) if path.startswith("/") else path)
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
         """A span of a file's text, where it stands on the disk."""
@@ -109,38 +121,41 @@ class Converter:
         ]
         return types.WorkspaceEdit(document_changes=[*documents])
 
-    def diagnostic(self, workspace: Workspace, path: str, found: Diagnostic) -> types.Diagnostic:
-        """A diagnostic; its spans count in the text on the disk already."""
+    def diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Plain]:
+        """Diagnostics; their spans count in the text on the disk already."""
+        lines = workspace.files[path].source_lines
 
-        def location(place: Place) -> types.Location:
-            target = place.path or path
-            return types.Location(self.uri(target), self.plain_range(workspace.files[target].source_lines, place.span))
+        def information(related: Related) -> Plain:
+            target = related.place.path or path
+            range_ = self._plain_range(workspace.files[target].source_lines, related.place.span)
+            return {"location": {"uri": self.uri(target), "range": range_}, "message": related.message}
 
-        return types.Diagnostic(
-            self.plain_range(workspace.files[path].source_lines, found.span),
-            "\n".join((found.message, *found.notes)),
-            severity=_SEVERITIES[found.effective_severity],
-            code=found.rule,
-            code_description=types.CodeDescription(self.uri(page_path(found.rule))),
-            source="btq",
-            tags=[_TAGS[tag] for tag in found.tags],
-            related_information=[
-                types.DiagnosticRelatedInformation(location(related.place), related.message)
-                for related in found.related
-            ],
-        )
+        return [
+            {
+                "range": self._plain_range(lines, one.span),
+                "message": "\n".join((one.message, *one.notes)) if one.notes else one.message,
+                "severity": _SEVERITIES[one.effective_severity],
+                "code": one.rule,
+                "codeDescription": {"href": self.uri(page_path(one.rule))},
+                "source": "btq",
+                "tags": [_TAGS[tag] for tag in one.tags],
+                "relatedInformation": [information(related) for related in one.related],
+            }
+            for one in found
+        ]
 
-    def action(
-        self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None
-    ) -> types.CodeAction:
-        mends = action.diagnostic
-        return types.CodeAction(
-            action.title,
-            kind=action.kind,
-            diagnostics=[self.diagnostic(workspace, path, mends)] if mends is not None else None,
-            is_preferred=True if action.preferred else None,
-            edit=self.workspace_edit(workspace, action.edits, versions),
-        )
+    def _plain_range(self, lines: LineIndex, span: Span) -> Plain:
+        start, end = lines.position(span.start, self.encoding), lines.position(span.end, self.encoding)
+        return {
+            "start": {"line": start.line, "character": start.column},
+            "end": {"line": end.line, "character": end.column},
+        }
+
+    def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
+        mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
+        found = {"diagnostics": self.diagnostics(workspace, path, [mends])} if mends is not None else {}
+        edit = self.workspace_edit(workspace, action.edits, versions)
+        return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
 
     def merged(self, edits: Iterable[types.WorkspaceEdit]) -> types.WorkspaceEdit:
         """Several edits of different files as one."""
@@ -184,26 +199,47 @@ class Converter:
         signature = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
         return types.SignatureHelp([signature], active_signature=0, active_parameter=found.active)
 
-    def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> types.CompletionList:
-        range_ = self.range(workspace, path, found.span)
+    def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> Plain:
+        file = workspace.files[path]
+        assert file.origin is None, "nobody is asked what may stand in XML"
+        range_ = self._plain_range(file.lines, found.span)
         items = []
         for number, one in enumerate(found.proposals):
             snippet = one.snippet if snippets else None
-            text = snippet if snippet is not None else one.insert
-            items.append(
-                types.CompletionItem(
-                    one.label,
-                    kind=_COMPLETION_KINDS[one.kind],
-                    detail=one.detail or None,
-                    filter_text=one.filter or None,
-                    sort_text=f"{number:05}",
-                    insert_text_format=types.InsertTextFormat.Snippet if snippet is not None else None,
-                    text_edit=types.TextEdit(range_, text),
-                    tags=[types.CompletionItemTag.Deprecated] if one.old else None,
-                    data={"path": path, "kind": one.kind, "name": one.name, "include": one.include},
-                )
-            )
-        return types.CompletionList(is_incomplete=False, items=items)
+            item: Plain = {
+                "label": one.label,
+                "kind": _COMPLETION_KINDS[one.kind],
+                "sortText": f"{number:05}",
+                "textEdit": {"range": range_, "newText": snippet if snippet is not None else one.insert},
+                "data": {"path": path, "kind": one.kind, "name": one.name, "include": one.include},
+            }
+            if one.detail:
+                item["detail"] = one.detail
+            if one.filter:
+                item["filterText"] = one.filter
+            if snippet is not None:
+                item["insertTextFormat"] = types.InsertTextFormat.Snippet
+            if one.old:
+                item["tags"] = [types.CompletionItemTag.Deprecated]
+            items.append(item)
+        return {"isIncomplete": False, "items": items}
+
+
+def _path_of(url: str) -> str:
+    """The path that a URL names: as urllib.request has it, which takes long to import."""
+    if os.name != "nt":
+        return unquote(url)
+    from urllib.request import url2pathname
+
+    return url2pathname(url)
+
+
+def _url_of(path: str) -> str:
+    if os.name != "nt":
+        return quote(path)
+    from urllib.request import pathname2url  # as above
+
+    return pathname2url(path)
 
 
 def _around(*ranges: types.Range) -> types.Range:

@@ -11,9 +11,10 @@ from bisect import bisect_left
 from collections.abc import Iterable
 
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.lexer import Lexer, close_string, unknown_unit
+from btq_lang.lexer import Lexer
 from btq_lang.near import near
 from btq_lang.scan import line_end, line_start, number_end, unit_run
+from btq_lang.slips import close_string, unknown_unit
 from btq_lang.syntax import Word
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
@@ -101,11 +102,28 @@ class Cursor:
         if self.kind != NEWLINE:
             if not notes and self.at_name() and self.is_behind_name():
                 notes = (_QUOTES,)
-            self.expected("the end of the line", notes, fixes)
+            if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
+                notes = ("a name with a point in it stands in quotes",)
+            if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
+                notes = ("a quantity has one number and one unit: `1.5 h`, `90 min`",)
+            self.expected("the end of the line", notes, fixes or self.needless())
         last = len(self.kinds) - 2
         end = self.starts[last] + len(self.raws[last]) if last >= 0 else self.starts[0]
         self.more = self.lexer.open_line()
         return end - self.base
+
+    def needless(self) -> tuple[Fix, ...]:
+        """The fix for `:` or `.` where neither belongs: at the end of the line, or behind its first word."""
+        if not (self.at(":") or self.at(".")) or not (self.kinds[self.index + 1] == NEWLINE or self.index == 1):
+            return ()
+        return (replace_fix(f"Remove `{self.raw}`", self.here(), "", safe=True),)
+
+    def skip_colon(self) -> None:
+        """Pass over a `:` as other languages have it behind a word: `on violation: fail`."""
+        if self.at(":"):
+            fix = replace_fix("Remove `:`", self.here(), "", safe=True)
+            self.complain("syntax-error", self.here(), "no `:` stands here", (), (fix,))
+            self.advance()
 
     def deeper(self, level: int) -> bool:
         """Whether the open line stands in a block below `level`."""
@@ -177,13 +195,22 @@ class Cursor:
         """The operator, and `further` is what a complaint says about it."""
         if self.accept(operator):
             return True
-        self.expected(f"`{operator}`{further}")
+        fixes: tuple[Fix, ...] = ()
+        if operator == ":" and (self.at("=") or self.at_word("in") or self.at_word("is")):
+            fixes = (replace_fix("Write `:`", self.here(), ":"),)
+        self.expected(f"`{operator}`{further}", (), fixes)
         return False
 
-    def expect_word(self, word: str) -> bool:
+    def expect_word(self, word: str, instead: tuple[str, ...] = (), forgotten: bool = False) -> bool:
+        """The word; `instead` is what people write for it, and `forgotten` that what stands here may follow it."""
         if self.accept_word(word):
             return True
-        self.expected(f"`{word}`")
+        fixes: tuple[Fix, ...] = ()
+        if self.kind == NAME and self.raw in instead:
+            fixes = (replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word),)
+        elif forgotten:
+            fixes = (replace_fix(f"Put `{word}` before it", Span(self.here().start, self.here().start), f"{word} "),)
+        self.expected(f"`{word}`", (), fixes)
         return False
 
     def name(self, what: str) -> Word | None:
@@ -243,7 +270,7 @@ class Cursor:
     def expected(self, what: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> None:
         """Complain that something else was expected, and pass over what stands here: to the end of the brackets'
         attribute, or to the end of the line."""
-        cause = self.lost_quote() or self.wrong_unit() or self.decimal_comma()
+        cause = self.lost_quote() or self.wrong_unit() or self.decimal_comma() or self.leading_point()
         if cause is not None:
             self.report(cause)
         else:
@@ -287,14 +314,28 @@ class Cursor:
 
     def decimal_comma(self) -> Diagnostic | None:
         """A comma in a number: `0,5 m/s`."""
-        following = self.index + 1
-        if not self.at(",") or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
+        comma = self.index if self.at(",") else self.index - 1
+        following = comma + 1
+        if comma < 1 or self.raws[comma] != "," or self.kinds[comma - 1] != NUMBER:
             return None
-        glued = self.adjacent(self.index) and self.adjacent(following)
+        glued = self.adjacent(comma) and self.adjacent(following)
         if not glued or self.kinds[following] not in (NUMBER, QUANTITY):
             return None
-        fix = replace_fix("Write a point", self.here(), ".")
-        return Diagnostic("syntax-error", self.here(), "the decimals of a number stand behind a point", fixes=(fix,))
+        place = Span(self.starts[comma], self.starts[following])
+        fixes = [replace_fix("Write a point", place, ".")]
+        if number_end(self.text, self.starts[following]) - self.starts[following] == 3:  # thousands, perhaps
+            fixes.append(replace_fix("Remove the comma", place, ""))
+        message = "the decimals of a number stand behind a point"
+        return Diagnostic("syntax-error", place, message, fixes=tuple(fixes))
+
+    def leading_point(self) -> Diagnostic | None:
+        """A number without its first digit: `.5 m/s`."""
+        following = self.index + 1
+        if not self.at(".") or not self.adjacent(following) or self.kinds[following] not in (NUMBER, QUANTITY):
+            return None
+        at = self.here().start
+        fix = replace_fix("Put `0` before it", Span(at, at), "0", safe=True)
+        return Diagnostic("syntax-error", self.here(), "a number begins with a digit", fixes=(fix,))
 
     def replaced_by(self, words: Iterable[str]) -> tuple[Fix, ...]:
         """The fix for a word at hand that is probably one of `words`, misspelt; none for any other."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import Span
 
@@ -21,9 +21,8 @@ class Tag(Enum):
     DEPRECATED = 2
 
 
-@record
-class Place:
-    """A span in a file.
+class Place(Record):
+    """A span in a file.  Two are the same only if they count from the same item, not if from one that says the same.
 
     Attributes:
         path: the file; None is the file of the diagnostic.
@@ -35,25 +34,30 @@ class Place:
     path: str | None = None
     anchor: object | None = None
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Place) and (
+            (self.span, self.path) == (other.span, other.path) and self.anchor is other.anchor
+        )
 
-@record
-class Related:
+    def __hash__(self) -> int:
+        return hash((self.span, self.path))
+
+
+class Related(Record):
     """Another place that a reader needs to see to understand the diagnostic."""
 
     place: Place
     message: str
 
 
-@record
-class Change:
+class Change(Record):
     """One edit of a fix: the text at `place` becomes `text`."""
 
     place: Place
     text: str
 
 
-@record
-class Fix:
+class Fix(Record):
     """A change that mends a diagnostic.
 
     Attributes:
@@ -66,8 +70,7 @@ class Fix:
     safe: bool = False
 
 
-@record
-class Diagnostic:
+class Diagnostic(Record):
     """A finding of one rule."""
 
     rule: str

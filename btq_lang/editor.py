@@ -8,22 +8,25 @@ from __future__ import annotations
 import asyncio
 import functools
 import logging
+import sys
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future
+from threading import Event
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
+from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
-from pygls.protocol import LanguageServerProtocol
 
 from btq_lang import __version__
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.protocol import Messages, Plain, Protocol
 from btq_lang.session import Session
 
 if TYPE_CHECKING:
+    from btq_lang.features import Colours
     from btq_lang.workspace import Workspace
 
 T = TypeVar("T")
@@ -36,17 +39,8 @@ class Refused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+A_FEW = 2  # of the files, behind which is let go what is held for nobody
 MOST_DETAILS = 500  # a parameter may hold a whole text
-
-
-class Protocol(LanguageServerProtocol):
-    """The protocol, without a leak: pygls 2.1 keeps what became of each notification, and every key is one."""
-
-    def _check_handler_result(self, future: Future[Any]) -> None:
-        kept = {} if future.cancelled() else self._request_futures  # pygls goes through them when it cancels all
-        for key in [key for key, other in kept.items() if other is future]:
-            del kept[key]
-        super()._check_handler_result(future)
 
 
 class Traced(logging.Handler):
@@ -67,25 +61,47 @@ class Traced(logging.Handler):
 class Server(LanguageServer):
     """The server: a session, the way to the editor's terms, and what the editor has been told."""
 
+    protocol: Protocol
+
     def __init__(self) -> None:
-        super().__init__(
-            "btq", __version__, protocol_cls=Protocol, text_document_sync_kind=types.TextDocumentSyncKind.Full
-        )
+        super().__init__("btq", __version__, protocol_cls=Protocol)
         self.session = Session()
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[tuple[Diagnostic, ...], int | None]] = {}
-        self.tokens: dict[str, tuple[str, list[int]]] = {}
+        self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
 
+    def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
+        """As in pygls, but for how messages are read."""
+        self._stop_event = Event()
+        self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
+        reader = Messages(stdin or sys.stdin.buffer)
+        report = self.report_server_error
+        try:
+            asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
+        except BrokenPipeError:
+            logging.getLogger(__name__).error("the editor has gone")
+        except (KeyboardInterrupt, SystemExit):
+            pass
+        finally:
+            self.shutdown()  # type: ignore[no-untyped-call]  # pygls has no types there
+
     # ---- what an editor that traces is told ----
 
     def feature(self, feature_name: str, options: Any | None = None) -> Callable[[Handler], Handler]:
-        register = super().feature(feature_name, options)
-        return lambda handler: register(self._timed(feature_name, handler))
+        """As in pygls, which would look for what each handler takes, and compile a converter to check its options."""
+
+        def register(handler: Handler) -> Handler:
+            self.protocol.fm.features[feature_name] = self._timed(feature_name, handler)
+            if options is not None:
+                self.protocol.fm.feature_options[feature_name] = options
+            return handler
+
+        return register
 
     def trace(self, message: str, details: str) -> None:
         """Tell what the server does, if the editor has asked for it; the details, if it has asked for those."""
@@ -98,7 +114,8 @@ class Server(LanguageServer):
         """A handler that says how long it took."""
 
         def say(begin: float, arguments: tuple[Any, ...]) -> None:
-            self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MOST_DETAILS])
+            if self.protocol.trace is not types.TraceValue.Off:
+                self.trace(f"{name}: {1000 * (perf_counter() - begin):.1f} ms", repr(arguments)[:MOST_DETAILS])
 
         @functools.wraps(handler)
         def answer(*arguments: Any) -> Any:
@@ -215,6 +232,8 @@ class Server(LanguageServer):
                 self.publish(path)
             except Exception:  # one file that cannot be checked must not silence the others, nor end the server
                 logging.getLogger(__name__).exception("checking %s", path)
+            if len(self.waiting) % A_FEW == 0:
+                self.session.let_go()
             await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)
@@ -225,8 +244,8 @@ class Server(LanguageServer):
         version = self.versions.get(path)
         if workspace is None or not (path in self.session.open or self.session.setting("checkClosedFiles", True)):
             if self.published.pop(path, ((), None))[0]:
-                params = types.PublishDiagnosticsParams(self.convert.uri(path), [])
-                self.text_document_publish_diagnostics(params)
+                gone = {"uri": self.convert.uri(path), "diagnostics": []}
+                self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
             self.session.forget(path)
             return
         found = self.diagnostics(path)
@@ -235,21 +254,22 @@ class Server(LanguageServer):
             return
         self.published[path] = found, version
         if found or known is not None or path in self.session.open:
-            shown = [self.convert.diagnostic(workspace, path, each) for each in found]
-            uri = self.convert.uri(path)
-            self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, shown, version))
+            params: Plain = {"uri": self.convert.uri(path)}
+            params["diagnostics"] = self.convert.diagnostics(workspace, path, found)
+            if version is not None:
+                params["version"] = version
+            self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
-    def report(self, path: str, previous: str | None) -> types.DocumentDiagnosticReport:
+    def report(self, path: str, previous: str | None) -> Plain:
         """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
         workspace = self.session.workspace_of(path)
         found = self.diagnostics(path)
         result = f"{path in self.session.open}:{hash(found):x}"
         if workspace is None:
-            return types.RelatedFullDocumentDiagnosticReport([])
+            return {"kind": "full", "items": []}
         if previous == result:
-            return types.RelatedUnchangedDocumentDiagnosticReport(result)
-        shown = [self.convert.diagnostic(workspace, path, each) for each in found]
-        return types.RelatedFullDocumentDiagnosticReport(shown, result_id=result)
+            return {"kind": "unchanged", "resultId": result}
+        return {"kind": "full", "resultId": result, "items": self.convert.diagnostics(workspace, path, found)}
 
     def reload(self) -> None:
         """Read folders and projects again, and tell what has changed."""

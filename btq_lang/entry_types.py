@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Node, Pair, Port, Tree
 from btq_lang.workspace import Definition, Scope
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Meeting:
+class Meeting(Record):
     """A node's port that an entry is given to.
 
     Attributes:
@@ -80,7 +79,7 @@ def is_number(text: str) -> bool:
 
     Source: std::from_chars, for an int and for a double.
     """
-    return _NUMBER.fullmatch(text) is not None
+    return re.fullmatch(_NUMBER, text) is not None
 
 
 def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
@@ -100,6 +99,4 @@ def _plain(type_: str) -> str:
     return "" if type_ in ("BT::AnyTypeAllowed", "BT::Any") else type_
 
 
-_NUMBER: Final = re.compile(
-    r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"
-)
+_NUMBER: Final = r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from functools import cache, lru_cache
+from functools import cache
 
 from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -24,11 +24,11 @@ from btq_lang.scan import (
     line_opening,
     name_end,
     number_at,
-    number_end,
     string_end,
     symbol_at,
     unit_run,
 )
+from btq_lang.slips import close_string, unknown_unit, value_meant
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import Span
 from btq_lang.tokens import (
@@ -49,7 +49,6 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
-from btq_lang.units import nearest_units
 
 if not COMPILED:
     from btq_lang.patterns import read_tokens
@@ -139,13 +138,13 @@ class Lexer:
     def open_line(self) -> bool:
         """Go to the next line that says something and find its level; False at the end of the text."""
         text, size = self.text, self.size
-        start, position = line_opening(text, self.position)
+        start, position = line_opening(text, self.position, self.blanks)
         blanks = text[start:position]
         while position < size and ord(text[position]) in (HASH, SLASH):
             end = self._comment(position)
             if end == position:
                 break
-            start_behind, position = line_opening(text, end)
+            start_behind, position = line_opening(text, end, self.blanks)
             if start_behind > end:
                 start = start_behind
                 blanks = text[start:position]
@@ -350,13 +349,53 @@ class Lexer:
             end += 1
         if not self._strange:
             self._strange = True
-            notes = (_INSTEAD[character],) if character in _INSTEAD else ()
+            instead = _NO_END_SIGN if character == ";" else _INSTEAD.get(character)
+            instead = _UNITS_OF_SIGNALS if character == "[" and self.raws[:1] == ["signal"] else instead
+            notes = (instead,) if instead is not None else ()
             shown = repr(character) if not character.isprintable() or character.isspace() else f"`{character}`"
-            self._report("syntax-error", start, end, f"{shown} means nothing here", notes)
+            message = f"{shown} means nothing here"
+            fixes = self._meant(start, character)
+            self.problems.append(Diagnostic("syntax-error", Span(start, end), message, notes=notes, fixes=fixes))
         return end
 
+    def _meant(self, start: int, character: str) -> tuple[Fix, ...]:
+        """The fix for characters that only look like others, all of them in the line: `≤`, `“`, a no-break space."""
+        if character == "°":
+            degrees = "degC" if self.text[start + 1 : start + 2] == "C" else "deg"
+            return (replace_fix(f"Write `{degrees}`", Span(start, start + len(degrees) // 2), degrees),)
+        from unicodedata import normalize  # few files have any
+
+        is_quote = character in _OTHER_QUOTES
+        changes: list[Change] = []
+        for at in range(start, line_end(self.text, start)):
+            other = self.text[at]
+            if not is_quote and other in "\"'#":
+                break  # texts and comments have the characters that they have
+            plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
+            if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
+                changes.append(Change(Place(Span(at, at + 1)), plain))
+        return (Fix("Write plain characters", tuple(changes)),) if changes else ()
+
     def _half_braced(self, start: int, character: str) -> int:
-        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
+        """A brace without the other one: `{key` or `key}`; the key is left as a word.  Alone on its line, or at the
+        end of it, it is somebody's block."""
+        behind = blanks_end(self.text, start + 1, self.size)
+        ends_line = behind == self.size or self.text[behind] in "\r\n"
+        if ends_line and not self._strange and (character == "{" or not self.raws):
+            before = start
+            while self.raws and self.text[before - 1] in " \t":
+                before -= 1
+            fix = replace_fix(f"Remove `{character}`", Span(before, start + 1), "")
+            message = "a block has no braces: what stands deeper belongs to the line above"
+            self._strange = True
+            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+            return start + 1
+        if character == "{" and (twice := re.compile(r"\{(\{[^{}\r\n]*\})\}").match(self.text, start)):
+            fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
+            message = "a blackboard entry has one pair of braces"
+            self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
+            self._strange = True
+            return self._add(NAME, start, twice.end())
         word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
         end = self._add(NAME, start, word.end()) if word else start + 1
         if self._strange:
@@ -653,47 +692,6 @@ class Lexer:
 # ---- pieces ----
 
 
-def close_string(text: str, start: int) -> Fix:
-    """Close the string that begins at `start` on its line, before what is probably no part of it."""
-    end = line_end(text, start)
-    said = start + 1 + len(text[start + 1 : end].rstrip(" \t,"))
-    depth = 0
-    for at in range(start + 1, said):
-        depth += (text[at] == "(") - (text[at] == ")")
-        if depth < 0:  # it closes brackets that were opened before the string
-            said = start + 1 + len(text[start + 1 : at].rstrip(" \t,"))
-            break
-    return replace_fix(f"Close it with {text[start]}", Span(said, said), text[start])
-
-
-def value_meant(text: str, start: int, end: int, *, safe: bool) -> Fix:
-    """What is probably meant by a word that is no value: an entry, a number without its sign, a text.
-
-    Args:
-        safe: whether a text may stand there, and nothing else went wrong.
-    """
-    word = text[start:end]
-    if word[0] == "@":
-        return replace_fix(f"Write the entry `{{{word}}}`", Span(start, end), f"{{{word}}}")
-    if word[0] == "+" and word[1:2].isdecimal() and number_end(word, 1) == len(word):
-        return replace_fix(f"Write `{word[1:]}`", Span(start, start + 1), "", safe=safe)
-    return replace_fix("Put quotes around it", Span(start, end), quoted(word), safe=safe)
-
-
-def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
-    """What stands there is no unit; the fixes replace it by what was probably meant."""
-    word = text[start:end]
-    glued = start > 0 and text[start - 1].isdigit()
-    symbols = _nearest_units(word)
-    fixes = tuple(
-        replace_fix(f"Replace `{word}` by `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
-        for symbol in symbols
-    )
-    notes = ("a name that begins with a digit is written in quotes",) if glued and not symbols else ()
-    message = f"`{word}` is no unit" + (f": did you mean `{symbols[0]}`?" if symbols else "")
-    return Diagnostic("unknown-unit", Span(start, end), message, notes=notes, fixes=fixes)
-
-
 def _has_line_end(text: str, start: int, end: int) -> bool:
     return text.find("\n", start, end) >= 0 or text.find("\r", start, end) >= 0
 
@@ -748,14 +746,21 @@ def _top_line() -> re.Pattern[str]:
 # ---- tables ----
 
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
+_OTHER_QUOTES: Final = "“”„‟«»‘’"
 _INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
     "[": "attributes stand in `( … )`",
-    "“": "strings stand in straight quotes",
-    "”": "strings stand in straight quotes",
+    **dict.fromkeys(_OTHER_QUOTES, "strings stand in straight quotes"),
     "\xa0": "this is a no-break space: use an ordinary blank",
     "\ufeff": "a byte order mark belongs at the start of a file",
+}
+_NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
+_UNITS_OF_SIGNALS: Final = "a signal's unit stands behind `:`: `signal distance : m`"
+_LOOKS_LIKE: Final = {
+    **{"≤": "<=", "≥": ">=", "≠": "!=", "−": "-", "–": "-", "×": "*", "·": "*", "÷": "/"},
+    **dict.fromkeys("“”„‟«»", '"'),
+    **dict.fromkeys("‘’", "'"),
 }
 _BLANKS: Final = re.compile(r"[ \t]*")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
@@ -764,7 +769,6 @@ _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
-_nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
 _VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
 _IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))

@@ -15,6 +15,10 @@ from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
 from btq_lang.tokens import NAME, NODE_CLAUSES
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    import re
+
 
 def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node | None]:
     """{ Kind [ Label ] [ Attributes ] { NodeClause } NL | NodeClause { NodeClause } NL }
@@ -34,6 +38,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     block = blocks[-1]
     children = block.children
     node: Node | None = None
+    found: list[NodeClause] | None
     at = lexer.line_start
     behind = -1
     while True:
@@ -43,7 +48,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             if between is None or (match := read_line(text, between.end())) is None:
                 break
             at = between.end()
-        indent, first, second, third, key, value, next_key, next_value, bracket, end = match.groups()
+        indent, first, second, third, bracket, end = match.group(1, 2, 3, 4, 11, 12)
         if indent != column:
             if indent.startswith(column):
                 if node is None:
@@ -78,10 +83,11 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
         elif role == NO_NODE:
             if first not in NODE_CLAUSES or children or second == "QualityReq":
                 break
-            if (line := plain_clauses(text, at, base)) is None:
+            found, at = plain_clauses(text, at, base)
+            if found is None:
                 break
-            block.clauses += line[0]
-            at = behind = line[1]
+            block.clauses += found
+            behind = at
             node = None
             continue
         else:
@@ -92,38 +98,24 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                 kind = Word(value_kind(second[0], NAME), at, second)
                 if third is not None:
                     label = Word(value_kind(third[0], NAME), at + len(second) + 1, third)
-        if key is None:
-            pairs: tuple[Pair, ...] = ()
-        else:
-            pair = Pair(
-                Word(NAME, match.start(5) - base, key), Word(value_kind(value[0], NAME), match.start(6) - base, value)
-            )
-            if next_key is None:
-                pairs = (pair,)
-            else:
-                pairs = (
-                    pair,
-                    Pair(
-                        Word(NAME, match.start(7) - base, next_key),
-                        Word(value_kind(next_value[0], NAME), match.start(8) - base, next_value),
-                    ),
-                )
         at = match.end()
-        clauses: tuple[NodeClause, ...] = ()
-        if end and bracket != "":
-            node_end = match.start(10) - base
+        if end and bracket is None:
+            node = Node(start, match.start(12) - base, category, kind, label, (), (), ())
+        elif end and bracket:
+            node = Node(start, match.start(12) - base, category, kind, label, tuple(_pairs(match, base)), (), ())
         else:
             try:
-                found: list[NodeClause] = []
-                node_end = match.end(9)
-                if bracket == "":
-                    more = list(pairs)
-                    at = node_end = attributes(text, node_end, indent, base, more, found)
-                    pairs = tuple(more)
-                elif bracket is None:
+                found = []
+                node_end = match.end(11)
+                pairs: list[Pair] = []
+                if bracket is None:
                     node_end = at
                     if text[at] not in " ":
                         break
+                else:
+                    pairs = _pairs(match, base)
+                    if not bracket:
+                        at = node_end = attributes(text, node_end, indent, base, pairs, found)
                 if text[at] == "\n":
                     at += 1
                     node_end -= base
@@ -131,10 +123,26 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                     known = len(found)
                     at = line_clauses(text, at, base, found)
                     node_end = found[-1].end if len(found) > known else node_end - base
-                clauses = tuple(found)
             except (Unusual, IndexError):
                 break
+            node = Node(start, node_end, category, kind, label, tuple(pairs), tuple(found), ())
         behind = at
-        node = Node(start, node_end, category, kind, label, pairs, clauses, ())
         children.append(node)
     return behind, node
+
+
+def _pairs(line: re.Match[str], base: int) -> list[Pair]:
+    """The pairs that stand on a line"""
+    key, value, key2, value2, key3, value3 = line.group(5, 6, 7, 8, 9, 10)
+    if key is None:
+        return []
+    start = line.start
+    word = Word(value_kind(value[0], NAME), start(6) - base, value)
+    found = [Pair(Word(NAME, start(5) - base, key), word)]
+    if key2 is not None:
+        word = Word(value_kind(value2[0], NAME), start(8) - base, value2)
+        found.append(Pair(Word(NAME, start(7) - base, key2), word))
+        if key3 is not None:
+            word = Word(value_kind(value3[0], NAME), start(10) - base, value3)
+            found.append(Pair(Word(NAME, start(9) - base, key3), word))
+    return found

@@ -13,9 +13,8 @@ import os
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from btq_lang.globs import glob_matcher
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
-from btq_lang.record import record
+from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import File, Origin, Workspace
 
@@ -28,8 +27,7 @@ _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden on
 _BOM = "\ufeff"
 
 
-@record
-class LoadProblem:
+class LoadProblem(Record):
     """Something about a file that kept btq from doing what was asked."""
 
     path: str
@@ -42,8 +40,7 @@ class LoadProblem:
         return f"{shown(self.path)}{place}: {self.message}"
 
 
-@record
-class Found:
+class Found(Record):
     """The project that holds for a folder, and the file it was read from; None where there is no such file."""
 
     project: Project
@@ -51,8 +48,7 @@ class Found:
     problems: tuple[LoadProblem, ...] = ()
 
 
-@record
-class Loaded:
+class Loaded(Record):
     """Files with all that they include.
 
     Attributes:
@@ -124,7 +120,8 @@ def find_project(start: str) -> Found:
                 continue
             project, problems = parse_project(text or "", kind, root)
             told = tuple(LoadProblem(path, found.message, found.position) for found in problems)
-            return Found(project, path, (problem, *told) if problem else told)
+            lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
+            return Found(replace(project, lost_paths=lost), path, (problem, *told) if problem else told)
     return Found(Project(folder), None)
 
 
@@ -296,12 +293,19 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem]) -> Ite
             if _is_folder(entry):
                 if entry.name not in _SKIPPED_FOLDERS and not excluded(path + "/"):
                     (links if entry.is_symlink() else folders).append(path)
-            elif entry.name.endswith(SUFFIXES) and _is_file(path) and not excluded(path):
-                yield path
+            elif entry.name.endswith(SUFFIXES) and not excluded(path):
+                if _is_file(path):
+                    yield path
+                elif entry.is_symlink() and not os.path.exists(path):
+                    problems.append(LoadProblem(path, "cannot be read: a link to what is not there"))
 
 
 def excluder(project: Project) -> Callable[[str], bool]:
     """Whether the project leaves a path out, or a folder that it is in; a folder's path ends with `/`."""
+    if not project.exclude:
+        return lambda path: False
+    from btq_lang.globs import glob_matcher  # few projects leave something out
+
     matcher = glob_matcher(project.exclude)
     root = absolute(project.root).rstrip("/") + "/"
 

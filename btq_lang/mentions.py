@@ -13,7 +13,7 @@ from enum import Enum
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, NodeKind, lookup
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Amount,
@@ -76,8 +76,7 @@ class What(Enum):
     RULE = "rule"
 
 
-@record
-class Mention:
+class Mention(Record):
     """A word that names something.
 
     Attributes:
@@ -90,6 +89,7 @@ class Mention:
         pair: of a port or a key: the attribute it stands in.
         writes: a key that a script assigns.
         root: a key of the root blackboard: `{@key}`.
+        updates: a key that a script assigns and reads for that, as in `tries += 1`.
     """
 
     what: What
@@ -102,6 +102,7 @@ class Mention:
     pair: Pair | None = None
     writes: bool = False
     root: bool = False
+    updates: bool = False
 
 
 def mentions(item: Item) -> tuple[Mention, ...]:
@@ -251,14 +252,16 @@ def _script(word: Word, node: Node, tree: Tree, pair: Pair) -> Iterator[Mention]
         return
     offset = word.start + (1 if word.quoted else 0)
     stack = list(parse_script(text).statements)
-    written = {id(part.target) for part in stack if isinstance(part, Assign)}
+    written = {id(part.target): part.operator for part in stack if isinstance(part, Assign)}
     while stack:
         part = stack.pop()
         if isinstance(part, Name):
             root = part.name.startswith("@")
             name = part.name[1:] if root else part.name
             span = Span(offset + part.end - len(name), offset + part.end)
-            yield Mention(What.KEY, name, span, word, False, node, tree, pair, id(part) in written, root)
+            operator = written.get(id(part))
+            is_update = operator not in (None, ":=", "=")
+            yield Mention(What.KEY, name, span, word, False, node, tree, pair, operator is not None, root, is_update)
         else:
             stack += parts(part)
 

@@ -1,4 +1,4 @@
-"""The part of the parser that reads the block of a tree: nodes, their attributes, and the qualities attached to them.
+"""The part of the parser that reads the block of a tree: nodes and ports, and the requirements between them.
 
 Nodes nest by indentation, so their blocks are a stack of open nodes and no recursion.
 """
@@ -7,30 +7,26 @@ from __future__ import annotations
 
 import re
 
+from btq_lang.attributes import AttributeParser, meant_clause
 from btq_lang.blocks import MAX_DEPTH, Block
-from btq_lang.clauses import VERBS, ClauseParser
+from btq_lang.characters import SMALL_S, SMALL_T
+from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
-from btq_lang.cursor import VALUES
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.lexer import value_meant
-from btq_lang.near import near
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
-from btq_lang.scan import COMPILED, line_start, path_end
+from btq_lang.scan import COMPILED, line_start
 from btq_lang.syntax import (
     Node,
     NodeClause,
     Pair,
     Port,
-    Quality,
-    ReqRef,
     Requirement,
-    Satisfices,
     Satisfies,
-    Tags,
     TypeWord,
     Verbatim,
     Word,
+    is_name,
     quote,
 )
 from btq_lang.text import Span
@@ -44,12 +40,12 @@ from btq_lang.tokens import (
     NODE_CLAUSES,
     NUMBER,
     OPEN,
-    OPERATOR,
     QUANTITY,
     STRING,
     SYMBOL,
     SYMBOLS,
 )
+from btq_lang.words import unquote
 
 if not COMPILED:
     from btq_lang.lines import read_lines
@@ -59,7 +55,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-class NodeParser(ClauseParser):
+class NodeParser(AttributeParser):
     """A cursor that can read the block of a tree."""
 
     def __init__(self, text: str) -> None:
@@ -93,20 +89,13 @@ class NodeParser(ClauseParser):
                     stopped = lexer.line_start
                     continue
             node = None
-            plain = None
-            if not block.children and (satisfies := self.plain_satisfies(inner)) is not None:
-                block.clauses.append(satisfies)
+            if not block.children and (clauses := self.plain_node_clauses(inner)):
+                block.clauses += clauses
                 continue
             if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
-                plain = plain_node(self.text, lexer.position, lexer.blanks, self.base)
-            if plain is not None:
-                node, behind = plain
+                node, behind = plain_node(self.text, lexer.position, lexer.blanks, self.base)
+            if node is not None:
                 self.open_next(behind)
-            elif not block.children and (line := plain_clauses(self.text, lexer.position, self.base)):
-                clauses, behind = line
-                block.clauses += clauses
-                self.open_next(behind)
-                self.no_block(inner)
             else:
                 self.scan()
                 word = self.raw if self.kind == NAME else ""
@@ -155,7 +144,12 @@ class NodeParser(ClauseParser):
             kind = self.take()
         else:
             notes = (XML,) if self.at("<") else ()
-            self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
+            fixes = self.symbol_meant()
+            if not fixes and (self.at("-") or self.at("*")) and self.kinds[self.index + 1] in (NAME, SYMBOL, STRING):
+                notes = ("a node stands there as it is, its children deeper below it",)
+                gone = Span(self.here().start, self.starts[self.index + 1])
+                fixes = (replace_fix(f"Remove `{self.raw}`", gone, "", safe=True),)
+            self.expected("a node: its kind, or a symbol: -> ? || …", notes, fixes)
             self.end_line()
             self.skip_block(level)
             return None
@@ -181,7 +175,7 @@ class NodeParser(ClauseParser):
     def symbol_meant(self) -> tuple[Fix, ...]:
         """The fix for what is probably a symbol: `-->`, `=>`, `- >`."""
         start = self.starts[self.index]
-        run = _ARROW.match(self.text, start)
+        run = re.compile(_ARROW).match(self.text, start)
         return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
 
     def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
@@ -202,7 +196,9 @@ class NodeParser(ClauseParser):
         elif self.at("=") and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
             self.bare_attributes()
         elif clauses and self.at_name():
-            self.expected("`,` or the end of the line")
+            at = self.last_end() + self.base
+            fixes = (replace_fix("Put `,` before it", Span(at, at), ","),) if self.kind in (NAME, STRING) else ()
+            self.expected("`,` or the end of the line", (), fixes)
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
             self.complain("syntax-error", self.here(), "all attributes of a node stand in one pair of brackets")
         elif self.kind in (NUMBER, QUANTITY, BRACED):
@@ -256,16 +252,22 @@ class NodeParser(ClauseParser):
         self.no_block(level)
         return found
 
-    def plain_satisfies(self, level: int) -> Satisfies | None:
-        """ "satisfies" ReqItem, the head of it plain"""
+    def plain_node_clauses(self, level: int) -> list[NodeClause] | None:
+        """NodeClause { NodeClause } NL | "satisfies" ReqItem, the head of it plain"""
         start = self.lexer.position
-        if not self.text.startswith("satisfies QualityReq ", start):
+        if ord(self.text[start]) not in (SMALL_S, SMALL_T):  # rules out most lines at no cost
             return None
-        requirement = self.plain_req_item(start + len("satisfies "), level)
-        if requirement is None:
-            return None
-        self.no_block(level)
-        return Satisfies(start - self.base, requirement.end, (requirement,))
+        found: list[NodeClause] | None
+        if self.text.startswith("satisfies QualityReq ", start):
+            requirement = self.plain_req_item(start + len("satisfies "), level)
+            found = None if requirement is None else [Satisfies(start - self.base, requirement.end, (requirement,))]
+        else:
+            found, behind = plain_clauses(self.text, start, self.base)
+            if found is not None:
+                self.open_next(behind)
+        if found is not None:
+            self.no_block(level)
+        return found
 
     def plain_req_item(self, start: int, level: int) -> Requirement | None:
         """ReqItem, the head of it plain"""
@@ -365,6 +367,11 @@ class NodeParser(ClauseParser):
         direction = self.take()
         name = self.take() if self.kind == NAME else None
         type_ = None
+        if self.kind == STRING and name is None and self.raws[self.index + 1] == ":":
+            plain = unquote(self.raw)
+            fixes = (replace_fix(f"Write `{plain}`", self.here(), plain, safe=True),) if is_name(plain) else ()
+            self.complain("syntax-error", self.here(), "a port's name stands without quotes", (), fixes)
+            name = self.take()
         if self.accept(":"):
             type_ = self.name("the port's type")
             while type_ is not None and self.at("::"):
@@ -372,263 +379,40 @@ class NodeParser(ClauseParser):
                 last = self.name("the rest of the type")
                 if last is not None:
                     type_ = TypeWord(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
-            if type_ is not None and self.at("<") and self.adjacent(self.index):
+            if type_ is not None and self.goes_on(type_):
                 type_ = self.unquoted_type(type_)
+        elif name is not None and self.kind == NAME:
+            fix = replace_fix("Put `:` before it", Span(self.here().start, self.here().start), ": ")
+            self.expected("`:` and the port's type", ("a port is written `input name : type`",), (fix,))
         default = self.value() if self.accept("=") else None
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
         notes = ("a port's type stands behind `:`, its text in quotes",)
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
 
+    def goes_on(self, type_: Word) -> bool:
+        """Whether more than a name of C++ stands behind `:`: `vector<int>`, `unsigned int`, `Pose*`."""
+        end = type_.end + self.base
+        if type_.kind != NAME:
+            return False
+        return self.text[end : end + 1] in ("<", "*", "&", "[") or (self.kind == NAME and type_.raw in _BEFORE_TYPES)
+
     def unquoted_type(self, type_: Word) -> Word:
-        """`std::vector<int>`: take all of it for one type, and say that it needs quotes."""
-        start = type_.start + self.base
-        span = Span(start, start + len(self.text[start : path_end(self.text, start)].partition("=")[0]))
+        """`std::map<int, double>`: take all of it for one type, and say that it needs quotes."""
+        start = end = type_.start + self.base
+        depth = 0
+        while end < len(self.text) and self.text[end] not in "\r\n#\"'" and (depth > 0 or self.text[end] not in "=("):
+            depth += 1 if self.text[end] == "<" else -1 if self.text[end] == ">" else 0
+            end += 1
+        span = Span(start, start + len(self.text[start:end].rstrip()))
         raw = self.text[span.start : span.end]
         fix = replace_fix("Put quotes around it", span, quote(raw), safe=True)
+        lexer = self.lexer
+        lexer.problems = [problem for problem in lexer.problems if not span.start <= problem.span.start < span.end]
         self.complain("syntax-error", span, "this type needs quotes", (), (fix,))
         while self.kind != NEWLINE and self.starts[self.index] < span.end:
             self.advance()
         return Word(NAME, type_.start, raw)
-
-    # ---- attributes ----
-
-    def pairs_only(self) -> tuple[Pair, ...]:
-        """Attributes of something that takes no qualities."""
-        if self.kind != OPEN:
-            return ()
-        clauses: list[NodeClause] = []
-        pairs = self.attributes(clauses)
-        if clauses:
-            span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
-            note = "qualities and requirements stand at a node, or on a line of their own in the block of a tree"
-            self.complain("syntax-error", span, "only `key = value` pairs stand in these brackets", (note,))
-        return pairs
-
-    def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
-        """Attributes = "(" { Attribute [ "," ] } ")";  Attribute = "parameters" Pair … | NodeClause | Pair"""
-        pairs: list[Pair] = []
-        self.advance()
-        self.group += 1
-        while self.kind != CLOSE and self.kind != NEWLINE:
-            if self.kind == NAME or self.kind == STRING:
-                following = self.index + 1
-                if self.kinds[following] == OPERATOR and self.raws[following] == "=":
-                    pairs.append(self.pair())
-                elif self.kind == NAME and self.raw in NODE_CLAUSES:
-                    clauses.append(self.node_clause())
-                elif self.kind == NAME and self.raw == "parameters":
-                    self.advance()
-                    if not self.at_key():
-                        self.expected("`key = value` behind `parameters`")
-                    continue
-                else:
-                    self.not_an_attribute(pairs, clauses)
-            else:
-                self.not_an_attribute(pairs, clauses)
-            if self.kind == OPERATOR and self.raw == ",":
-                self.advance()
-        self.group -= 1
-        self.advance()
-        return tuple(pairs)
-
-    def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
-        """Complain of what stands in brackets and is no attribute; what it is probably meant for is read as that."""
-        at = self.index
-        if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
-            sign = self.starts[at + 1]
-            span = Span(sign, sign + len(self.raws[at + 1]))
-            written = "=" if self.text[sign - 1] in " \t" else " ="
-            fix = replace_fix("Write `=`", span, written, safe=True)
-            self.complain("syntax-error", span, "key and value are joined by `=`", (), (fix,))
-            pairs.append(self.pair())
-            return
-        if self.kind == NAME and self.kinds[at + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
-            clauses.append(self.node_clause(meant))
-            return
-        notes: tuple[str, ...] = ()
-        if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
-            notes = ("a value or name of several words stands in quotes",)
-        self.expected("an attribute: key = value", notes)
-        if self.index == at:
-            self.advance()
-
-    def pair(self) -> Pair:
-        """Pair = Name "=" Value"""
-        key = self.take()
-        self.advance()
-        return Pair(key, self.value())
-
-    def value(self) -> Word | None:
-        """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-        if self.kind not in VALUES and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
-            self.expected("a value: a string, a name, a number, a quantity or {key}")
-            return None
-        whole = self.kind in VALUES
-        word = self.take()
-        if whole and (self.at_key() or not self.joins()):
-            return word
-        if self.kind == STRING and word.kind != STRING:
-            return self.half_quoted(word)
-        return self.needs_quotes(word)
-
-    def half_quoted(self, word: Word) -> Word:
-        """`charger" …`: what follows is a string only because a quote is missing."""
-        span = word.span.shifted(self.base)
-        fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
-        at, lexer = self.starts[self.index], self.lexer
-        lexer.problems = [problem for problem in lexer.problems if problem.span.start != at]  # that it is not closed
-        self.forget()
-        self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
-        self.inside_out = min(self.inside_out, span.end)
-        self.recover()
-        return word
-
-    def joins(self) -> bool:
-        """Whether the token at hand makes one value with the one before it: there is no blank between."""
-        if self.kind in (NEWLINE, OPEN, CLOSE) or self.raw == "," or self.raw == "=":
-            return False
-        return self.adjacent(self.index)
-
-    def ends_value(self) -> bool:
-        """Whether what may follow a value follows."""
-        return self.kind in (NEWLINE, CLOSE) or self.raw == "," or self.raw in _ATTRIBUTE_WORDS or self.at_key()
-
-    def needs_quotes(self, word: Word) -> Word:
-        """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
-        cause = self.lost_quote() or self.wrong_unit()
-        while self.joins():
-            self.advance()
-        start = word.start + self.base
-        end = self.last_end() + self.base
-        raw = self.text[start:end]
-        if cause is not None:
-            self.report(cause)
-        elif word.kind == STRING:
-            note = "a quote in a string is written \\\", in a script '; or a closing quote is missing further up"
-            self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
-        else:
-            # A quote or a brace in it means that more went wrong than this.
-            safe = self.ends_value() and not set(raw) & set("\"'{}\\")
-            fix = value_meant(self.text, start, end, safe=safe)
-            self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
-        return Word(NAME, word.start, raw)
-
-    # ---- qualities and requirements on nodes ----
-
-    def misspelt_clause(self) -> str | None:
-        """The word that is probably meant by the one at hand, reported: `satisfys rq1`."""
-        meant = meant_clause(self.raw) if self.raw not in _ATTRIBUTE_WORDS else None
-        if meant is not None:
-            self.attaches_nothing(self.here(), meant)
-        return meant
-
-    def attaches_nothing(self, span: Span, meant: str) -> None:
-        """Complain of a misspelt satisfices, satisfies or tags."""
-        word = self.text[span.start : span.end]
-        fix = replace_fix(f"Replace `{word}` by `{meant}`", span, meant)
-        message = f"`{word}` attaches nothing to a node: did you mean `{meant}`?"
-        self.complain("syntax-error", span, message, (), (fix,))
-
-    def node_clause(self, meant: str = "") -> NodeClause:
-        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
-
-        Args:
-            meant: the word to read instead of the one at hand.
-        """
-        start = self.start()
-        word = self.take().raw
-        if meant:
-            word = meant
-        if word == "satisfices":
-            qualities = self.satisfices()
-            return Satisfices(start, self.last_end(), qualities)
-        if word == "satisfies":
-            uses = self.satisfies()
-            return Satisfies(start, self.last_end(), uses)
-        names: list[Word] = []
-        while name := self.name("a tag"):
-            names.append(name)
-            if not self.list_goes_on():
-                break
-        return Tags(start, self.last_end(), tuple(names))
-
-    def satisfices(self) -> tuple[Quality, ...]:
-        """Quality { "," Quality };  classic files leave the commas out"""
-        found: list[Quality] = []
-        while True:
-            quality = self.quality()
-            if quality is None:
-                break
-            found.append(quality)
-            if not (self.at_quality() or self.list_goes_on(qualities=True)):
-                break
-        return tuple(found)
-
-    def at_quality(self) -> bool:
-        return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
-
-    def quality(self) -> Quality | None:
-        """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
-        classic = self.at_quality()
-        if classic:
-            self.advance()
-            self.advance()
-        elif self.at_word("Quality") and self.is_behind_quality(self.index + 1):
-            self.advance()
-            self.expected("`=` behind `Quality`")
-            return None
-        path = self.quality_path()
-        if path is None:
-            return None
-        if not classic or self.kind != OPEN:
-            return Quality(path)
-        self.advance()
-        self.group += 1
-        requirements: list[Requirement] = []
-        while self.at_word("QualityReq"):
-            requirements.append(self.requirement())
-            self.accept(",")
-        self.close_group("QualityReq or `)`")
-        return Quality(path, tuple(requirements))
-
-    def is_behind_quality(self, index: int) -> bool:
-        """Whether a name stands there, so that `Quality` before it lacks its `=`."""
-        if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
-            return False
-        return not self.is_operator(index + 1, "=")
-
-    def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
-        """ReqUse { "," ReqUse };  classic files leave the commas out"""
-        found: list[Requirement | ReqRef] = []
-        while True:
-            if self.at_word("QualityReq"):
-                found.append(self.requirement())
-            else:
-                name = self.name("a requirement: its ID, or QualityReq and a definition")
-                if name is None:
-                    break
-                found.append(self.req_ref(name))
-            if not (self.at_word("QualityReq") or self.list_goes_on()):
-                break
-        return tuple(found)
-
-    def list_goes_on(self, qualities: bool = False) -> bool:
-        """Pass a comma if another element follows it; in brackets an attribute may follow it instead."""
-        if not self.at(","):
-            return False
-        following = self.index + 1
-        if self.group:
-            if self.kinds[following] == CLOSE:
-                return False
-            if self.is_operator(following + 1, "=") and not (qualities and self.is_word(following, "Quality")):
-                return False
-            if self.kinds[following] == NAME and (
-                self.raws[following] in NODE_CLAUSES or self.raws[following] == "parameters"
-            ):
-                return False
-        self.advance()
-        return True
 
     # ---- blocks ----
 
@@ -642,16 +426,9 @@ class NodeParser(ClauseParser):
         self.skip_block(level)
 
 
-def meant_clause(word: str) -> str | None:
-    """Which of satisfices, satisfies and tags is probably meant by another word."""
-    if likely := near(word, NODE_CLAUSES, limit=1):
-        return likely[0]
-    return "satisfies" if word.startswith("satisf") else None
-
-
 XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`"
-_ARROW: Final = re.compile(r"[-=~]+ ?>")
-_ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}
+_ARROW: Final = r"[-=~]+ ?>"  # compiled when first used: it is the beginning of a mistake
+_BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
 _OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"

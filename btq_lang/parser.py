@@ -12,12 +12,13 @@ from operator import attrgetter
 
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
-from btq_lang.diagnostics import Diagnostic, replace_fix, shifted
+from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
 from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import XML, NodeParser
 from btq_lang.plain import plain_head
+from btq_lang.plain_models import plain_model, plain_port
 from btq_lang.record import replace
 from btq_lang.scan import COMPILED, line_end, name_end, path_end
 from btq_lang.syntax import (
@@ -54,6 +55,7 @@ from btq_lang.tokens import (
     NEWLINE,
     NODE_CLAUSES,
     OPEN,
+    QUANTITY,
     STRING,
     SYMBOL,
     Token,
@@ -127,13 +129,13 @@ def parse(text: str) -> Parsed:
         return Parsed(text, parser.file(), tuple(parser.begun))
 
 
-def reparse(before: Parsed, text: str) -> Parsed:
+def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
     """Parse a file after an edit: the same as `parse(text)`, but what the edit does not touch is taken over.
 
     From the last item before the change that the parser can begin at, it reads until it comes to an item behind the
     change as it came to it before; items that it did not read anew are the same objects.
     """
-    change = changed(before.text, text)
+    change = change or changed(before.text, text)
     if change is None:
         return before
     first = _first_touched(before, change.start)
@@ -366,10 +368,19 @@ class Parser(NodeParser):
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
         end = self.end_line()
+        return Model(category.start, end, category, name, attributes, text, self.model_block(level))
+
+    def model_block(self, level: int) -> tuple[Port | Meta | Verbatim, ...]:
+        """[ INDENT { Port | Meta | Verbatim } DEDENT ]"""
         body: list[Port | Meta | Verbatim] = []
         while self.deeper(level):
-            self.scan()
             inner = self.lexer.level
+            if not self.lexer.ended_early and (line := plain_port(self.text, self.lexer.position, self.base)):
+                body.append(line[0])
+                self.open_next(line[1])
+                self.no_block(inner)
+                continue
+            self.scan()
             if self.kind == NAME and self.raw in DIRECTIONS:
                 body.append(self.port())
             elif self.kind == NAME and self.raw == "metadata":
@@ -384,7 +395,7 @@ class Parser(NodeParser):
                 self.end_line()
                 self.skip_block(inner)
             self.no_block(inner)
-        return Model(category.start, end, category, name, attributes, text, tuple(body))
+        return tuple(body)
 
     def meta(self) -> Meta:
         """ "metadata" Attributes NL"""
@@ -405,7 +416,7 @@ class Parser(NodeParser):
         if self.kind == NAME and self.raw in _BEHAVIOURS:
             behaviour = self.take()
         if self.accept_word("fresh"):
-            self.expect_word("within")
+            self.expect_word("within", forgotten=self.kind == QUANTITY)
             fresh = self.quantity("a duration: 5 s")
         if self.accept_word("initially"):
             initially = self.amount(strings=True)
@@ -433,7 +444,7 @@ class Parser(NodeParser):
             uses.append(self.req_ref(name))
             if not self.accept(","):
                 break
-        targets = self.selectors() if self.expect_word("to") else ()
+        targets = self.selectors() if self.expect_word("to", ("on", "for", "at")) else ()
         exceptions = self.selectors() if self.accept_word("except") else ()
         return Apply(start, self.end_line(), tuple(uses), targets, exceptions)
 
@@ -448,15 +459,20 @@ class Parser(NodeParser):
 
     def selector(self) -> Selector | None:
         """ "every" Name [ "under" Path ] | "every" "node" "tagged" NAME | Path"""
-        if not self.at_word("every"):
+        start = self.start()
+        if not (self.accept_word("every") or self.every_meant()):
             path = self.path("a node, or `every` and a node")
             return Selector(path.span.start, path.span.end, path=path) if path else None
-        start = self.take().start
         if self.at_word("node") and self.is_word(self.index + 1, "tagged"):
             self.advance()
             self.advance()
             tag = self.name("a tag")
             return Selector(start, self.last_end(), tag=tag)
+        if self.at_word("tagged") and self.kinds[self.index + 1] == NAME:
+            fix = replace_fix("Put `node` before it", Span(self.here().start, self.here().start), "node ")
+            self.complain("syntax-error", self.here(), "nodes with a tag are `every node tagged …`", (), (fix,))
+            self.advance()
+            return Selector(start, self.last_end(), tag=self.name("a tag"))
         every = self.name("a node's ID or kind")
         under = self.path("a tree or node") if self.accept_word("under") else None
         return Selector(start, self.last_end(), every=every, path=under)
@@ -491,15 +507,22 @@ class Parser(NodeParser):
         ports, clauses, children = self.tree_block(level)
         return Tree(start, end, name, attributes, ports, clauses, children)
 
-    def plain_item(self, level: int) -> Tree | Requirement | None:
-        """A tree whose first line says its name and nothing else, or a requirement whose first line is plain"""
+    def plain_item(self, level: int) -> Tree | Model | Requirement | None:
+        """A tree or a model whose first line says its name and nothing else, or a requirement whose first line is
+        plain"""
         lexer = self.lexer
         start = lexer.position
         if self.text.startswith("QualityReq ", start):
             return self.plain_req_item(start, level)
-        if lexer.ended_early or (head := plain_head(self.text, start, self.base)) is None:
+        if lexer.ended_early:
             return None
-        name, behind = head
+        if (model := plain_model(self.text, start, self.base)) is not None:
+            category, id_, behind = model
+            self.open_next(behind)
+            return Model(category.start, id_.end, category, id_, (), None, self.model_block(level))
+        name, behind = plain_head(self.text, start, self.base)
+        if name is None:
+            return None
         self.open_next(behind)
         ports, clauses, children = self.tree_block(level)
         return Tree(start - self.base, name.end, name, (), ports, clauses, children)
@@ -508,7 +531,12 @@ class Parser(NodeParser):
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        if self.kind == NAME and self.raw in NODE_CLAUSES:
+        fixes: tuple[Fix, ...] = ()
+        meant = _OTHER_ITEMS.get(self.raw.lower()) if self.kind == NAME else None
+        following = self.index + 1
+        if meant is not None and self.kinds[following] in (NAME, STRING) and self.raws[following] not in VERBS:
+            fixes = (replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant),)
+        elif self.kind == NAME and self.raw in NODE_CLAUSES:
             notes = ("it stands at a node, or in the block of a node or BehaviorTree, indented",)
         elif self.kind == NAME and (self.raw in VERBS or self.raw in HEADS):
             notes = ("a clause stands in the block of a QualityReq, indented",)
@@ -520,7 +548,7 @@ class Parser(NodeParser):
             notes = (XML,)
         elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
             notes = ("a node stands in the block of a BehaviorTree, indented",)
-        self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
+        self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes, fixes)
         end = self.end_line()
         while self.more and not self.ends_skipping(level):
             known = len(self.lexer.problems)
@@ -539,6 +567,13 @@ class Parser(NodeParser):
 
 
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
+_OTHER_ITEMS: Final = {  # what people write for them, in small letters
+    **dict.fromkeys(("import", "require", "use"), "include"),
+    **dict.fromkeys(("requirement", "req", "qualityrequirement"), "QualityReq"),
+    **dict.fromkeys(("mission", "tree", "behaviourtree", "bt"), "BehaviorTree"),
+    **dict.fromkeys(("sensor", "variable", "var", "measure", "metric"), "signal"),
+    **dict.fromkeys(("mode", "situation"), "context"),
+}
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
 ITEM_WORDS: Final = (

@@ -144,12 +144,12 @@ def _path(start: int, raw: str) -> QualityPath:
 
 # ---- pieces of patterns: `(?:…|)` means the same as `(?:…)?` and costs the engine two thirds -------------------------
 
-_NAME: Final = r"[A-Za-z_]\w*"
+_NAME: Final = r"[A-Za-z_][A-Za-z0-9_]*"  # `\w` means more letters and takes the engine five times as long
 _STRING: Final = r"\"[^\"\\\r\n]*\"|'[^'\\\r\n]*'"
-_LABEL: Final = rf"(?: (?!satisfi|tags)({_NAME}|{_STRING})|)"
+_LABEL: Final = rf" (?!\(|satisfi|tags)({_NAME}|{_STRING})"
 # A number may have a unit; before a comma, a bracket, the line's end or the next key it has none.
 _VALUE: Final = rf"{_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=)"
-_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})(?:,? |(?=\)))"
+_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})(?:(?=\))|,?(?: |\r?\n\1[ \t]*))"
 _REMARK: Final = r"(?:\#|//)[^\r\n]*"
 _COMMENT: Final = rf"{_REMARK}|/\*[^*]*(?:\*+[^*/][^*]*)*\*+/[ \t]*"
 _LISTED: Final = rf"(?!satisfi|tags|parameters|Quality){_NAME}(?:-\w+)*"
@@ -178,13 +178,16 @@ def expect(size: int) -> None:
 
 
 def _compile() -> None:
-    global read_line, read_between, _ATTRIBUTE, _TOKEN
+    global read_head, read_line, read_between, _ATTRIBUTE, _TOKEN
+    # The line that begins a tree: its name.
+    read_head = re.compile(rf"BehaviorTree (?:ID ?= ?(?!=)|)({_NAME}|{_STRING})\r?\n").match
     # A line of a tree; each group but the first may be missing:
-    #     1 blanks  2 to 4 up to three words  5 to 8 two pairs  9 the closing bracket, empty where the brackets go on
-    #     10 the end of the line with the comment before it, empty where the line goes on
+    #     1 blanks  2 to 4 up to three words  5 to 10 three pairs, the further ones within those before them
+    #     11 the closing bracket, empty where the brackets go on
+    #     12 the end of the line with the comment before it, empty where the line goes on
     read_line = re.compile(
-        rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME}){_LABEL}{_LABEL}"
-        rf"(?: ?\((?:{_PAIR}(?:{_PAIR}|)|)(\)|)|)"
+        rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME})(?:{_LABEL}(?:{_LABEL}|)|)"
+        rf"(?: ?\((?:(?:\r?\n\1[ \t]*|){_PAIR}(?:{_PAIR}(?:{_PAIR}|)|)|)(\)|)|)"
         rf"((?: +{_REMARK}|)\r?\n|)"
     ).match
     # Blank lines and comments between two lines.
@@ -203,7 +206,7 @@ def _nothing(text: str, at: int) -> re.Match[str] | None:
     return None
 
 
-read_line = read_between = _ATTRIBUTE = _TOKEN = _nothing
+read_head = read_line = read_between = _ATTRIBUTE = _TOKEN = _nothing
 _TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups of _TOKEN
 _WORTH: Final = 25_000  # to read so many characters without patterns takes as long as to compile them
 _expected = 0

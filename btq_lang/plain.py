@@ -15,7 +15,6 @@ import re
 
 from btq_lang.characters import (
     APOSTROPHE,
-    BACKSLASH,
     CLOSING,
     COMMA,
     DOT,
@@ -53,7 +52,8 @@ from btq_lang.syntax import (
 from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CLAUSES, NUMBER, STRING, SYMBOL
 
 if not COMPILED:
-    from btq_lang.patterns import read_attributes, read_list
+    from btq_lang import patterns
+    from btq_lang.patterns import read_attributes, read_list, value_kind
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from mypy_extensions import i64
 
 
-def plain_head(text: str, start: i64, base: i64) -> tuple[Word, i64] | None:
+def plain_head(text: str, start: i64, base: i64) -> tuple[Word | None, i64]:
     """ "BehaviorTree" [ "ID" "=" ] Name NL: the line that begins a tree, and no brackets in it
 
     Args:
@@ -70,21 +70,23 @@ def plain_head(text: str, start: i64, base: i64) -> tuple[Word, i64] | None:
         base: where the item begins; offsets in the tree count from there.
 
     Returns:
-        The tree's name, and where the next line begins.
+        The tree's name, None where something is unusual, and where the next line begins.
     """
-    if not text.startswith("BehaviorTree ", start):
-        return None
+    at = start + len("BehaviorTree ")
+    if text[start:at] != "BehaviorTree ":
+        return None, start
+    if not COMPILED and (match := patterns.read_head(text, start)):
+        return Word(value_kind(match[1][0], NAME), match.start(1) - base, match[1]), match.end()
     try:
-        at = start + len("BehaviorTree ")
-        if text.startswith("ID", at) and (value := _behind_equals(text, at + len("ID"))) >= 0:
+        if text[at : at + len("ID")] == "ID" and (value := _behind_equals(text, at + len("ID"))) >= 0:
             at = value
         name = _name(text, at, base)
         return name, _next_line(text, _behind_word(text, at + len(name.raw)))
     except (Unusual, IndexError):
-        return None
+        return None, start
 
 
-def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node, i64] | None:
+def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node | None, i64]:
     """Kind [ Label ] [ Attributes ] { NodeClause } NL
 
     Args:
@@ -93,7 +95,7 @@ def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node, i64
         base: where the item begins; offsets in the tree count from there.
 
     Returns:
-        The node without what its block adds, and where the next line begins.
+        The node without what its block adds, None where something is unusual, and where the next line begins.
     """
     try:
         category, kind, label, end = _head(text, start, base)
@@ -115,16 +117,16 @@ def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node, i64
         inner = tuple(clauses) if clauses else ()
         return Node(start - base, end - base, category, kind, label, tuple(pairs), inner, ()), at
     except (Unusual, IndexError):
-        return None
+        return None, start
 
 
-def plain_clauses(text: str, start: i64, base: i64) -> tuple[list[NodeClause], i64] | None:
+def plain_clauses(text: str, start: i64, base: i64) -> tuple[list[NodeClause] | None, i64]:
     """NodeClause { NodeClause } NL: a line of its own in the block of a node; arguments and result as of a node."""
     clauses: list[NodeClause] = []
     try:
         return clauses, line_clauses(text, start, base, clauses)
     except (Unusual, IndexError):
-        return None
+        return None, start
 
 
 def _head(text: str, start: i64, base: i64) -> tuple[Word | None, Word | None, Word | None, i64]:
@@ -237,23 +239,10 @@ def _string(text: str, start: i64, quote: i64) -> str:
     """STRING without a backslash, none of whose lines may be the start of an item"""
     if quote != QUOTE and quote != APOSTROPHE:
         raise Unusual
-    if not COMPILED:
-        raw = text[start : text.find(text[start], start + 1) + 1]
-        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
-            raise Unusual
-        return raw
-    at = start + 1
-    while True:
-        code: i64 = ord(text[at])
-        at += 1
-        if code == quote:
-            return text[start:at]
-        if code == BACKSLASH:
-            raise Unusual
-        if code in (LINE_FEED, RETURN):
-            following: i64 = ord(text[at])
-            if following != SPACE and following != TAB and following != LINE_FEED and following != RETURN:
-                raise Unusual
+    raw = text[start : text.find(text[start], start + 1) + 1]
+    if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+        raise Unusual
+    return raw
 
 
 # ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
@@ -308,7 +297,7 @@ def _gap(text: str, at: i64, blanks: str | None) -> i64:
         return blanks_end(text, at, len(text))
     line = -1
     while True:
-        start, end = line_opening(text, at)
+        start, end = line_opening(text, at, blanks)
         if start > at:
             line = start
         at = end
@@ -369,7 +358,7 @@ def _clause(text: str, start: i64, word: str, blanks: str | None, base: i64, cla
         if word == "satisfices":
             quality, end = _quality(text, at, blanks, base)
             qualities.append(quality)
-        elif word == "satisfies" and text.startswith("QualityReq", at):
+        elif word == "satisfies" and text[at : at + len("QualityReq")] == "QualityReq":
             if blanks is None:
                 raise Unusual  # clauses may follow, here or in a block
             requirement, end = _requirement(text, at, blanks, base)
@@ -421,7 +410,7 @@ def _element(text: str, at: i64, base: i64) -> Word:
 
 def _quality(text: str, at: i64, blanks: str | None, base: i64) -> tuple[Quality, i64]:
     """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
-    classic = text.startswith("Quality", at)
+    classic = text[at : at + len("Quality")] == "Quality"
     if classic:
         at = _behind_equals(text, at + len("Quality"))
         if at < 0:
@@ -461,7 +450,7 @@ def _requirement(text: str, start: i64, blanks: str | None, base: i64) -> tuple[
     """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ]"""
     end = start + len("QualityReq")
     at = _gap(text, end, blanks)
-    if at == end or not (text.startswith("QualityReq", start) and text.startswith("ID", at)):
+    if at == end or text[start:end] != "QualityReq" or text[at : at + len("ID")] != "ID":
         raise Unusual
     at = _behind_equals(text, at + len("ID"))
     if at < 0:
@@ -472,7 +461,8 @@ def _requirement(text: str, start: i64, blanks: str | None, base: i64) -> tuple[
     if ord(text[at]) == COMMA:
         at = _gap(text, at + 1, blanks)
     description: Word | None = None
-    if text.startswith("description", at) and (at := _behind_equals(text, at + len("description"))) >= 0:
+    behind = at + len("description")
+    if text[at:behind] == "description" and (at := _behind_equals(text, behind)) >= 0:
         description = _element(text, at, base)
         end = at + len(description.raw)
     return Requirement(start - base, end - base, name, True, (), None, description, ()), end

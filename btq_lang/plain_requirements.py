@@ -11,7 +11,7 @@ from functools import cache
 
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS, RELATIONS
 from btq_lang.conditions import COMPARISONS, HEADS
-from btq_lang.scan import is_unit, unit_at
+from btq_lang.scan import is_name, is_unit, unit_at
 from btq_lang.syntax import (
     Amount,
     Because,
@@ -30,7 +30,6 @@ from btq_lang.syntax import (
     Scope,
     Window,
     Word,
-    is_name,
 )
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
 
@@ -50,7 +49,7 @@ def plain_requirement(text: str, start: int, base: int) -> tuple[Requirement, in
     Returns:
         The requirement without the clauses of its block, and where the next line begins.
     """
-    line, following = _line(text, start)
+    line, following = line_at(text, start)
     if following < 0:
         return None
     head, quote, title = line.partition('"')
@@ -81,7 +80,7 @@ def plain_clause_line(text: str, start: int, base: int) -> tuple[list[Clause], i
     Returns:
         The clauses, where the last of them ends, counted from the item, and where the next line begins.
     """
-    line, following = _line(text, start)
+    line, following = line_at(text, start)
     if following < 0:
         return None
     words = line.split(" ")
@@ -98,7 +97,7 @@ def plain_clause_line(text: str, start: int, base: int) -> tuple[list[Clause], i
     return found, at - 1, following
 
 
-def _line(text: str, start: int) -> tuple[str, int]:
+def line_at(text: str, start: int) -> tuple[str, int]:
     """The line without its end, and where the next begins; -1 where none does"""
     end = text.find("\n", start)
     line = text[start:end].removesuffix("\r")

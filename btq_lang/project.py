@@ -23,7 +23,7 @@ from collections.abc import Iterable, Iterator
 from btq_lang.catalog.kinds import VERSIONS, at_least
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.near import near
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, UNREADABLE, Severity
 from btq_lang.text import LineIndex, Position
 
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 
 
-@record
-class Project:
+class Project(Record):
     """What holds for all files of a project.
 
     Attributes:
         root: the folder of the project file.
         include_paths: folders, with `root` before them where they were relative.
+        lost_paths: those of them that are no folders, as far as the loader has looked.
         engines: the versions of BehaviorTree.CPP that a file must hold for, oldest first.
         qualities: the edition of the quality model where a file names none.
         severities: the rules set in `[rules]`; None is off.
@@ -51,6 +51,7 @@ class Project:
 
     root: str = "."
     include_paths: tuple[str, ...] = ()
+    lost_paths: tuple[str, ...] = ()
     engines: tuple[str, ...] = VERSIONS
     qualities: str = "iso25010-2023"
     severities: tuple[tuple[str, Severity | None], ...] = ()
@@ -69,8 +70,7 @@ class Project:
         return self.engines[-1]
 
 
-@record
-class ProjectProblem:
+class ProjectProblem(Record):
     """Something in a project file that was left out, and where it stands if it could be found."""
 
     message: str
@@ -143,8 +143,7 @@ def include_candidates(project: Project, path: str, include: str) -> tuple[str, 
     return tuple(dict.fromkeys(_joined(folder, include) for folder in folders))
 
 
-@record
-class _Complaint:
+class _Complaint(Record):
     """What is wrong with the value of a key: with the entry `below` it, or with the string `value` in it."""
 
     message: str

@@ -1,8 +1,9 @@
-"""`@record`: a frozen, slotted class from its annotations, as `dataclass(frozen=True, slots=True)` makes it.
+"""`class Point(Record):` is a frozen, slotted class from its annotations, as `dataclass(frozen=True, slots=True)` is.
 
 Why not dataclasses: importing them and making our classes with them costs 50 ms at every start of `btq check`, more
-than the whole check; this costs 3 ms, for classes of as many fields share one compiled `__init__`.  Type checkers treat
-both alike (PEP 681).  Deliberately left out: inheritance, keyword-only fields, default factories, ordering.
+than the whole check.  A record is made once, with its slots, where a decorator would make a second class of the first;
+and classes of as many fields share one compiled `__init__`.  Type checkers treat both alike (PEP 681).  Deliberately
+left out: inheritance, keyword-only fields, default factories, ordering.
 """
 
 from __future__ import annotations
@@ -19,37 +20,44 @@ if TYPE_CHECKING:
     from typing_extensions import dataclass_transform
 
     T = TypeVar("T")
+
+
+class _Making(type):
+    """What Python asks to make a class with `Record` behind its name; what is made is a class like any other, as with
+    `typing.NamedTuple`."""
+
+    def __new__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> Any:
+        """A class with slots, an `__init__` in field order, equality by type and fields, hash, repr, no setting.
+
+        Raises:
+            TypeError: a field without a default follows one with a default.
+        """
+        fields = tuple(namespace.get("__annotations__", ()))
+        defaults = {field: namespace.pop(field) for field in fields if field in namespace}
+        required = len(fields) - len(defaults)
+        if tuple(defaults) != fields[required:]:
+            raise TypeError(f"{name}: a field without a default follows one with a default")
+        made: Any = None
+
+        def first(self: Any, *values: object, **named: object) -> None:
+            """The `__init__` of the first instance: of most classes a run makes none."""
+            made.__init__ = _init(made, fields, tuple(defaults.values()))
+            made.__init__(self, *values, **named)
+
+        namespace["__init__"] = first
+        namespace["__slots__"] = namespace["__match_args__"] = fields
+        namespace["_values"] = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
+        made = type(name, (_Record,), namespace)
+        return made
+
+
+if TYPE_CHECKING:
+
+    @dataclass_transform(frozen_default=True, eq_default=True)
+    class Record(metaclass=_Making):
+        """What is written behind the name of a class that is to be a record."""
 else:
-
-    def dataclass_transform(**_: object) -> Any:
-        return lambda function: function
-
-
-@dataclass_transform(frozen_default=True, eq_default=True)
-def record(cls: type[T]) -> type[T]:
-    """Make a class a record: slots, an `__init__` in field order, equality by type and fields, hash, repr, no setting.
-
-    Raises:
-        TypeError: a field without a default follows one with a default.
-    """
-    namespace = {name: value for name, value in cls.__dict__.items() if name not in ("__dict__", "__weakref__")}
-    fields = tuple(namespace.get("__annotations__", ()))
-    defaults = {name: namespace.pop(name) for name in fields if name in namespace}
-    required = len(fields) - len(defaults)
-    if tuple(defaults) != fields[required:]:
-        raise TypeError(f"{cls.__name__}: a field without a default follows one with a default")
-    made: Any = None
-
-    def first(self: Any, *values: object, **named: object) -> None:
-        """The `__init__` of the first instance: of most classes a run makes none."""
-        made.__init__ = _init(made, fields, tuple(defaults.values()))
-        made.__init__(self, *values, **named)
-
-    namespace["__init__"] = first
-    namespace["__slots__"] = namespace["__match_args__"] = fields
-    namespace["_values"] = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
-    made = type(cls.__name__, (_Record,), namespace)
-    return made  # type: ignore[no-any-return]  # made anew with slots, so only its name ties it to T
+    Record = type.__new__(_Making, "Record", (), {})
 
 
 def replace(instance: T, **changes: object) -> T:

@@ -20,6 +20,7 @@ from btq_lang.characters import (
     RETURN,
     SPACE,
     TAB,
+    begins_name,
     goes_on,
 )
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
@@ -50,6 +51,11 @@ def name_end(text: str, start: i64) -> i64:
     return end
 
 
+def is_name(text: str) -> bool:
+    """Whether a text can be written as a NAME, without quotes."""
+    return text != "" and begins_name(ord(text[0])) and name_end(text, 0) == len(text) and text not in ("R?", "A?")
+
+
 def word_end(text: str, start: i64, size: i64) -> i64:
     """Behind letters, digits and `_`."""
     if not COMPILED:
@@ -71,14 +77,18 @@ def blanks_end(text: str, start: i64, size: i64) -> i64:
     return start
 
 
-def line_opening(text: str, start: i64) -> tuple[i64, i64]:
+def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
     """Over blank lines: where the line begins whose first word or comment comes next (`start`, if it is the same
-    line), and where its blanks end."""
+    line), and where its blanks end.
+
+    Args:
+        likely: blanks with which the line probably begins, for most begin as the one before.
+    """
     if not COMPILED:
         match = _OPENING(text, start)
         return match.span(match.lastindex)  # type: ignore
     size: i64 = len(text)
-    at = start
+    at = _behind(text, start, likely)
     while at < size:
         code: i64 = ord(text[at])
         at += 1
@@ -86,9 +96,16 @@ def line_opening(text: str, start: i64) -> tuple[i64, i64]:
             continue
         if code in (LINE_FEED, RETURN):
             start = at
+            at = _behind(text, at, likely)
         elif code != TAB:
             return start, at - 1
     return start, at
+
+
+def _behind(text: str, start: i64, word: str) -> i64:
+    """Behind a word, where it stands there; else `start`."""
+    end: i64 = start + len(word)
+    return end if text[start:end] == word else start
 
 
 def line_end(text: str, start: i64) -> i64:

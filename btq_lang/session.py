@@ -7,18 +7,19 @@ is known here.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import replace
 from btq_lang.rules import RULES, Severity
+from btq_lang.text import LineIndex
 
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
-    from btq_lang.checks import Kept
+    from btq_lang.checks.answers import Answers
     from btq_lang.commands.files import Files
-    from btq_lang.symbols import Kind
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace import Name, Workspace
 
 
 class Session:
@@ -37,7 +38,7 @@ class Session:
         self._files: Files | None = None
         self._workspaces: list[Workspace] = []
         self._home: dict[str, int] = {}
-        self._kept: dict[str, dict[int, Kept]] = {}  # of open files, for only these are edited
+        self._answers: dict[str, Answers] = {}  # of open files, for only these are edited
         self._checked: dict[str, tuple[Workspace, tuple[Diagnostic, ...]]] = {}
 
     # ---- what changes ----
@@ -68,7 +69,7 @@ class Session:
         from btq_lang.loader import read
 
         text = self.open.pop(path, None)
-        self._kept.pop(path, None)
+        self._answers.pop(path, None)
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
             return (path,)
@@ -81,6 +82,7 @@ class Session:
         if self._files is None:
             self._files = Files()
             self._files.overlay = self.open
+        self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
         groups, _ = self._files.groups((*self.folders, *self.open))
         self._workspaces = []
@@ -111,7 +113,27 @@ class Session:
             *sorted((other for other in others if other != path), key=lambda one: (one not in self.open, one)),
         )
 
+    def let_go(self) -> None:
+        """Forget the trees of files that nobody works in, where they have become many: they are most of what a large
+        folder takes of the memory, and most of them nobody asks for again."""
+        for workspace in self._workspaces:
+            held = [path for path, file in workspace.files.items() if file.has_tree]
+            idle = [path for path in held if not self._is_worked_in(workspace, path)]
+            if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
+                workspace.forget_trees(idle)
+                gc.collect()  # much of it refers to itself, and Python would wait until there is far more
+
+    def _is_worked_in(self, workspace: Workspace, path: str) -> bool:
+        """Whether a file is open, or linked with one that is."""
+        missions = workspace.missions
+        return any(missions[path] == missions[other] for other in self.open if other in missions)
+
     # ---- what is asked ----
+
+    def lines(self, path: str) -> LineIndex:
+        """The lines of an open file as it is now."""
+        workspace = self.workspace_of(path)
+        return workspace.files[path].source_lines if workspace is not None else LineIndex(self.open.get(path, ""))
 
     def workspace_of(self, path: str) -> Workspace | None:
         """The workspace of a file; None for a file that is not known, as one that was closed meanwhile."""
@@ -134,9 +156,10 @@ class Session:
         if known is not None and known[0] is workspace:
             return known[1]
         from btq_lang.checks import check
+        from btq_lang.checks.answers import Answers
 
-        kept = self._kept.setdefault(path, {}) if path in self.open else None
-        found = check(workspace, path, kept)
+        answers = self._answers.setdefault(path, Answers()) if path in self.open else None
+        found = check(workspace, path, answers)
         if known is not None and known[1] == found:
             found = known[1]  # the same object: nothing new to tell
         self._checked[path] = workspace, found
@@ -152,10 +175,14 @@ class Session:
         return value if isinstance(value, bool) else default
 
 
-def _misses(workspace: Workspace, path: str, names: frozenset[tuple[Kind, str]]) -> bool:
+def _misses(workspace: Workspace, path: str, names: frozenset[Name]) -> bool:
     """Whether a file uses one of the names and does not find it: then it is told where else it is defined."""
     missed = names & workspace.files[path].used_names
-    return any(workspace.scope(path).find(kind, name) is None for kind, name in missed)
+    return bool(missed) and not missed <= _names_in_scope(workspace, path)
+
+
+def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
+    return frozenset().union(*(workspace.files[each].defined_names for each in workspace.closure(path)))
 
 
 def _linked(workspace: Workspace, path: str) -> list[str]:
@@ -164,4 +191,5 @@ def _linked(workspace: Workspace, path: str) -> list[str]:
     return [other for other, of in workspace.missions.items() if of == mission]
 
 
+_MOST_IDLE = 100_000  # characters, of which each costs some 40 bytes when it is parsed
 _SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}

@@ -6,10 +6,11 @@ Which definition a use means is the workspace's to say.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from enum import Enum
 
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -30,8 +31,10 @@ from btq_lang.syntax import (
     Tree,
     Word,
     shape,
+    walk,
 )
 from btq_lang.text import Span
+from btq_lang.tokens import NAME
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -54,8 +57,7 @@ class Kind(Enum):
 Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
 
 
-@record
-class Symbol:
+class Symbol(Record):
     """A name that an item defines.
 
     Attributes:
@@ -69,8 +71,7 @@ class Symbol:
     target: Target
 
 
-@record
-class Use:
+class Use(Record):
     """A name that an item refers to.
 
     Attributes:
@@ -84,8 +85,7 @@ class Use:
     node: Node | None = None
 
 
-@record
-class Summary:
+class Summary(Record):
     """All that an item defines and refers to, in the order of the text."""
 
     symbols: tuple[Symbol, ...]
@@ -117,9 +117,43 @@ def requirements_at(clauses: tuple[NodeClause, ...]) -> Iterator[Requirement | R
                 yield from quality.requirements
 
 
+def asked_for(item: Item) -> frozenset[str]:
+    """The names in an item's conditions, bounds and arguments: what a signal or a context has to be there for."""
+    if isinstance(item, Context):
+        return _words_in(item.condition)
+    if isinstance(item, Requirement):
+        return _asked_by(item)
+    if isinstance(item, Apply):
+        return _words_in(tuple(use.arguments for use in item.uses))
+    if not isinstance(item, Tree):
+        return frozenset()
+    attached = [*requirements_at(item.clauses)]
+    for node in item.walk():
+        if node.clauses:
+            attached += requirements_at(node.clauses)
+    return frozenset().union(
+        *(_asked_by(each) if isinstance(each, Requirement) else _words_in(each.arguments) for each in attached)
+    )
+
+
 def same_requirement(first: Requirement, second: Requirement) -> bool:
     """Whether two definitions say the same (language.md §4): texts compare after folding blanks."""
     return _saying(first) == _saying(second)
+
+
+def _asked_by(requirement: Requirement) -> frozenset[str]:
+    """What a requirement asks for in its clauses; without any, its text may hold some behind `FailureIf`."""
+    if requirement.clauses or requirement.text is None:
+        return _words_in((requirement.parameters, requirement.clauses))
+    return (
+        frozenset(re.findall(r"\w+", requirement.text.text)) if "if" in requirement.text.text.lower() else frozenset()
+    )
+
+
+def _words_in(part: object) -> frozenset[str]:
+    """Each name, and of `a-b`, which may be meant as a subtraction, both sides, too."""
+    names = [word.text for word in walk(part) if isinstance(word, Word) and word.kind == NAME]
+    return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 
 def _saying(requirement: Requirement) -> object:

@@ -7,7 +7,6 @@ meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be mi
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 
 from btq_lang.diagnostics import Diagnostic
@@ -18,7 +17,8 @@ from btq_lang.node_clauses import Requirement as Requirement
 from btq_lang.node_clauses import Satisfices as Satisfices
 from btq_lang.node_clauses import Satisfies as Satisfies
 from btq_lang.node_clauses import Tags as Tags
-from btq_lang.record import fields_of, record
+from btq_lang.record import Record, fields_of
+from btq_lang.scan import is_name as is_name
 from btq_lang.text import Span
 from btq_lang.tokens import QUANTITY, STRING
 from btq_lang.words import Node as Node
@@ -36,16 +36,14 @@ if TYPE_CHECKING:
 NodeClause: TypeAlias = Satisfices | Satisfies | Tags
 
 
-@record
-class Argument:
+class Argument(Record):
     """`limit = 0.1 m/s` behind a parameterised requirement."""
 
     name: Word
     value: Bounded | None
 
 
-@record
-class Parameter:
+class Parameter(Record):
     """`limit : m/s = 0.25 m/s` of a parameterised requirement."""
 
     name: Word
@@ -56,8 +54,7 @@ class Parameter:
 # ---- Clauses of a requirement ---------------------------------------------------------------------------------------
 
 
-@record
-class Path:
+class Path(Record):
     """`BatteryCheck/MoveBase`: matched from the right over the names of trees, nodes and labels."""
 
     names: tuple[Word, ...]
@@ -67,24 +64,21 @@ class Path:
         return Span(self.names[0].start, self.names[-1].end)
 
 
-@record
-class Amount:
+class Amount(Record):
     """A value of a bound: a quantity, a number, a parameter or a signal; `negative` where a sign stands apart."""
 
     word: Word
     negative: bool = False
 
 
-@record
-class Case:
+class Case(Record):
     """`20 s if not humans_near` of a value table."""
 
     value: Amount
     condition: Condition | None
 
 
-@record
-class Table:
+class Table(Record):
     """A value for each context.  otherwise: the value behind `else`."""
 
     cases: tuple[Case, ...]
@@ -94,8 +88,7 @@ class Table:
 Bounded: TypeAlias = Amount | Table
 
 
-@record
-class Bound:
+class Bound(Record):
     """`at most 30 s`.  relation: `<=`, `>=`, `<`, `>`, or `between` with both values."""
 
     start: int
@@ -105,8 +98,7 @@ class Bound:
     upper: Amount | None = None
 
 
-@record
-class Event:
+class Event(Record):
     """`Pick starts`, `mission finishes` or `when battery < 3 %`; no path: the mission, or a condition."""
 
     start: int
@@ -116,16 +108,14 @@ class Event:
     condition: Condition | None = None
 
 
-@record
-class Mission:
+class Mission(Record):
     """The subject `mission`: the whole run."""
 
     start: int
     end: int
 
 
-@record
-class Every:
+class Every(Record):
     """The subject `every MoveBase`: each source node of that ID or kind."""
 
     start: int
@@ -133,8 +123,7 @@ class Every:
     name: Word
 
 
-@record
-class Between:
+class Between(Record):
     """The subject `from Pick starts to Place succeeds`."""
 
     start: int
@@ -143,8 +132,7 @@ class Between:
     last: Event | None
 
 
-@record
-class Sum:
+class Sum(Record):
     """The subject `sum of X, Y`."""
 
     start: int
@@ -155,8 +143,7 @@ class Sum:
 Subject: TypeAlias = Path | Mission | Every | Between | Sum
 
 
-@record
-class Claim:
+class Claim(Record):
     """What a requirement demands: a subject (None: the node it is attached to), a verb and what belongs to the verb.
 
     Attributes:
@@ -181,8 +168,7 @@ class Claim:
     every: bool = False
 
 
-@record
-class Scope:
+class Scope(Record):
     """`while φ` or `when φ`."""
 
     start: int
@@ -191,8 +177,7 @@ class Scope:
     condition: Condition | None
 
 
-@record
-class Odds:
+class Odds(Record):
     """`in at least 98 % of runs`, `with probability >= 98 %`.  experiments: None where not said."""
 
     start: int
@@ -202,8 +187,7 @@ class Odds:
     experiments: Word | None
 
 
-@record
-class Confidence:
+class Confidence(Record):
     """`confidence 95 %`."""
 
     start: int
@@ -211,8 +195,7 @@ class Confidence:
     value: Word | None
 
 
-@record
-class Window:
+class Window(Record):
     """`over last 200 activations`, `over last 7 d`."""
 
     start: int
@@ -221,8 +204,7 @@ class Window:
     experiments: Word | None
 
 
-@record
-class OnViolation:
+class OnViolation(Record):
     """`on violation fail`.  action: fail, halt, warn or log."""
 
     start: int
@@ -230,8 +212,7 @@ class OnViolation:
     action: Word | None
 
 
-@record
-class Goal:
+class Goal(Record):
     """`goal 15 Wh`: what would be better than the bound."""
 
     start: int
@@ -239,8 +220,7 @@ class Goal:
     value: Bounded | None
 
 
-@record
-class Because:
+class Because(Record):
     """`because "movement next to people"`."""
 
     start: int
@@ -248,8 +228,7 @@ class Because:
     text: Word | None
 
 
-@record
-class How:
+class How(Record):
     """`verified by review`.  method: monitor, analysis, test or review."""
 
     start: int
@@ -263,8 +242,7 @@ Clause: TypeAlias = Claim | Scope | Odds | Confidence | Window | OnViolation | G
 # ---- Conditions -----------------------------------------------------------------------------------------------------
 
 
-@record
-class Operand:
+class Operand(Record):
     """A quantity, number, name or string in an expression."""
 
     word: Word
@@ -278,8 +256,7 @@ class Operand:
         return self.word.end
 
 
-@record
-class Call:
+class Call(Record):
     """`max(speed)`: an aggregate of a signal."""
 
     start: int
@@ -288,8 +265,7 @@ class Call:
     signal: Word | None
 
 
-@record
-class NodeRuns:
+class NodeRuns(Record):
     """`node BatteryCheck/MoveBase`: true while that node runs."""
 
     start: int
@@ -297,8 +273,7 @@ class NodeRuns:
     path: Path
 
 
-@record
-class Negative:
+class Negative(Record):
     """`-x`."""
 
     start: int
@@ -306,8 +281,7 @@ class Negative:
     operand: Condition
 
 
-@record
-class Not:
+class Not(Record):
     """`not φ`."""
 
     start: int
@@ -315,8 +289,7 @@ class Not:
     operand: Condition
 
 
-@record
-class Binary:
+class Binary(Record):
     """`a + b`, `φ and ψ`.  operator: + - * / and or."""
 
     start: int
@@ -326,8 +299,7 @@ class Binary:
     right: Condition
 
 
-@record
-class Comparison:
+class Comparison(Record):
     """`a < b`, `a < b < c`: one more operand than operators."""
 
     start: int
@@ -342,8 +314,7 @@ Condition: TypeAlias = Operand | Call | NodeRuns | Negative | Not | Binary | Com
 # ---- Items ----------------------------------------------------------------------------------------------------------
 
 
-@record
-class Verbatim:
+class Verbatim(Record):
     """`xml "<element/>"`: one XML element as it is."""
 
     start: int
@@ -351,8 +322,7 @@ class Verbatim:
     text: Word | None
 
 
-@record
-class Include:
+class Include(Record):
     """`include "stations.btq"`."""
 
     start: int
@@ -361,8 +331,7 @@ class Include:
     attributes: tuple[Pair, ...] = ()
 
 
-@record
-class Qualities:
+class Qualities(Record):
     """`qualities iso25010-2023`: the edition that names are looked up in."""
 
     start: int
@@ -370,8 +339,7 @@ class Qualities:
     edition: Word | None
 
 
-@record
-class QualityDecl:
+class QualityDecl(Record):
     """`quality gentleness : safety "…"`: a quality of one's own."""
 
     start: int
@@ -381,8 +349,7 @@ class QualityDecl:
     text: Word | None
 
 
-@record
-class Port:
+class Port(Record):
     """`input station : string = "charger" "where to go"`; type: its words as one."""
 
     start: int
@@ -395,8 +362,7 @@ class Port:
     text: Word | None
 
 
-@record
-class Meta:
+class Meta(Record):
     """`metadata (color = "red")` of a model."""
 
     start: int
@@ -404,8 +370,7 @@ class Meta:
     attributes: tuple[Pair, ...]
 
 
-@record
-class Model:
+class Model(Record):
     """`Action MoveBase "…"` at file level: a node's interface."""
 
     start: int
@@ -421,8 +386,7 @@ class Model:
         return tuple([part for part in self.body if isinstance(part, Port)])
 
 
-@record
-class Models:
+class Models(Record):
     """`TreeNodesModel`: models in the place where the XML element stands."""
 
     start: int
@@ -430,8 +394,7 @@ class Models:
     models: tuple[Model | Verbatim, ...]
 
 
-@record
-class Signal:
+class Signal(Record):
     """`signal battery : % from {battery_level} level fresh within 5 s initially 100 %`."""
 
     start: int
@@ -444,8 +407,7 @@ class Signal:
     initially: Amount | None = None
 
 
-@record
-class Context:
+class Context(Record):
     """`context humans_near : humans > 0`."""
 
     start: int
@@ -454,8 +416,7 @@ class Context:
     condition: Condition | None
 
 
-@record
-class Selector:
+class Selector(Record):
     """`every MoveBase under PickPlace`, `every node tagged heavy`, or a path.
 
     Attributes:
@@ -469,8 +430,7 @@ class Selector:
     path: Path | None = None
 
 
-@record
-class Apply:
+class Apply(Record):
     """`apply slow(limit = 0.1 m/s) to every MoveBase except BatteryCheck/MoveBase`."""
 
     start: int
@@ -480,8 +440,7 @@ class Apply:
     exceptions: tuple[Selector, ...] = ()
 
 
-@record
-class Root:
+class Root(Record):
     """`Root mainTree`: the main tree's name; `bracketed`: its attributes are written exactly as given, even none."""
 
     start: int
@@ -491,8 +450,7 @@ class Root:
     bracketed: bool
 
 
-@record
-class Tree:
+class Tree(Record):
     """`BehaviorTree PickPlace`: body as a node's; more or fewer than one node is a diagnostic."""
 
     start: int
@@ -514,8 +472,7 @@ class Tree:
                 yield from child.walk()
 
 
-@record
-class Skipped:
+class Skipped(Record):
     """Lines that are no item; a diagnostic says what is wrong with them."""
 
     start: int
@@ -539,8 +496,7 @@ Item: TypeAlias = (
 )
 
 
-@record
-class Entry:
+class Entry(Record):
     """An item and where it stands.
 
     Attributes:
@@ -565,14 +521,6 @@ def quote(text: str) -> str:
     for character, escape in (("\\", "\\\\"), ('"', '\\"'), ("\t", "\\t")):
         text = text.replace(character, escape)
     return f'"{text}"'
-
-
-def is_name(text: str) -> bool:
-    """Whether a text can be written as a NAME, without quotes."""
-    return _NAME.fullmatch(text) is not None and text not in ("R?", "A?") and (text[0].isalpha() or text[0] == "_")
-
-
-_NAME = re.compile(r"[^\W\d](?:\w|-(?=\w))*[?!]?")
 
 
 def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> object:

@@ -11,7 +11,7 @@ from bisect import bisect_left, bisect_right
 from collections import namedtuple
 from collections.abc import Callable, Iterable
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -49,8 +49,7 @@ class Position(_Place):
     __slots__ = ()
 
 
-@record
-class Edit:
+class Edit(Record):
     """Replace the text at `span` by `text`."""
 
     span: Span
@@ -105,11 +104,20 @@ class LineIndex:
         self._text = text
         self._starts = [0, *(end.end() for end in LINE_END.finditer(text))]
 
-    def edited(self, text: str) -> LineIndex:
-        """The index of the text after an edit; the lines before and behind the change are not looked for again."""
-        change = changed(self._text, text)
-        if change is None:
-            return self
+    def edited(self, text: str, change: Span | None = None) -> LineIndex:
+        """The index of the text after an edit; the lines before and behind the change are not looked for again.
+
+        Args:
+            change: what `changed` says of the two texts, where that is known.
+        """
+        change = change or changed(self._text, text)
+        return self if change is None else self._replaced(change, text)
+
+    def replaced(self, span: Span, by: str) -> LineIndex:
+        """The index of the text with another one at `span`."""
+        return self._replaced(span, self._text[: span.start] + by + self._text[span.end :])
+
+    def _replaced(self, change: Span, text: str) -> LineIndex:
         # A \r before the change, or a \n behind it, may be half of a line end that the change makes or breaks.
         first = bisect_left(self._starts, change.start) - 1
         last = bisect_right(self._starts, change.end)
@@ -123,6 +131,10 @@ class LineIndex:
         if last < len(self._starts):
             after._starts[-1:] = [start + by for start in self._starts[last:]]
         return after
+
+    @property
+    def text(self) -> str:
+        return self._text
 
     @property
     def line_count(self) -> int:

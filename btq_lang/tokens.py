@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -43,8 +43,7 @@ NODE_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags"))
 DIRECTIONS: Final = frozenset(("input", "output", "inout"))
 
 
-@record
-class Token:
+class Token(Record):
     """A piece of the text; the texts of all tokens of a file, joined, are the file."""
 
     kind: int

@@ -14,7 +14,7 @@ from functools import lru_cache
 from math import inf, pi
 
 from btq_lang.near import near
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -26,8 +26,7 @@ Dimension = tuple[int, int, int, int, int, int, int, int, int]
 BASES: Final = ("length", "mass", "time", "current", "temperature", "angle", "data", "count", "percent")
 
 
-@record
-class Unit:
+class Unit(Record):
     """A unit.
 
     Attributes:
@@ -340,6 +339,10 @@ _MEANT: Final = {
     "b": "bit",
     "micron": "um",
     "kilos": "kg",
+    **dict.fromkeys(("Sekunde", "Sekunden", "segundos", "secondes"), "s"),
+    **dict.fromkeys(("Minute", "Minuten", "minutos"), "min"),
+    **dict.fromkeys(("Stunde", "Stunden", "horas", "heures"), "h"),
+    **dict.fromkeys(("Prozent", "pourcent", "porciento"), "%"),
     "kilo": "kg",
     "human": "person",
     "humans": "person",

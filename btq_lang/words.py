@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from btq_lang.garbage import mypyc_attr
 from btq_lang.text import Span
 from btq_lang.tokens import STRING
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.syntax import NodeClause, Verbatim
 
 
+@mypyc_attr(acyclic=True)
 class Word:
     """A word of the source: a name, a string, a symbol or a value.
 
@@ -68,6 +70,7 @@ class Word:
         return f"{self.raw}@{self.start}"
 
 
+@mypyc_attr(acyclic=True)
 class TypeWord(Word):
     """The type of a port, `std::string`: several words of the source, with or without blanks between them."""
 
@@ -79,6 +82,7 @@ class TypeWord(Word):
         return re.sub(r"\s+|/\*.*?\*/", "", self.raw, flags=re.DOTALL)
 
 
+@mypyc_attr(acyclic=True)
 class Pair:
     """`key = value`: a port, a subtree argument, or `_skipIf`, `_while`, …; no value: it is missing."""
 
@@ -103,6 +107,7 @@ class Pair:
         return f"{self.key!r} = {self.value!r}"
 
 
+@mypyc_attr(acyclic=True)
 class Node:
     """A node of a tree.
 
@@ -222,9 +227,9 @@ def unquote(raw: str) -> str:
     """What a STRING says (language.md §2): quotes off, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
     text = raw[1:-1] if len(raw) > 1 and raw[-1] == raw[0] and _closes(raw) else raw[1:]
     if "\r" in text:
-        text = _LINE_END.sub("\n", text)
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
     if "\\" in text:
-        text = _ESCAPE.sub(lambda match: _ESCAPED.get(match[1], match[1]), text)
+        text = re.sub(_ESCAPE, lambda match: _ESCAPED.get(match[1], match[1]), text)
     return text
 
 
@@ -236,6 +241,5 @@ def _closes(raw: str) -> bool:
     return backslashes % 2 == 0
 
 
-_ESCAPE: Final = re.compile(r"\\([\"'\\nt])")
+_ESCAPE: Final = r"\\([\"'\\nt])"  # compiled when first used: most files have none
 _ESCAPED: Final = {"n": "\n", "t": "\t"}
-_LINE_END: Final = re.compile(r"\r\n?")

@@ -10,25 +10,30 @@ only to say where a name could have come from.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
+from itertools import chain
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.project import Project, include_candidates
-from btq_lang.record import record
-from btq_lang.symbols import Kind, Summary, Symbol, Use, summarize
+from btq_lang.record import Record
+from btq_lang.symbols import Kind, Summary, Symbol, Use, asked_for, summarize
 from btq_lang.syntax import Entry, Include, Item, Root, Tree, Word
-from btq_lang.text import LineIndex, Span
+from btq_lang.text import LineIndex, Span, changed
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from btq_lang.mentions import Mention
+    from typing import TypeAlias
+
+    from btq_lang.mentions import Mention, What
     from btq_lang.places import Places
 
+Name: TypeAlias = tuple[Kind, str]
 
-@record
-class Definition:
+
+class Definition(Record):
     """A symbol and where it stands."""
 
     path: str
@@ -41,8 +46,7 @@ class Definition:
         return self.symbol.span.shifted(self.entry.start)
 
 
-@record
-class Reference:
+class Reference(Record):
     """A use and where it stands."""
 
     path: str
@@ -55,8 +59,7 @@ class Reference:
         return self.use.span.shifted(self.entry.start)
 
 
-@record
-class Origin:
+class Origin(Record):
     """What a file stands for that is written in another language.
 
     Attributes:
@@ -73,14 +76,23 @@ class Origin:
 
 
 class Facts:
-    """What an item says by itself: found out when first asked for, and true for as long as the item stays."""
+    """What an item says by itself: found out when first asked for, and true for as long as the item stays.
+
+    Attributes:
+        colours: what colours its words: of the features, who know what else it depends on.
+    """
 
     def __init__(self, item: Item) -> None:
         self.item = item
+        self.colours: object = None
 
     @cached_property
     def summary(self) -> Summary:
         return summarize(self.item)
+
+    @cached_property
+    def asked_for(self) -> frozenset[str]:
+        return asked_for(self.item)
 
     @cached_property
     def mentions(self) -> tuple[Mention, ...]:
@@ -88,6 +100,126 @@ class Facts:
         from btq_lang.mentions import mentions  # only editors ask
 
         return mentions(self.item)
+
+    @cached_property
+    def named(self) -> Mapping[What, tuple[Mention, ...]]:
+        """What it names, by what that is: of mentions that say the same the first one."""
+        found: dict[What, dict[tuple[str, bool, bool], Mention]] = {}
+        for one in self.mentions:
+            found.setdefault(one.what, {}).setdefault((one.name, one.word.quoted, one.defines), one)
+        return {what: tuple(names.values()) for what, names in found.items()}
+
+    @cached_property
+    def kinds(self) -> frozenset[tuple[str, bool]]:
+        """What its nodes are, and whether that is quoted."""
+        from btq_lang.mentions import What  # as above
+
+        found = self.named.get(What.NODE, ())
+        return frozenset([(one.name, one.word.quoted) for one in found if not one.defines])
+
+    @cached_property
+    def mentioned(self) -> Mapping[str, list[Mention]]:
+        """Its mentions by what they say."""
+        found: dict[str, list[Mention]] = {}
+        for one in self.mentions:
+            found.setdefault(one.name, []).append(one)
+        return found
+
+    @cached_property
+    def used(self) -> Mapping[Kind, frozenset[str]]:
+        """The names that it refers to, by their kind."""
+        found: dict[Kind, set[str]] = {}
+        for use in self.summary.uses:
+            found.setdefault(use.kind, set()).add(use.name)
+        return {kind: frozenset(names) for kind, names in found.items()}
+
+    def said(self, of: Kind | str) -> frozenset[str]:
+        """The names of a kind that it refers to, or what else is said here of it by this name."""
+        names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
+        return names
+
+    @cached_property
+    def node_names(self) -> frozenset[str]:
+        """Every name by which a path can name a node in it: its own, and those of kinds and instances."""
+        if not isinstance(self.item, Tree):
+            return frozenset()
+        words = [self.item.name, *(word for node in self.item.walk() for word in (node.id, node.name))]
+        return frozenset([word.text for word in words if word is not None])
+
+    @cached_property
+    def runs(self) -> frozenset[str]:
+        """The trees that it refers to; of a tree, the other ones."""
+        used = self.used.get(Kind.TREE, frozenset())
+        name = self.item.name.text if isinstance(self.item, Tree) and self.item.name is not None else ""
+        return used - {name} if used else used
+
+
+class Tally:
+    """How many items of a file say each of some names."""
+
+    def __init__(self, of: Kind | str, counts: dict[str, int]) -> None:
+        self._of = of
+        self._counts = counts
+
+    @classmethod
+    def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
+        """A tally of the names of a kind that items use, or of another set of names that their facts have."""
+        return cls(of, dict(Counter(chain.from_iterable([each.said(of) for each in items]))))
+
+    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
+        """The tally after an edit that has put other items in the place of some; the same one if they say the same."""
+        changes = Counter(chain.from_iterable([each.said(self._of) for each in come]))
+        changes.subtract(chain.from_iterable([each.said(self._of) for each in gone]))
+        if not any(changes.values()):
+            return self
+        counts = dict(self._counts)
+        for name, change in changes.items():
+            counts[name] = counts.get(name, 0) + change
+            if not counts[name]:
+                del counts[name]
+        return Tally(self._of, counts)
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        return frozenset(self._counts)
+
+
+class Names:
+    """The names that a file defines, each with the items and symbols that define it, in the order of the text."""
+
+    def __init__(self, found: dict[Name, list[tuple[Item, Symbol]]]) -> None:
+        self.found = found
+
+    @classmethod
+    def of(cls, facts: Iterable[Facts]) -> Names:
+        found: dict[Name, list[tuple[Item, Symbol]]] = {}
+        for each in facts:
+            for symbol in each.summary.symbols:
+                found.setdefault((symbol.kind, symbol.name), []).append((each.item, symbol))
+        return cls(found)
+
+    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
+        """The names after an edit that has put other items in the place of some; None where that says too little: the
+        names or their order are others, or a name has several definitions."""
+        before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
+        now = [(each.item, symbol) for each in come for symbol in each.summary.symbols]
+        if before != [(symbol.kind, symbol.name) for _, symbol in now]:
+            return None
+        if any(len(self.found[key]) > 1 for key in before):
+            return None
+        if not now:
+            return self
+        after = Names({**self.found, **{(one[1].kind, one[1].name): [one] for one in now}})
+        after.__dict__.update({each: self.__dict__[each] for each in ("all", "by_kind") if each in self.__dict__})
+        return after
+
+    @cached_property
+    def all(self) -> frozenset[Name]:
+        return frozenset(self.found)
+
+    @cached_property
+    def by_kind(self) -> dict[Kind, tuple[str, ...]]:
+        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in Kind}
 
 
 class File:
@@ -107,13 +239,33 @@ class File:
         """The file after an edit, which shares what the edit does not touch."""
         after = File(self.path, text)
         if self.origin is None and "parsed" in self.__dict__ and is_btq(self.path):
-            after.parsed = reparse(self.parsed, text)
+            change = changed(self.text, text)
+            after.parsed = reparse(self.parsed, text, change)
             known = self.facts
-            items = (entry.item for entry in after.parsed.entries)
-            after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
+            items = [entry.item for entry in after.parsed.entries]
+            facts = after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
+            gone = [each for item, each in known.items() if item not in facts]
+            come = [each for item, each in facts.items() if item not in known]
+            after._tallies = {of: tally.edited(gone, come) for of, tally in self._tallies.items()}
+            if "names" in self.__dict__:
+                names = self.names.edited(gone, come)
+                if names is not None:
+                    after.names = names
             if "lines" in self.__dict__:
-                after.lines = self.lines.edited(text)
+                after.lines = self.lines.edited(text, change)
         return after
+
+    @property
+    def has_tree(self) -> bool:
+        """Whether it was parsed, and is held so."""
+        return "parsed" in self.__dict__
+
+    def forget_tree(self) -> None:
+        """Let go of what was made of the text, but for the names in it: it is made again for whoever asks."""
+        names = {known: getattr(self, known) for known in _NAMES}
+        names.update({known: self.__dict__[known] for known in _RARE_NAMES if known in self.__dict__})
+        self.__dict__.clear()
+        self.__dict__.update(names)
 
     @cached_property
     def parsed(self) -> Parsed:
@@ -153,18 +305,88 @@ class File:
             for symbol in summary.symbols
         )
 
+    def first_users(self, kind: Kind) -> Mapping[str, Facts]:
+        """The names of a kind that the file refers to, each with the first item that does."""
+        if kind not in self._first_users:
+            found = self._first_users[kind] = {}
+            for each in reversed(self.facts.values()):
+                if names := each.used.get(kind):
+                    found.update(dict.fromkeys(names, each))
+        return self._first_users[kind]
+
+    @cached_property
+    def _first_users(self) -> dict[Kind, dict[str, Facts]]:
+        return {}
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        """Every name by which a path can name a node in the file."""
+        return self._said("node_names")
+
+    @property
+    def asked_for(self) -> frozenset[str]:
+        """The names in the file's conditions, bounds and arguments."""
+        return self._said("asked_for")
+
+    @property
+    def runs(self) -> frozenset[str]:
+        """The trees that the file's items refer to, of trees the other ones."""
+        return self._said("runs")
+
+    def used(self, kind: Kind) -> frozenset[str]:
+        """The names of a kind that the file refers to."""
+        return self._said(kind)
+
+    def _said(self, of: Kind | str) -> frozenset[str]:
+        if of not in self._tallies:
+            self._tallies[of] = Tally.of(self.facts.values(), of)
+        return self._tallies[of].names
+
+    @cached_property
+    def _tallies(self) -> dict[Kind | str, Tally]:
+        return {}
+
+    @cached_property
+    def names(self) -> Names:
+        """The names that the file itself defines."""
+        return Names.of(self.facts.values())
+
+    def definitions(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """What a name means by this file alone, in the order of its text."""
+        found = self.names.found.get((kind, name), ())
+        return tuple([Definition(self.path, self._entries[id(item)], symbol) for item, symbol in found])
+
+    def defines(self, kind: Kind, name: str) -> bool:
+        """Whether the file defines a name; not parsed where its text says that it cannot."""
+        return (name in self.text or not _ESCAPED.isdisjoint(name)) and (kind, name) in self.defined_names
+
+    @cached_property
+    def is_swallowed(self) -> bool:
+        """Whether a forgotten quote may have made text of what declares names."""
+        return any(problem.rule in _SWALLOWING for entry in self.parsed.entries for problem in entry.diagnostics)
+
     def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
         """Every word of one of the file's entries that names something."""
         return self.facts[id(entry.item)].mentions
 
+    def mentioned(self, name: str) -> list[tuple[Entry, Mention]]:
+        """The words that say a name and name something, in the order of the text."""
+        facts = self.facts
+        return [(entry, one) for entry in self.parsed.entries for one in facts[id(entry.item)].mentioned.get(name, ())]
+
+    @property
+    def mentioned_names(self) -> Iterable[str]:
+        """All that words say which name something."""
+        return dict.fromkeys(chain.from_iterable(each.mentioned for each in self.facts.values()))
+
     @cached_property
-    def mentioned(self) -> dict[str, list[tuple[Entry, Mention]]]:
-        """The words that name something, by what they say."""
-        found: dict[str, list[tuple[Entry, Mention]]] = {}
-        for entry in self.parsed.entries:
-            for mention in self.mentions_of(entry):
-                found.setdefault(mention.name, []).append((entry, mention))
-        return found
+    def kinds(self) -> frozenset[tuple[str, bool]]:
+        """What its nodes are, and whether that is quoted."""
+        return frozenset().union(*[each.kinds for each in self.facts.values()])
+
+    def named(self, entry: Entry) -> Mapping[What, tuple[Mention, ...]]:
+        """What one of the file's entries names: of mentions that say the same the first one."""
+        return self.facts[id(entry.item)].named
 
     @cached_property
     def source_lines(self) -> LineIndex:
@@ -176,15 +398,19 @@ class File:
         Raises:
             KeyError: the item is none of this file's.
         """
-        return self._starts[id(item)]
+        return self._entries[id(item)].start
+
+    def entry_of(self, item: Item) -> Entry:
+        """The entry of one of the file's items."""
+        return self._entries[id(item)]
 
     def summary_of(self, entry: Entry) -> Summary:
         """The summary of one of the file's entries."""
         return self.facts[id(entry.item)].summary
 
     @cached_property
-    def _starts(self) -> dict[int, int]:
-        return {id(entry.item): entry.start for entry in self.parsed.entries}
+    def _entries(self) -> dict[int, Entry]:
+        return {id(entry.item): entry for entry in self.parsed.entries}
 
     @cached_property
     def includes(self) -> tuple[Include, ...]:
@@ -192,7 +418,7 @@ class File:
             return ()
         return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
 
-    @property
+    @cached_property
     def included_paths(self) -> tuple[tuple[str, bool], ...]:
         """What its includes name, and whether a ROS package is to have it."""
         return tuple(
@@ -200,11 +426,11 @@ class File:
         )
 
     @cached_property
-    def defined_names(self) -> frozenset[tuple[Kind, str]]:
-        return frozenset((symbol.kind, symbol.name) for summary in self.summaries for symbol in summary.symbols)
+    def defined_names(self) -> frozenset[Name]:
+        return self.names.all
 
     @cached_property
-    def used_names(self) -> frozenset[tuple[Kind, str]]:
+    def used_names(self) -> frozenset[Name]:
         return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
 
     def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
@@ -224,6 +450,11 @@ class File:
         return f"File({self.path!r}, {len(self.text)} characters)"
 
 
+_ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written otherwise than it is
+_NAMES = ("path", "text", "origin", "included_paths", "defined_names", "used_names")  # they hold nothing of the tree
+_RARE_NAMES = ("kinds",)  # likewise, and seldom asked for
+
+
 class Scope:
     """The names that a file can use: its own and those of the files it includes, directly or not.
 
@@ -233,20 +464,14 @@ class Scope:
 
     def __init__(self, paths: tuple[str, ...], workspace: Workspace) -> None:
         self.paths = paths
+        self._files = [workspace.files[path] for path in paths]
         self._complete = all(
-            (target := workspace.included_by(path, include)) is not None and workspace.files[target].is_understood
-            for path in paths
-            for include in workspace.files[path].includes
-        ) and not any(map(_is_swallowed, (workspace.files[path] for path in paths)))
-        self._found: dict[tuple[Kind, str], list[Definition]] = {}
-        self._names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
-        for path in paths:
-            for definition in workspace.defined_in(path):
-                symbol = definition.symbol
-                same = self._found.setdefault((symbol.kind, symbol.name), [])
-                if not same:
-                    self._names[symbol.kind].append(symbol.name)
-                same.append(definition)
+            (target := workspace.included_by(file.path, include)) is not None and workspace.files[target].is_understood
+            for file in self._files
+            for include in file.includes
+        ) and not any(file.is_swallowed for file in self._files)
+        self._found: dict[Name, tuple[Definition, ...]] = {}
+        self._names: dict[Kind, tuple[str, ...]] = {}
 
     @property
     def complete(self) -> bool:
@@ -257,20 +482,27 @@ class Scope:
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition that a name means: the first one."""
         found = self._found.get((kind, name))
+        if found is None:
+            found = self._look_up(kind, name)
         return found[0] if found else None
 
     def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
         """Every definition of a name, the one that counts first."""
-        return tuple(self._found.get((kind, name), ()))
+        found = self._found.get((kind, name))
+        return self._look_up(kind, name) if found is None else found
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """All names of a kind, in the order of their definitions."""
-        return tuple(self._names[kind])
+        names = self._names.get(kind)
+        if names is None:
+            known = [file.names.by_kind[kind] for file in self._files]
+            names = self._names[kind] = known[0] if len(known) == 1 else tuple(dict.fromkeys(chain(*known)))
+        return names
 
-
-def _is_swallowed(file: File) -> bool:
-    """Whether a forgotten quote may have made text of what declares names."""
-    return any(problem.rule in _SWALLOWING for entry in file.parsed.entries for problem in entry.diagnostics)
+    def _look_up(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        known = [file.definitions(kind, name) for file in self._files if (kind, name) in file.names.found]
+        found = self._found[kind, name] = known[0] if len(known) == 1 else tuple(chain(*known))
+        return found
 
 
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
@@ -288,7 +520,7 @@ class Workspace:
         self.files = files
         self.project = project
         self._scopes: dict[str, Scope] = {}
-        self._everywhere: dict[tuple[Kind, str], tuple[Definition, ...]] = {}
+        self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
@@ -305,6 +537,15 @@ class Workspace:
         if before is not None and before.included_paths == file.included_paths:
             after._take_over(self, path)
         return after
+
+    def forget_trees(self, paths: Iterable[str]) -> None:
+        """Hold nothing of the trees of some files; who holds a definition in one of them must not ask for it again."""
+        gone = frozenset(paths)
+        for path in gone:
+            self.files[path].forget_tree()
+        self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
+        self._everywhere.clear()
+        self._referred.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
         """What is known of which file includes which, and of the names in files that do not see the one edited."""
@@ -342,9 +583,10 @@ class Workspace:
 
     def included_by(self, path: str, include: Include) -> str | None:
         """As `included`; what a ROS package holds is known to none but the robot."""
-        if include.path is None or _is_of_package(include):
-            return None
-        return self.included(path, include.path.text)
+        return None if include.path is None else self._target(path, include.path.text, _is_of_package(include))
+
+    def _target(self, path: str, include: str, is_of_package: bool) -> str | None:
+        return None if is_of_package else self.included(path, include)
 
     def closure(self, path: str) -> tuple[str, ...]:
         """A file and all that it includes, included ones first; a file that includes itself is in it once."""
@@ -374,8 +616,8 @@ class Workspace:
         return tuple(order)
 
     def _targets(self, path: str) -> Iterator[str]:
-        for include in self.files[path].includes:
-            target = self.included_by(path, include)
+        for named in self.files[path].included_paths:
+            target = self._target(path, *named)
             if target is not None:
                 yield target
 
@@ -419,9 +661,8 @@ class Workspace:
             self._everywhere[key] = tuple(
                 definition
                 for file in self.files.values()
-                if key in file.defined_names
-                for definition in file.defined
-                if (definition.symbol.kind, definition.symbol.name) == key
+                if file.defines(kind, name)
+                for definition in file.definitions(kind, name)
             )
         return self._everywhere[key]
 
@@ -469,16 +710,11 @@ class Workspace:
                 named = entry.item.name or _attribute(entry.item, "main_tree_to_execute")
                 if named is not None:
                     return self.scope(path).find(Kind.TREE, named.text)
-        trees = [definition for definition in self.defined_in(path) if definition.symbol.kind is Kind.TREE]
-        if len(trees) > 1:
-            used = {
-                use.name
-                for entry, summary in zip(file.parsed.entries, file.summaries, strict=True)
-                for use in summary.uses
-                if use.kind is Kind.TREE and not _is_tree_called(entry, use.name)
-            }
-            trees = [tree for tree in trees if tree.symbol.name not in used]
-        return trees[0] if len(trees) == 1 else None
+        trees = file.names.by_kind[Kind.TREE]
+        if len(trees) > 1 or any(len(file.names.found[Kind.TREE, name]) > 1 for name in trees):
+            trees = tuple([name for name in trees if name not in file.runs])
+        found = file.definitions(Kind.TREE, trees[0]) if len(trees) == 1 else ()
+        return found[0] if len(found) == 1 else None
 
 
 def is_btq(path: str) -> bool:
@@ -492,7 +728,3 @@ def _is_of_package(include: Include) -> bool:
 
 def _attribute(root: Root, key: str) -> Word | None:
     return next((pair.value for pair in root.attributes if pair.key.text == key), None)
-
-
-def _is_tree_called(entry: Entry, name: str) -> bool:
-    return isinstance(entry.item, Tree) and entry.item.name is not None and entry.item.name.text == name

@@ -13,6 +13,7 @@ from itertools import islice
 
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
+from btq_lang.record import fields_of
 from btq_lang.rules import Severity
 from btq_lang.syntax import Requirement, Word, shape
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, QUANTITY, Token
@@ -154,7 +155,7 @@ def _requirements(parsed: Parsed) -> Iterator[list[int]]:
             elif not isinstance(part, Word | str | int | None):
                 if isinstance(part, Requirement) and part.clauses:
                     yield [entry.start + found.start for found in (part, *part.clauses)]
-                parts += [getattr(part, name) for name in type(part).__slots__]  # type: ignore[attr-defined]  # of the tree
+                parts += [getattr(part, name) for name in fields_of(part)]
 
 
 # ---- other layouts --------------------------------------------------------------------------------------------------

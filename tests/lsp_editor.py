@@ -14,6 +14,12 @@ SERVER = (sys.executable, "-m", "btq_lang.server", "--stdio")
 Message = dict[str, Any]
 
 
+def part(start: tuple[int, int], end: tuple[int, int], text: str) -> Message:
+    """A change of what stands between two positions."""
+    places = [dict(zip(("line", "character"), place, strict=True)) for place in (start, end)]
+    return {"range": {"start": places[0], "end": places[1]}, "text": text}
+
+
 class Editor:
     """An editor with one server: requests are answered in order, notifications are kept until asked for.
 
@@ -110,10 +116,12 @@ class Editor:
         document = {"uri": self.uri(name), "languageId": "btq", "version": 1, "text": text}
         self.notify("textDocument/didOpen", textDocument=document)
 
-    def change(self, name: str, text: str) -> None:
+    def change(self, name: str, *changes: str | Message) -> None:
+        """Changes one after another: each the whole text, or a part of it that is said anew."""
         self.versions[name] += 1
         document = {"uri": self.uri(name), "version": self.versions[name]}
-        self.notify("textDocument/didChange", textDocument=document, contentChanges=[{"text": text}])
+        said = [{"text": change} if isinstance(change, str) else change for change in changes]
+        self.notify("textDocument/didChange", textDocument=document, contentChanges=said)
 
     def shut(self, name: str) -> None:
         self.notify("textDocument/didClose", **self.document(name))

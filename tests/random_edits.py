@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 
-from lsp_editor import Editor, Message
+from lsp_editor import Editor, Message, part
 
 from btq_lang.checks import check
 from btq_lang.features.completion import complete
@@ -100,8 +100,7 @@ class Drift:
         while done < count:
             name = self.chance.choice(sorted(self.texts))
             for _ in range(min(self.chance.choice((1, 1, 1, 1, 6)), count - done)):
-                self.texts[name] = self._edited(name)
-                self.editor.change(name, self.texts[name])
+                self._edit(name)
                 done += 1
                 if done % MEMORY == 0:
                     self.memory.append(resident(self.editor.process.pid))
@@ -116,13 +115,22 @@ class Drift:
             if self.chance.randrange(EVERYTHING) == 0:
                 self._compare_everything(workspace, name, lines)
 
-    def _edited(self, name: str) -> str:
+    def _edit(self, name: str) -> None:
         text = self.texts[name]
         if len(text) > MOST or self.chance.random() < 0.002:
-            return FILES[name]
+            self.texts[name] = FILES[name]
+            self.editor.change(name, FILES[name])
+            return
         at = self.chance.randrange(len(text) + 1)
-        gone = self.chance.choice((0, 0, 0, 0, 1, 1, 2, 5, 30))
-        return text[:at] + self.chance.choice(PIECES) + text[at + gone :]
+        end = min(at + self.chance.choice((0, 0, 0, 0, 1, 1, 2, 5, 30)), len(text))
+        piece = self.chance.choice(PIECES)
+        self.texts[name] = text[:at] + piece + text[end:]
+        lines = LineIndex(text)
+        places = [lines.position(offset, "utf-16") for offset in (at, end)]
+        if any(lines.offset(place, "utf-16") != offset for place, offset in zip(places, (at, end), strict=True)):
+            self.editor.change(name, self.texts[name])  # no position is between \r and \n
+        else:
+            self.editor.change(name, part(*places, piece))
 
     def _compare_everything(self, workspace: Workspace, name: str, lines: LineIndex) -> None:
         path, text = str(self.root / name), self.texts[name]

@@ -18,8 +18,19 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset({"record", "garbage", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
     frozenset(
-        {"tokens", "characters", "scan", "lexer", "words", "node_clauses", "syntax", "cursor"}
-        | {"conditions", "clauses", "nodes", "blocks", "lines", "patterns", "plain", "plain_requirements"}
+        {"tokens", "characters", "scan", "slips", "lexer", "words", "node_clauses", "syntax", "cursor"}
+        | {
+            "conditions",
+            "clauses",
+            "attributes",
+            "nodes",
+            "blocks",
+            "lines",
+            "patterns",
+            "plain",
+            "plain_models",
+            "plain_requirements",
+        }
         | {"parser", "comments", "script"}
     ),
     frozenset({"catalog"}),
@@ -40,6 +51,7 @@ ROWS: tuple[frozenset[str], ...] = (
             "session",
             "convert",
             "editor",
+            "protocol",
             "handlers",
             "preview",
         }
@@ -53,7 +65,7 @@ READS_SIBLINGS = {
     "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours
 }
 PROTOCOL = frozenset({"pygls", "lsprotocol"})
-SPEAKS_THE_PROTOCOL = frozenset({"server", "editor", "handlers", "convert"})
+SPEAKS_THE_PROTOCOL = frozenset({"server", "editor", "protocol", "handlers", "convert"})
 
 
 def modules() -> Iterator[tuple[str, Path]]:

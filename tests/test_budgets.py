@@ -182,7 +182,7 @@ def assert_within_budgets(text: str, seed: int) -> set[str]:
 
 def not_bounded(budgets: Budgets, found: Requirements) -> bool:
     """Some node that costs no time may be tried without end."""
-    return any(budgets.composed(node).gaps or "-1" in str(node.node.attributes) for node in found.nodes.all)
+    return any(budgets.gaps(node) or "-1" in str(node.node.attributes) for node in found.nodes.all)
 
 
 # ---- the rules, one by one -------------------------------------------------------------------------------------------
@@ -314,7 +314,7 @@ def test_what_the_longest_is_made_of() -> None:
 
 def test_why_there_is_no_bound() -> None:
     budgets, root = budget("->\n    A\n    X\n    Retry (num_attempts = -1)\n        B")
-    assert [(gap.node.shown, gap.reason) for gap in budgets.of(root).gaps] == [
+    assert [(gap.node.shown, gap.reason) for gap in budgets.gaps(root)] == [
         ("`X`", "has no `takes` clause"),
         ("`Retry`", "has no end"),
     ]

@@ -34,6 +34,9 @@ MISSION_XML = """\
 """
 
 
+GUESSED = "models guessed from how nodes are used: {}; declare those that are something else, as in `Condition Name`\n"
+
+
 class Btq:
     """The command in a folder of its own."""
 
@@ -132,7 +135,7 @@ def test_a_bundle_has_one_model_for_a_node(btq: Btq) -> None:
     btq.write(b="BehaviorTree Part\n    Pick (y = 1)\n")
     assert btq.build("a.btq", "--bundle")[0] == 0
     assert btq.read("a.xml").count('<Action ID="Pick">') == 1
-    assert '<input_port name="y"/>\n      <input_port name="x"/>' in btq.read("a.xml")
+    assert '<input_port name="x"/>\n      <input_port name="y"/>' in btq.read("a.xml")
 
 
 def test_a_bundle_holds_included_xml(btq: Btq) -> None:
@@ -185,6 +188,36 @@ def test_an_error_keeps_everything_from_being_written(btq: Btq) -> None:
     assert btq.files == ["a.btq", "b.btq"]
 
 
+def test_files_of_a_mission_guess_the_same_of_a_node_and_nothing_that_one_declares(btq: Btq) -> None:
+    btq.write(
+        main='include "lib.btq"\nRoot Main\nCondition DoorOpen\nBehaviorTree Main\n    ->\n'
+        "        SubTree Lib\n        DoorOpen\n        Retreat (far = {far})\n",
+        lib="BehaviorTree Lib\n    ->\n        DoorOpen\n        Retreat (to = home)\n        Action Grip\n"
+        "        Shield\n            Grip\n",
+    )
+    guess = '    <Action ID="Retreat">\n      <input_port name="to"/>\n      <inout_port name="far"/>\n    </Action>\n'
+    assert btq.build("main.btq") == (
+        0,
+        "wrote main.xml\nwrote lib.xml\n",
+        GUESSED.format("Retreat (Action), Shield (Decorator)"),
+    )
+    assert f'<TreeNodesModel>\n    <Condition ID="DoorOpen"/>\n{guess}  </TreeNodesModel>' in btq.read("main.xml")
+    others = '    <Action ID="Grip"/>\n', '    <Decorator ID="Shield"/>\n'
+    assert f"<TreeNodesModel>\n{others[0]}{guess}{others[1]}  </TreeNodesModel>" in btq.read("lib.xml")
+
+
+def test_a_node_that_is_used_with_and_without_children(btq: Btq) -> None:
+    btq.write(a="BehaviorTree A\n    ->\n        Guard\n        Guard\n            Pick\n")
+    assert btq.build()[2] == GUESSED.format("Guard (Decorator), Pick (Action)")
+
+
+def test_few_guesses_are_told(btq: Btq) -> None:
+    btq.write(a="BehaviorTree A\n    ->\n" + "".join(f"        N{number}\n" for number in range(10)))
+    told = ", ".join(f"N{number} (Action)" for number in range(8))
+    assert btq.build()[2] == GUESSED.format(f"{told}, 2 more")
+    assert btq.build("--verbatim", "--force")[2] == ""
+
+
 def test_an_error_in_an_included_file_counts(btq: Btq) -> None:
     btq.write(a='include "b.btq"\nBehaviorTree Main\n    SubTree Part\n', b="BehaviorTree Part\n")
     code, report, _ = btq.build("a.btq")
@@ -193,7 +226,7 @@ def test_an_error_in_an_included_file_counts(btq: Btq) -> None:
 
 def test_warnings_do_not(btq: Btq) -> None:
     btq.write(a="BehaviorTree A\n    Sequnce\n        Pick\n")
-    assert btq.build() == (0, "wrote a.xml\n", "")
+    assert btq.build() == (0, "wrote a.xml\n", GUESSED.format("Pick (Action), Sequnce (Decorator)"))
 
 
 def test_a_file_that_cannot_be_read(btq: Btq) -> None:
@@ -214,7 +247,8 @@ def test_repairs_are_told(btq: Btq) -> None:
         0,
         "wrote a.xml\n",
         "a.btq:2:14: repaired: the tree `My tree` is written as `My_tree`\n"
-        "a.btq:3:10: repaired: `--` in a comment is written `- -`: XML has no place for it\n",
+        "a.btq:3:10: repaired: `--` in a comment is written `- -`: XML has no place for it\n"
+        + GUESSED.format("Pick (Action)"),
     )
     assert '<root BTCPP_format="4" main_tree_to_execute="My_tree">' in btq.read("a.xml")
 
@@ -231,10 +265,10 @@ def test_check_compares_and_writes_nothing(btq: Btq) -> None:
 
 def test_a_side_file_that_is_not_made_any_more_goes(btq: Btq) -> None:
     btq.write(mission="Root Main\nBehaviorTree Main\n    Pick satisfices safety\n")
-    assert btq.build() == (0, "wrote mission.xml\nwrote mission.qreq.json\n", "")
+    assert btq.build() == (0, "wrote mission.xml\nwrote mission.qreq.json\n", GUESSED.format("Pick (Action)"))
     btq.write(mission="Root Main\nBehaviorTree Main\n    Pick\n")
     assert btq.build("--check") == (1, "out of date: mission.xml\nleft over: mission.qreq.json\n", "")
-    assert btq.build() == (0, "wrote mission.xml\nremoved mission.qreq.json\n", "")
+    assert btq.build() == (0, "wrote mission.xml\nremoved mission.qreq.json\n", GUESSED.format("Pick (Action)"))
     assert btq.build("--check") == (0, "", "")
     btq.write(**{"mission.qreq.json": "{}\n"})  # somebody else's
     assert btq.build("--check") == (0, "", "")
@@ -344,4 +378,4 @@ def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
     btq.write(empty="", models=SKILLS, mission='include "nothing.btq"\nBehaviorTree Main\n    A\n', nothing="# none\n")
     told = "btq build: empty.btq has no tree, so there is nothing in it to run\n"
     code, _, messages = btq.build(".")
-    assert (code, messages) == (0, told)
+    assert (code, messages) == (0, told + GUESSED.format("A (Action)"))

@@ -17,8 +17,9 @@ DOCS = (Path(__file__).resolve().parents[1] / "docs" / "language.md").read_text(
 FORMS = {
     "part of a model": "Action X\n    {}\n",
     "clause of a node": "BehaviorTree X\n    A {}\n",
+    "attribute of a node": "BehaviorTree X\n    {}\n",
     "event": "QualityReq x\n    {}\n",
-    **dict.fromkeys(("item", "part of a signal", "selector"), "{}\n"),
+    **dict.fromkeys(("item", "part of a signal", "selector", "attribute of the file", "classic form"), "{}\n"),
 }
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.nodes import (
     BUILTINS,
     DEFAULT_VERSION,
@@ -161,6 +162,8 @@ def test_units_and_contents_of_ports() -> None:
         "LoopBool.queue": "std::deque<bool>",
         "LoopDouble.queue": "std::deque<double>",
         "LoopString.queue": "std::deque<std::string>",
+        **{f"Loop{item}.if_empty": RESULT for item in ("Int", "Bool", "Double", "String")},
+        "Precondition.else": RESULT,
     }
 
 

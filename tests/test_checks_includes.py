@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 
 from btq_lang.checks import check
+from btq_lang.loader import open_workspace
 from btq_lang.project import Project
 from btq_lang.rules import Severity
 
@@ -68,7 +71,7 @@ def test_a_quality_that_a_missing_file_may_declare_is_not_called_unknown() -> No
 
 def test_a_file_that_cannot_be_read_is_told_where_it_is_included() -> None:
     skills = "//- skills.btq\nAction Go\n    input goal string\nAction Dock\n    input \n    input id string\n"
-    message = "has 2 errors: expected the end of the line"
+    message = "has 2 errors: expected `:` and the port's type, found `string`"
     workspace = workspace_of(
         split_files(f'//- main.btq\ninclude "more.btq"\n//- more.btq\ninclude "skills.btq"\n{skills}')
     )
@@ -93,3 +96,16 @@ def test_included_xml_that_cannot_be_read() -> None:
     text = '//- main.btq\ninclude "nav.xml"\n//- nav.xml\n<root>\n'
     (found,) = check(workspace_of(split_files(text)), "main.btq")
     assert (found.rule, found.related) == ("include-with-errors", ())
+
+
+def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "btq.toml").write_text('include-paths = ["shared", "lib"]\n')
+    (tmp_path / "main.btq").write_text('include "skills.btq"\n')
+    workspace = open_workspace(str(tmp_path))
+    (path,) = workspace.files
+    (found,) = check(workspace, path)
+    root = path.removesuffix("/main.btq")
+    assert found.notes == (
+        f"looked for in `{root}`, `{root}/shared`, `{root}/lib` (no folder); `include-paths` in btq.toml adds folders",
+    )

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 from pathlib import Path
 
 import missions
 import pytest
 
-from btq_lang.checks import Kept, check
+from btq_lang.checks import CHECKS, Check, check
+from btq_lang.checks.answers import Answers
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.syntax import Entry, Include, Tree
 from btq_lang.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parent / "every_form.btq").read_text(encoding="utf-8")
@@ -45,6 +50,38 @@ QualityReq rq2 "Then"
     on violation fail
 """
 FILES = {"/p/main.btq": MAIN, "/p/skills.btq": SKILLS, "/p/requirements.btq": REQUIREMENTS}
+BOARDS = """include "skills.btq"
+Action Take
+    input what : string
+    output taken : int
+Action Look
+    output seen : string
+BehaviorTree Main
+    ->
+        Take (what = {goal} taken = {count})
+        SubTree Carry (to = {goal} speed = {count})
+        SubTree Bring (_autoremap = true)
+        Script (code = "goal_x := 1; done := True")
+        Look (seen = text)
+BehaviorTree Bring
+    R?
+        Take (what = {gaol} taken = {@count})
+        SubTree Round (a = {count})
+        SubTree "" (_skipIf = "done")
+BehaviorTree Round
+    ->
+        AlwaysFailure
+        SubTree Bring (_while = "goal == 1")
+        ScriptCondition (name = "Near?")
+        Look (seen = {a})
+BehaviorTree Alone
+    Fallback
+        ScriptAction (name = "Near!")
+        SubTree Round
+        Look (seen = 3)
+        Look (seen = 4)
+        Look (seen = 5)
+"""
 PIECES = (
     *(
         "\n",
@@ -84,6 +121,15 @@ PIECES = (
         "Inverter",
         "30 s",
         'include "main.btq"\n',
+        "{goal}",
+        "@",
+        " (_autoremap = true)",
+        " (a = {b})",
+        'Script (code = "goal := 1")',
+        "AlwaysSuccess",
+        "\nSubTree Round\n",
+        "\n        SubTree Alone (to = {goal})\n",
+        "BehaviorTree Bring\n    AlwaysFailure\n",
     ),
 )
 
@@ -94,15 +140,16 @@ PIECES = (
     [
         FILES,
         {"/p/main.btq": EVERY_FORM},
+        {"/p/main.btq": BOARDS, "/p/skills.btq": SKILLS},
         {"/p/main.btq": missions.mission(60, 2, "classic")},
         {"/p/main.btq": missions.mission(60, 2, "short")},
     ],
-    ids=["includes", "every form", "classic", "short"],
+    ids=["includes", "every form", "entries", "classic", "short"],
 )
 def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
     chance = random.Random(seed)
     workspace = Workspace.of(files)
-    kept: dict[str, dict[int, Kept]] = {path: {} for path in files}
+    kept = {path: Answers() for path in files}
     for step in range(60):
         path = chance.choice(sorted(files))
         text = workspace.files[path].text
@@ -118,19 +165,59 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
             assert check(workspace, each, kept[each]) == check(fresh, each), (step, each, texts)
 
 
-def test_an_edit_in_one_tree_leaves_what_was_found_in_the_others() -> None:
-    workspace = Workspace.of(FILES)
-    kept: dict[int, Kept] = {}
-    check(workspace, "/p/main.btq", kept)
-    before = [one.found for one in kept.values()]
-    check(workspace.with_file("/p/main.btq", MAIN.replace("Sleep", "Sleeep")), "/p/main.btq", kept)
-    after = [one.found for one in kept.values()]
-    assert [now is then for now, then in zip(after, before, strict=True)] == [True, True, False]
+def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
+    """The trees of a file that the checks are asked for when some files become others."""
+    asked: list[str] = []
+
+    def noting(_: View, entry: Entry) -> Iterator[Diagnostic]:
+        assert isinstance(entry.item, Tree)
+        asked.append(entry.item.name.text if entry.item.name is not None else "")
+        yield from ()
+
+    monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
+    workspace = Workspace.of(before)
+    answers = Answers()
+    check(workspace, path, answers)
+    asked.clear()
+    for other, text in after.items():
+        workspace = workspace.with_file(other, text)
+    assert check(workspace, path, answers) == check(Workspace.of({**before, **after}), path)
+    return asked[: len(asked) - len(workspace.files[path].parsed.trees)]  # without the check of the texts alone
 
 
-def test_a_model_that_changes_is_asked_for_again() -> None:
-    workspace = Workspace.of(FILES)
-    kept: dict[int, Kept] = {}
-    assert "unknown-port" not in {one.rule for one in check(workspace, "/p/main.btq", kept)}
-    changed = workspace.with_file("/p/skills.btq", SKILLS.replace("input speed", "input haste"))
-    assert "unknown-port" in {one.rule for one in check(changed, "/p/main.btq", kept)}
+def test_an_edit_in_one_tree_asks_for_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    edited = {"/p/main.btq": MAIN.replace("Sleep", "Sleeep")}
+    assert asked_after(monkeypatch, FILES, edited, "/p/main.btq") == ["Help"]
+
+
+def test_a_model_that_changes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    edited = {"/p/skills.btq": SKILLS.replace("input speed", "input haste")}
+    assert asked_after(monkeypatch, FILES, edited, "/p/main.btq") == ["Main", "Help"]
+
+
+@pytest.mark.parametrize(
+    "text", [EVERY_FORM, BOARDS, missions.mission(60, 2, "classic"), missions.mission(60, 2, "short")]
+)
+def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    """Else it would be asked again of every item after every edit, as those of an include are, which look at the other
+    files, and what renames a tree wherever it is named."""
+    asked: list[tuple[str, type]] = []
+
+    def watched(check: Check) -> Check:
+        def noting(view: View, entry: Entry) -> Iterator[Diagnostic]:
+            asked.append((check.__name__, type(entry.item)))
+            yield from check(view, entry)
+
+        return noting
+
+    for item, checks in CHECKS.items():
+        monkeypatch.setitem(CHECKS, item, tuple(map(watched, checks)))
+    answers = Answers()
+    workspace = Workspace.of({"/p/main.btq": text})
+    check(workspace, "/p/main.btq", answers)
+    asked.clear()
+    check(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq", answers)
+    last = type(workspace.files["/p/main.btq"].parsed.entries[-1].item)
+    asked = [each for each in asked if each[1] is not Include and each[0] != "forbidden_name"]
+    assert {item for _, item in asked} <= {last}
+    assert len(asked) == len(set(asked))

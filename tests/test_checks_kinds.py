@@ -199,6 +199,13 @@ def test_categories_that_agree_or_that_nobody_knows() -> None:
     )
 
 
+def test_a_category_in_small_letters() -> None:
+    assert_fix(
+        "BehaviorTree A\n    action Lower\n", "Replace `action` by `Action`", "BehaviorTree A\n    Action Lower\n"
+    )
+    assert_clean("BehaviorTree A\n    action\n")
+
+
 # ---- clause-as-node --------------------------------------------------------------------------------------------------
 
 

@@ -142,3 +142,35 @@ def test_a_unit_is_never_dropped() -> None:
         workspace = Workspace.of({"main.btq": f"{declared}BehaviorTree Main\n    Go (speed = 3 km/h)\n"})
         (found,) = check(workspace, "main.btq")
         assert (found.fixes, found.notes) == ((), notes)
+
+
+def test_what_a_node_cannot_return_and_what_autoremap_cannot_read() -> None:
+    """As 4.6.2, 4.8.4 and 4.10.0 have it: tests/engine/test_engine_literals.py."""
+    files = {
+        "a.btq": """BehaviorTree Main
+    ->
+        Loop (queue = {q} value = {v} if_empty = {given})
+            Go (status = {v})
+        Precondition (if = "{q}" else = {given})
+            Go (status = IDLE)
+        SubTree Part (_autoremap = {remap})
+BehaviorTree Part
+    Go
+"""
+    }
+
+    def found(given: str, remap: str) -> list[tuple[str, str]]:
+        text = files["a.btq"].replace("{given}", given).replace("{remap}", remap)
+        workspace = Workspace.of({"a.btq": text})
+        return [(each.message, each.notes[0]) for each in check(workspace, "a.btq") if each.rule == "invalid-literal"]
+
+    for status in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "{v}"):
+        assert found(status, "true") == []
+    refused = "`IDLE` is no result: SUCCESS, FAILURE, SKIPPED or RUNNING"
+    assert found("IDLE", "false") == [
+        (refused, f"the port `{port}` is of type BT::NodeStatus but IDLE") for port in ("if_empty", "else")
+    ]
+    note = "the engine reads this attribute before there are entries: write true, or leave it out"
+    for remap in ("{=}", "{v}", '"{v}"'):
+        shown = remap.strip('"')
+        assert found("SUCCESS", remap) == [(f"`{shown}` is no bool here", note)]

@@ -17,6 +17,7 @@ SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
         ("keeps speed <= 3", "Write `3 m/s`", "keeps speed <= 3 m/s"),
         ("keeps speed <= -3", "Write `-3 m/s`", "keeps speed <= -3 m/s"),
         ("takes at most 30", "Write `30 s`", "takes at most 30 s"),
+        ("keeps speed <= 3 m/s²", "Write `^2`", "keeps speed <= 3 m/s^2"),
         ("keeps sped <= 3 m/s", "Replace `sped` by `speed`", "keeps speed <= 3 m/s"),
         ("Mian/X takes at most 3 s", "Replace `Mian` by `Main`", "Main/X takes at most 3 s"),
         ("every Y takes at most 3 s", "Replace `Y` by `X`", None),

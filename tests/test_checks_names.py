@@ -110,7 +110,7 @@ def test_ports_of_a_subtrees_model() -> None:
 
 def test_a_tree_without_an_id() -> None:
     assert_clean("BehaviorTree\n    X\n")
-    assert_clean("signal a : m\nBehaviorTree\n    X\n")  # which is not in the XML
+    assert_clean("quality a : safety\nBehaviorTree\n    X\n")  # which is not in the XML
     for other in ("Action X\n", "BehaviorTree Other\n    X\n"):
         assert_problems(
             f"BehaviorTree\n    X\n{other}",
@@ -174,4 +174,12 @@ def test_what_a_forgotten_quote_may_have_swallowed_is_not_called_unknown() -> No
         """,
         '6:21 error unclosed-string «"home)» a closing " is probably missing: '
         "this string ends at the next one, on another line",
+    )
+
+
+def test_an_empty_name_of_a_subtree_is_told_once() -> None:
+    assert_problems(
+        'include "x.btq"\nBehaviorTree Main\n    SubTree ""\n',
+        '1:9 error missing-include «"x.btq"» there is no file `x.btq`',
+        "3:5 error unknown-tree «SubTree» this SubTree names no tree: `SubTree <ID>`",
     )

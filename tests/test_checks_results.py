@@ -9,7 +9,7 @@ from random import Random
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.checks.results import Results
+from btq_lang.checks.results import Results, result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View
 from btq_lang.syntax import Node
@@ -22,7 +22,7 @@ def results(text: str) -> dict[str, Results]:
     """The results of every named node of a file."""
     view = View(Workspace.of({"main.btq": text}), "main.btq")
     return {
-        seen.node.name.text: view.results.of(entry, seen.node)
+        seen.node.name.text: result(view, entry, seen.node)
         for entry in view.file.parsed.entries
         for seen in view.nodes(entry)
         if seen.node.name is not None
@@ -319,7 +319,7 @@ def test_no_node_returns_what_is_impossible(tree: str, random: Random, actions_t
         if top.tick() != RUNNING or random.randrange(6) == 0:
             top.halt()
     for ticked in top.all():
-        found = view.results.of(entry, ticked.node)
+        found = result(view, entry, ticked.node)
         place = f"{ticked.node.head.text} in\n{tree}"
         assert ticked.seen & ~found.ever == 0, place
         if actions_take_time:
@@ -379,4 +379,4 @@ def test_an_included_tree() -> None:
     }
     view = View(Workspace.of(texts), "main.btq")
     entry = view.file.parsed.entries[1]
-    assert view.results.of(entry, view.nodes(entry)[0].node).ever == FAILURE
+    assert result(view, entry, view.nodes(entry)[0].node).ever == FAILURE

@@ -12,6 +12,8 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
+# `shell: bash` as GitHub runs it, but for the file that it writes the step to.
+BASH = ("bash", "--noprofile", "--norc", "-eo", "pipefail", "-c")
 CLEAN = "BehaviorTree Main\n    Dock\n"
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 
@@ -63,11 +65,24 @@ def test_a_step_of_the_action_runs(step: str, code: int, said: str, tmp_path: Pa
     (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
     defaults = {f"${{{{ inputs.{name} }}}}": given["default"] for name, given in action["inputs"].items()}
     values = {name: defaults[value] for name, value in body["env"].items()}
-    run = subprocess.run(
-        ["bash", "-e", "-c", body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True
-    )
+    run = subprocess.run([*BASH, body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True)
     assert run.returncode == code, run.stdout + run.stderr
     assert said in run.stdout + run.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize("step", ["Check", "Format"])
+def test_the_action_is_content_with_this_repository(step: str, programs: dict[str, str]) -> None:
+    """The job of our own workflow."""
+    action = read("action.yml")
+    (ours,) = (each["with"] for each in read(".github/workflows/ci.yml")["jobs"]["action"]["steps"] if "with" in each)
+    assert ours["format"] == "true"
+    (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
+    given = {name: ours.get(name, about["default"]) for name, about in action["inputs"].items()}
+    inputs = {f"${{{{ inputs.{name} }}}}": value for name, value in given.items()}
+    values = {name: inputs[value] for name, value in body["env"].items()}
+    run = subprocess.run([*BASH, body["run"]], cwd=ROOT, env={**programs, **values}, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
@@ -84,9 +99,7 @@ def test_the_action_writes_what_changed(tmp_path: Path, programs: dict[str, str]
     (body,) = (each for each in read("action.yml")["runs"]["steps"] if each.get("id") == "diff")
     files = {name: str(tmp_path / name) for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
     values = {**files, "RUNNER_TEMP": str(tmp_path), "BTQ_PATHS": ".", "BTQ_DIFF_FROM": "HEAD~1"}
-    run = subprocess.run(
-        ["bash", "-e", "-c", body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True
-    )
+    run = subprocess.run([*BASH, body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     said = (tmp_path / "btq-diff.md").read_text(encoding="utf-8")
     assert "Charge" in said

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang import __version__
+from btq_lang.catalog.language import SIGNS
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
@@ -465,6 +466,22 @@ def test_format_of_standard_input(btq: Run) -> None:
         ("on violation", "# on violation (clause)"),
         ("violation", "# on violation (clause)"),
         ("io-error", "# io-error"),
+        ("m/s", "# m/s (unit)"),
+        ("%", "# % (unit)"),
+        ("0.5 h", "# 0.5 h (quantity)"),
+        ("text", "# text (in the place of a unit)"),
+        ("_skipIf", "# _skipIf (attribute of a node)"),
+        ("_autoremap", "# _autoremap (attribute of a node)"),
+        ("_uid", "# _uid (attribute of a node, which the engine does not read)"),
+        ("BTCPP_format", "# BTCPP_format (attribute of the file)"),
+        ("SuccessIf", "# SuccessIf (classic form)"),
+        ("num_attempts", "# num_attempts (port)"),
+        ("std::string", "# std::string (type of a port)"),
+        ("{goal}", "# { } (sign)"),
+        ("{=}", "# {=} (sign)"),
+        ("{@goal}", "# {@ } (sign)"),
+        ("#", "# # (sign)"),
+        ("btq: ignore[unused-tree]", "# btq: ignore (sign)"),
     ],
 )
 def test_explain(btq: Run, name: str, first_line: str) -> None:
@@ -483,7 +500,8 @@ def test_explain_of_several_names(btq: Run) -> None:
     done = btq("explain", "Retry", "nonsense")
     assert done.stdout == btq("explain", "Retry").stdout
     assert done.stderr == (
-        "btq explain: `nonsense` is no rule, node, quality or word of the language; `btq explain` lists all there is\n"
+        "btq explain: `nonsense` is no rule, node, quality, unit or word of the language; "
+        "`btq explain` lists all there is\n"
     )
     assert done.returncode == 2
 
@@ -492,9 +510,24 @@ def test_explain_of_something_unknown(btq: Run) -> None:
     done = btq("explain", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
     assert (
-        done.stderr
-        == "btq explain: `unknown-nod` is no rule, node, quality or word of the language; did you mean unknown-node?\n"
+        done.stderr == "btq explain: `unknown-nod` is no rule, node, quality, unit or word of the language; "
+        "did you mean unknown-node?\n"
     )
+    meant_by = (("kwh", "kWh"), ("_skipif", "_skipIf"), ("msecs_", "msec"), ("sek", "s"), ("skip", "_skipIf, "))
+    for name, meant in meant_by:
+        assert f"did you mean {meant}" in btq("explain", name).stderr
+
+
+def test_explain_of_units(btq: Run) -> None:
+    assert btq("explain", "30 min").stdout == "# 30 min (quantity)\n\nMeasures time. It is 1800 s.\n"
+    assert btq("explain", "msec", "deg").stdout.endswith(
+        "# deg (unit)\n\nMeasures angle. 1 deg is 0.01745329252 rad.\n\ncompares with: rad, urad, mrad, rev\n"
+    )
+
+
+@pytest.mark.parametrize("sign", [sign for sign, _, _ in SIGNS])
+def test_explain_knows_every_sign(btq: Run, sign: str) -> None:
+    assert f"# {sign} (sign)" in btq("explain", sign).stdout
 
 
 def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:
@@ -509,8 +542,15 @@ def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_p
 def test_a_closed_pipe_is_no_traceback(tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG * 200)
     command = f"{sys.executable} -m btq_lang check main.btq | head -1"
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.stderr, done.returncode) == ("", 0)
+
+
+def test_a_closed_standard_output_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    command = f"{sys.executable} -m btq_lang check main.btq >&-"
     done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)
-    assert done.stderr == ""
+    assert (done.stderr, done.returncode) == ("", 1)
 
 
 def test_format_keeps_the_line_ends_of_standard_input(tmp_path: Path) -> None:

@@ -50,3 +50,10 @@ def test_kate_finds_the_mode_where_the_documentation_puts_it(tmp_path: Path) -> 
     assert {rule.get("attribute") for rule in language.iter("*")} - {None} <= styles
     words = {item.text for item in language.iter("item")}
     assert {*vocabulary.ITEMS, *vocabulary.CLAUSE_WORDS, *vocabulary.VERB_WORDS, *vocabulary.DECORATORS} <= words
+
+
+def test_the_recipe_for_emacs_has_the_words_that_begin_a_line() -> None:
+    page = (ROOT / "docs" / "editors.md").read_text("utf-8")
+    (quoted,) = re.findall(r"\(regexp-opt '\(([^)]*)\)", page)
+    words = (*vocabulary.ITEMS, vocabulary.MODELS, *vocabulary.CATEGORIES, *vocabulary.DIRECTIONS)
+    assert sorted(re.findall(r'"(\w+)"', quoted)) == sorted(words)

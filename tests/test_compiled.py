@@ -1,4 +1,4 @@
-"""The compiled parser (hatch_build.py) reads as the pure one does: the same tree, offsets and diagnostics.
+"""What is compiled (hatch_build.py) reads and checks as the pure form does: the same tree, offsets and diagnostics.
 
 It is compiled into a temporary folder, without optimisation, and runs in a process of its own, since one process
 imports a package only once.  Skipped, saying so, where the tools to compile it are missing.
@@ -14,16 +14,20 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from missions import mission
 from test_plain import CLASSIC, EXAMPLES, SHORT, torn
+from test_rules import blocks
 
 ROOT = Path(__file__).resolve().parents[1]
 
 TELL = """
 import json, sys
-from btq_lang import parser
+from btq_lang import checks, parser
+from btq_lang.checks import ports
+from btq_lang.workspace import Workspace
 
 def told(part):
     if isinstance(part, (list, tuple)) and not hasattr(part, "_fields"):
@@ -32,15 +36,17 @@ def told(part):
         return [type(part).__name__, *(told(getattr(part, field)) for field in type(part).__match_args__)]
     return repr(part)
 
-print(json.dumps(parser.__file__))
+print(json.dumps([parser.__file__, ports.__file__]))
 for line in sys.stdin:
-    parsed = parser.parse(json.loads(line))
-    print(json.dumps(told([parsed.entries, parsed.diagnostics, parsed.tokens])))
+    text = json.loads(line)
+    parsed = parser.parse(text)
+    found = checks.check(Workspace.of({"main.btq": text}), "main.btq")
+    print(json.dumps(told([parsed.entries, parsed.diagnostics, parsed.tokens, found])))
 """
 
 
-def answers(package: Path, texts: list[str]) -> tuple[Path, list[str]]:
-    """What the parser of a package says of each text, and where that parser lies."""
+def answers(package: Path, texts: list[str]) -> tuple[list[Path], list[str]]:
+    """What the parser and the checks of a package say of each text, and where a module of either lies."""
     said = subprocess.run(
         [sys.executable, "-c", TELL],
         input="".join(json.dumps(text) + "\n" for text in texts),
@@ -50,7 +56,17 @@ def answers(package: Path, texts: list[str]) -> tuple[Path, list[str]]:
         text=True,
         check=True,
     ).stdout.splitlines()
-    return Path(json.loads(said[0])), said[1:]
+    return [Path(file) for file in json.loads(said[0])], said[1:]
+
+
+def hatch_build() -> Any:
+    """The module that compiles, which stands outside of the package."""
+    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture(scope="module")
@@ -61,28 +77,24 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
             pytest.skip(f"the parser cannot be compiled here: {module} is not installed")
     if shutil.which(os.environ.get("CC", "cc")) is None:
         pytest.skip("the parser cannot be compiled here: there is no C compiler")
-    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
-    assert spec is not None
-    assert spec.loader is not None
-    hatch_build = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(hatch_build)
     folder = tmp_path_factory.mktemp("compiled")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MYPYC_OPT_LEVEL", "0")
-        hatch_build.compile_package(ROOT, folder)
+        hatch_build().compile_package(ROOT, folder)
     return folder
 
 
-def test_the_compiled_parser_reads_as_the_pure_one(compiled: Path) -> None:
+def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> None:
     draw = random.Random(1)
     texts = [path.read_bytes().decode("utf-8") for path in EXAMPLES]
+    texts += [text for _, language, text in blocks() if language == "btq"]
     texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
-    pure_file, pure = answers(ROOT, texts)
-    compiled_file, by_compiled = answers(compiled, texts)
-    assert pure_file == ROOT / "btq_lang" / "parser.py"
-    assert compiled_file.parent == compiled / "btq_lang"
-    assert compiled_file.suffix != ".py"
+    pure_files, pure = answers(ROOT, texts)
+    compiled_files, by_compiled = answers(compiled, texts)
+    assert pure_files == [ROOT / "btq_lang" / "parser.py", ROOT / "btq_lang" / "checks" / "ports.py"]
+    assert [file.parent for file in compiled_files] == [compiled / "btq_lang", compiled / "btq_lang" / "checks"]
+    assert {file.suffix for file in compiled_files}.isdisjoint({".py"})
     assert len(pure) == len(by_compiled) == len(texts)
     for text, expected, found in zip(texts, pure, by_compiled, strict=True):
         assert found == expected, text
@@ -90,3 +102,9 @@ def test_the_compiled_parser_reads_as_the_pure_one(compiled: Path) -> None:
 
 def test_nothing_compiled_lies_in_the_checkout(compiled: Path) -> None:
     assert not [*ROOT.glob("*.so"), *(ROOT / "btq_lang").rglob("*.so"), *(ROOT / "btq_lang").rglob("*.pyd")]
+
+
+def test_what_is_compiled_has_no_property_that_is_worked_out_once() -> None:
+    """mypyc makes of a `cached_property` in a compiled class one that is worked out every time."""
+    modules = [ROOT / "btq_lang" / f"{module}.py" for module in hatch_build().COMPILED]
+    assert [path.name for path in modules if "cached_property" in path.read_text(encoding="utf-8")] == []

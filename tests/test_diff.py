@@ -270,6 +270,26 @@ def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> N
     assert btq("a", "b", cwd=tmp_path) == (1, f"a/reqs.btq -> b/reqs.btq\n{said}", "")
 
 
+def test_two_spellings_of_a_path_include_the_same(tmp_path: Path) -> None:
+    (tmp_path / "lib.btq").write_text("BehaviorTree Lib\n    Go\n")
+    (tmp_path / "a.btq").write_text('include "lib.btq"\nRoot Main\nBehaviorTree Main\n    SubTree Lib\n')
+    (tmp_path / "b.btq").write_text('include "./lib.btq"\nRoot Main\nBehaviorTree Main\n    SubTree Lib\n')
+    assert btq("a.btq", "b.btq", cwd=tmp_path) == (0, "", "")
+
+
+def test_what_a_build_guesses_is_no_change(tmp_path: Path) -> None:
+    (tmp_path / "lib.btq").write_text("BehaviorTree Lib\n    ->\n        Go (x = 1)\n        DoorOpen\n")
+    (tmp_path / "main.btq").write_text(
+        'include "lib.btq"\nRoot Main\nCondition DoorOpen\nBehaviorTree Main\n'
+        "    ->\n        SubTree Lib\n        Go (y = {y})\n        DoorOpen\n"
+    )
+    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    for name in ("main", "lib"):
+        assert btq(f"{name}.btq", f"{name}.xml", cwd=tmp_path) == (0, "", "")
+    imported = run("import", "lib.xml", "-o", "back", cwd=tmp_path)
+    assert imported == (0, "", "1 file imported\nNext: btq check back/lib.btq\n")
+
+
 def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
     (tmp_path / "skills.btq").write_text("BehaviorTree Enough\n    input level : double = 25\n    AlwaysSuccess\n")
     mission = tmp_path / "mission.btq"

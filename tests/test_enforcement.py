@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from missions import mission
-from test_build import Btq, btq  # noqa: F401  # the fixture
+from test_build import GUESSED, Btq, btq  # noqa: F401  # the fixture
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.conditions import NoScript, condition_script, real
@@ -297,6 +297,7 @@ def test_names() -> None:
 # ---- the command ----
 
 
+SEEN = GUESSED.format("Move (Action), Rest (Action)")
 QUICK = f"QualityReq quick\n    Move takes at most 5 s\n{FAIL}QualityReq calm\n    Rest takes at most 2 s\n{TAIL}"
 LIKELY = QUICK.replace("    on violation", "    in at least 98 % of runs\n    on violation")
 
@@ -304,10 +305,11 @@ LIKELY = QUICK.replace("    on violation", "    in at least 98 % of runs\n    on
 def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the fixture
     btq.write(mission=QUICK)
     counted = "clauses of requirements: 1 enforced, 1 monitored\n"
-    assert btq.build("mission.btq") == (0, "wrote mission.xml\nwrote mission.qreq.json\n", counted)
+    assert btq.build("mission.btq") == (0, "wrote mission.xml\nwrote mission.qreq.json\n", counted + SEEN)
     assert btq.build("mission.btq", "--verbose")[2] == (
         "mission.btq:2:5: enforced: quick, `Move takes at most 5 s` at `Move`\n"
-        f"mission.btq:5:5: monitored: calm, `Rest takes at most 2 s` at `Rest`\n{counted}2 files left as they are\n"
+        f"mission.btq:5:5: monitored: calm, `Rest takes at most 2 s` at `Rest`\n{counted}{SEEN}"
+        "2 files left as they are\n"
     )
     assert "<!-- Nodes with _btq enforce requirements: at tick rate, so they are no safety function. -->" in btq.read(
         "mission.xml"
@@ -315,7 +317,7 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     btq.write(mission=LIKELY)
     assert btq.build("mission.btq")[2] == (
         "mission.btq:2:5: not enforced, monitored: quick, `Move takes at most 5 s` at `Move`: odds are judged over many"
-        " runs\nclauses of requirements: 2 monitored\n"
+        f" runs\nclauses of requirements: 2 monitored\n{SEEN}"
     )
 
 
@@ -324,7 +326,7 @@ def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:  # noqa: F811  #
     btq.write(mission=loose)
     assert btq.build("mission.btq")[2] == (
         "mission.btq:4:5: not held: quick, `never force >= 50 N` is about no node\n"
-        "clauses of requirements: 1 enforced, 1 monitored, 1 about no node\n"
+        f"clauses of requirements: 1 enforced, 1 monitored, 1 about no node\n{SEEN}"
     )
     side: Any = json.loads(btq.read("mission.qreq.json"))
     assert [each.get("clauses_without_nodes") for each in side["requirements"]] == [["never force >= 50 N"], None]
@@ -336,11 +338,11 @@ def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> N
     rules = "QualityReq quick\n    Move takes at most 5 s\n    succeeds\nBehaviorTree Go\n    Move\n"
     main = 'include "rules.btq"\nRoot Main\nBehaviorTree Main\n    ->\n        SubTree Go\n        Rest{}\n'
     btq.write(rules=rules, mission=main.format(" satisfies quick"))
-    assert btq.build("mission.btq")[2] == "clauses of requirements: 2 monitored\n"
+    assert btq.build("mission.btq")[2] == f"clauses of requirements: 2 monitored\n{SEEN}"
     btq.write(mission=main.format(""))
     assert btq.build("mission.btq")[2] == (
         "rules.btq:3:5: not held: quick, `succeeds` is about no node\n"
-        "clauses of requirements: 1 monitored, 1 about no node\n2 files left as they are\n"
+        f"clauses of requirements: 1 monitored, 1 about no node\n{SEEN}2 files left as they are\n"
     )
 
 
@@ -352,14 +354,14 @@ def test_a_build_names_trees_and_the_mission_as_the_claim_does(btq: Btq) -> None
         "mission.btq:2:5: enforced: quick, `SubTree/Go takes at most 5 s` at `Go`\n"
         "mission.btq:3:5: enforced: quick, `mission takes at most 5 s` at `mission`\n"
         "mission.btq:4:5: enforced: quick, `Go/Move takes at most 5 s` at `Move`\n"
-        "clauses of requirements: 3 enforced\n"
+        f"clauses of requirements: 3 enforced\n{SEEN}"
     )
 
 
 def test_a_plain_tree_can_be_had(btq: Btq) -> None:  # noqa: F811  # the fixture
     btq.write(mission=QUICK)
-    for option in ("--no-enforce", "--verbatim"):
-        assert btq.build("mission.btq", option, "--force")[2] == ""
+    for option, told in (("--no-enforce", SEEN), ("--verbatim", "")):
+        assert btq.build("mission.btq", option, "--force")[2] == told
         assert "_btq" not in btq.read("mission.xml")
     assert btq.build("mission.btq", "--no-enforce", "--force")[0] == 0
     side: Any = json.loads(btq.read("mission.qreq.json"))

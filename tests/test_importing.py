@@ -272,6 +272,26 @@ def test_what_stands_elsewhere_or_nowhere_is_told() -> None:
     )
 
 
+def test_few_of_very_many_lost_texts_are_told() -> None:
+    sections = "<![CDATA[x]]>" * 1000
+    done = import_xml(f'<root><BehaviorTree ID="T"><Sequence>{sections}<Pick/></Sequence></BehaviorTree></root>', True)
+    assert len(done.diagnostics) == len(done.changes) == 101
+    assert done.diagnostics[-1].message == "the engine ignores this text and all behind it"
+    assert done.changes[-1].message == "text that the engine ignores is left out from here on"
+    assert done.text == "Root ()\n\nBehaviorTree T\n    ->\n        Pick\n"
+
+
+@pytest.mark.parametrize(
+    "inside",
+    ['<Sequence _btq="r">' * 490 + "{}" + "</Sequence>" * 490, "{}" + '<Script _btq="r"/>' * 20000],
+    ids=["deep", "wide"],
+)
+def test_marks_of_a_build_in_any_number_are_taken_out(inside: str) -> None:
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><Sequence>{}</Sequence></BehaviorTree></root>'
+    done = import_xml(xml.replace("{}", inside.replace("{}", "<Pick/>")))
+    assert done.text == "Root ()\n".replace("()", "(BTCPP_format = 4)") + "\nBehaviorTree T\n    ->\n        Pick\n"
+
+
 def test_what_a_build_has_put_in_is_taken_out() -> None:
     assert_import(
         """
@@ -290,7 +310,7 @@ def test_what_a_build_has_put_in_is_taken_out() -> None:
             A (_description = "mine")
             B
         """,
-        "1:1 what a build put there is left out: its mark, 2 descriptions",
+        "4:8 what a build put there is left out: 2 descriptions",
     )
 
 

@@ -711,7 +711,7 @@ def test_blackboard_entries(braced: str) -> None:
     assert_value(braced, f"BRACED {braced}")
 
 
-@pytest.mark.parametrize("source", ["{a\n      b}", "{a'b'}", '{"a"}', "{{a}}", "{a"])
+@pytest.mark.parametrize("source", ["{a\n      b}", "{a'b'}", '{"a"}', "{a"])
 def test_what_is_no_blackboard_entry(source: str) -> None:
     (problem, *_) = parse(f"BehaviorTree t\n  X (a = {source})").diagnostics
     assert (problem.span, problem.message) == ((24, 25), "this `{` has no `}`")

@@ -144,7 +144,12 @@ def test_links_are_followed_and_loops_end(folder: Path) -> None:
     (folder / "real/gone.btq").symlink_to("nowhere")
     (folder / "real/self.btq").symlink_to("self.btq")
     (folder / "a-link").symlink_to(folder / "other")
-    assert names(collect(["."], Project())[0]) == ["other/b.btq", "real/a.btq"]
+    files, problems = collect(["."], Project())
+    assert names(files) == ["other/b.btq", "real/a.btq"]
+    assert list(map(str, problems)) == [
+        "real/gone.btq: cannot be read: a link to what is not there",
+        "real/self.btq: cannot be read: a link to what is not there",
+    ]
     (folder / "real/up").unlink()
     (folder / "real/linked").symlink_to(folder / "other")
     assert names(collect(["real"], Project())[0]) == ["real/a.btq", "real/linked/b.btq"]

@@ -310,13 +310,12 @@ def test_a_type_of_several_words_is_one() -> None:
             "2:12 syntax-error «» expected a value: a string, a name, a number, a quantity or {key}, "
             "found the end of the line",
         ),
-        ("input a b", "input a", "2:11 syntax-error «b» expected the end of the line, found `b`"),
+        ("input a b", "input a", "2:11 syntax-error «b» expected `:` and the port's type, found `b`"),
         ("input a = 1 : int", "input a = 1", "2:15 syntax-error «:» expected the end of the line, found `:`"),
-        ("input 'a' : int", "input 'a'", "2:13 syntax-error «:» expected the end of the line, found `:`"),
-        (
-            "input a : std::vector<int> = 1",
-            "input a : std::vector<int> = 1",
-            "2:13 syntax-error «std::vector<int>» this type needs quotes",
+        ("input 'a' : int", "input 'a' : int", "2:9 syntax-error «'a'» a port's name stands without quotes"),
+        *(
+            (f"input a : {type_} = 1", f"input a : {type_} = 1", f"2:13 syntax-error «{type_}» this type needs quotes")
+            for type_ in ("std::vector<int>", "std::map<int, double>", "unsigned int", "Pose*", "const A&", "int[]")
         ),
     ],
 )

@@ -531,7 +531,7 @@ def test_node_clause(clause: str, shown: str) -> None:
         ("satisfices a <b", "satisfices a.b", 16, "expected `>`"),
         ("satisfices Quality =", "satisfices MISSING", 21, "expected a quality"),
         ("satisfies", "satisfies MISSING", 10, "expected a requirement: its ID, or QualityReq and a definition"),
-        ("satisfies a,", "satisfies a", 13, "expected a requirement: its ID, or QualityReq and a definition"),
+        ("satisfies a,", "satisfies a", 13, "expected another requirement behind the comma"),
         ("satisfies QualityReq", "satisfies {MISSING}", 21, "expected the requirement's ID"),
         ("satisfies QualityReq ID =", "satisfies {classic MISSING}", 26, "expected the requirement's ID"),
         ("satisfies QualityReq a :", "satisfies {a}", 25, "expected a quality"),

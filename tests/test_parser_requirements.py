@@ -105,7 +105,7 @@ def test_clauses_on_the_line_and_in_the_block() -> None:
         ("QualityReq", "MISSING", f"1:11 syntax-error «» expected the requirement's ID, {END}"),
         ("QualityReq : a", "MISSING", "1:12 syntax-error «:» expected the requirement's ID, found `:`"),
         ("QualityReq a :", "a", f"1:15 syntax-error «» expected a quality, {END}"),
-        ("QualityReq a 'b' : c", "a 'b'", "1:18 syntax-error «:» expected the end of the line, found `:`"),
+        ("QualityReq a 'b' : c", "a : c 'b'", "1:18 syntax-error «:» a requirement's quality stands before its title"),
         (
             "QualityReq a 'b' 'c'",
             "a 'b'",
@@ -270,7 +270,7 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             f"1:5 syntax-error «» expected a bound: at most, at least, less than, more than or between, {END}",
         ),
         ("runs every", "runs every <= MISSING", f"1:11 syntax-error «» expected {A_VALUE}, {END}"),
-        ("runs at least 3", "runs >= 3 per MISSING", f"1:16 syntax-error «» expected `per`, {END}"),
+        ("runs at least 3", "runs >= 3 per MISSING", f"1:16 syntax-error «» expected `per` and a time, {END}"),
         ("runs at least 3 per 3", "runs >= 3 per MISSING", "1:21 syntax-error «3» expected a duration: 1 s, found `3`"),
         (
             "starts after a succeeds",
@@ -382,7 +382,7 @@ def test_clause(clause: str, shown: str) -> None:
     [
         ("while", "while MISSING", f"1:6 syntax-error «» expected {A_CONDITION}, {END}"),
         ("in", "odds >= MISSING", f"1:3 syntax-error «» expected `at`, {END}"),
-        ("in 98 % of runs", "odds >= MISSING", "1:4 syntax-error «98 %» expected `at`, found `98 %`"),
+        ("in 98 % of runs", "odds >= 98% of runs", "1:4 syntax-error «98 %» odds are written `in at least 98 %`"),
         ("in at most 98 % of runs", "odds >= MISSING", "1:7 syntax-error «most» expected `least`, found `most`"),
         ("in at least 98 of runs", "odds >= MISSING", "1:13 syntax-error «98» expected a percentage: 98 %, found `98`"),
         ("in at least 98 %", "odds >= 98%", f"1:17 syntax-error «» expected `of`, {END}"),
@@ -393,8 +393,8 @@ def test_clause(clause: str, shown: str) -> None:
         ),
         (
             "with probability 98 %",
-            "odds >= MISSING",
-            "1:18 syntax-error «98 %» expected `>=` or `>` and a percentage, found `98 %`",
+            "odds >= 98%",
+            "1:18 syntax-error «98 %» odds are written `with probability >= 98 %`",
         ),
         ("with >= 98 %", "odds >= MISSING", "1:6 syntax-error «>=» expected `probability`, found `>=`"),
         (

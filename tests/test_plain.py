@@ -39,8 +39,12 @@ def parse_in_full(text: str) -> Parsed:
     with pytest.MonkeyPatch.context() as patch:
         for module in (lexer, nodes, plain, scan):
             patch.setattr(module, "COMPILED", True)
-        patch.setattr(parser, "plain_head", lambda *_: None)
-        for short_cut in ("plain_node", "plain_clauses", "plain_requirement", "plain_clause_line"):
+        patch.setattr(parser, "plain_head", lambda *_: (None, 0))
+        for short_cut in ("plain_model", "plain_port"):
+            patch.setattr(parser, short_cut, lambda *_: None)
+        for short_cut in ("plain_node", "plain_clauses"):
+            patch.setattr(nodes, short_cut, lambda *_: (None, 0))
+        for short_cut in ("plain_requirement", "plain_clause_line"):
             patch.setattr(nodes, short_cut, lambda *_: None)
         return parse(text)
 
@@ -89,7 +93,7 @@ def test_the_usual_reader_takes_the_short_cuts(monkeypatch: pytest.MonkeyPatch) 
 
 def test_a_small_file_is_read_before_patterns_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patterns, "_expected", 0)
-    for pattern in ("read_line", "read_between", "_ATTRIBUTE", "_TOKEN"):
+    for pattern in ("read_head", "read_line", "read_between", "_ATTRIBUTE", "_TOKEN"):
         monkeypatch.setattr(patterns, pattern, patterns._nothing)
     parse(SHORT)
     assert patterns.read_line is patterns._nothing

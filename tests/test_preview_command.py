@@ -47,7 +47,8 @@ def preview(tmp_path: Path) -> Iterator[Callable[..., Previewed]]:
 
     def start(name: str, *options: str) -> Previewed:
         command = [sys.executable, "-m", "btq_lang", "preview", name, *options]
-        process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        pipe = subprocess.PIPE
+        process = subprocess.Popen(command, cwd=tmp_path, stdin=pipe, stdout=pipe, stderr=pipe, text=True)
         running.append(process)
         assert process.stdout is not None
         said = process.stdout.readline()
@@ -95,6 +96,35 @@ def test_pages_are_told_of_changes_in_every_file_that_matters(
     answer = previewed.ask("POST", "/picture", {"folded": []})
     assert answer == (200, {"title": "main.btq", "trouble": "main.btq: cannot be read: No such file or directory"})
     connection.close()
+
+
+def test_an_editor_tells_the_text_and_the_cursor(preview: Callable[..., Previewed], tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION)
+    previewed = preview("main.btq", "--follow")
+    editor = previewed.process.stdin
+    assert editor is not None
+
+    def tells(said: str) -> None:
+        editor.write(said + "\n")
+        editor.flush()
+
+    connection = http.client.HTTPConnection("127.0.0.1", previewed.port, timeout=60)
+    connection.request("GET", "/events")
+    events = connection.getresponse()
+    assert [events.readline() for _ in range(2)] == [b"data: changed\n", b"\n"]
+    assert previewed.ask("POST", "/picture", {"folded": [FOLDED]})[1]["lines"] == {"n0": 2}
+    tells(json.dumps({"line": 4}))
+    assert [events.readline() for _ in range(3)] == [b"event: here\n", b"data: 4\n", b"\n"]
+    tells("[]")
+    tells("{")
+    tells(json.dumps({"text": MISSION.replace("Charge", "Rest")}))
+    assert [events.readline() for _ in range(2)] == [b"data: changed\n", b"\n"]
+    picture = previewed.ask("POST", "/picture", {"folded": []})[1]
+    assert ("Rest" in picture["svg"], picture["lines"]) == (True, {"n0": 2, "n1": 3, "n2": 4})
+    assert (tmp_path / "main.btq").read_text() == MISSION
+    connection.close()
+    _, said = previewed.process.communicate(timeout=30)  # its standard input is closed, and it ends
+    assert (previewed.process.returncode, said.count("no JSON object")) == (0, 2)
 
 
 def test_a_click_says_where_the_node_stands_and_tells_the_editor(

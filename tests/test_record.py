@@ -2,11 +2,10 @@ import pickle
 
 import pytest
 
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 
 
-@record
-class Point:
+class Point(Record):
     x: int
     y: int = 0
 
@@ -15,13 +14,11 @@ class Point:
         return self.x + self.y
 
 
-@record
-class Only:
+class Only(Record):
     value: object
 
 
-@record
-class Nothing:
+class Nothing(Record):
     pass
 
 
@@ -57,7 +54,6 @@ def test_replace_repr_match_pickle() -> None:
 def test_a_default_before_a_field_without_is_refused() -> None:
     with pytest.raises(TypeError, match="without a default follows"):
 
-        @record
-        class Wrong:
+        class Wrong(Record):
             a: int = 1
             b: int  # type: ignore[misc]

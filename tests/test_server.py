@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from lsp_editor import SERVER, Editor, Message
+from lsp_editor import SERVER, Editor, Message, part
 
 from btq_lang.editor import Server
 
@@ -227,6 +227,27 @@ def test_the_diagnostics_of_the_whole_workspace_are_pulled(tmp_path: Path) -> No
     known = [{"uri": each["uri"], "value": each["resultId"]} for each in first]
     again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
     assert [each["kind"] for each in again] == ["unchanged", "unchanged"]
+    assert editor.close() == ""
+
+
+@pytest.mark.parametrize("why", ["deleted", "not wanted"])
+def test_what_is_shown_of_closed_files_goes_when_they_are_deleted_or_no_longer_wanted(why: str, tmp_path: Path) -> None:
+    (tmp_path / "closed.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities=PULLS)
+    editor.open("main.btq", WRONG)
+    first = editor.request("workspace/diagnostic", previousResultIds=[])["items"]
+    known = [{"uri": each["uri"], "value": each["resultId"]} for each in first]
+    if why == "deleted":
+        (tmp_path / "closed.btq").unlink()
+        editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri("closed.btq"), "type": 3}])
+    else:
+        editor.notify("workspace/didChangeConfiguration", settings={"btq": {"checkClosedFiles": False}})
+    again = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
+    gone = {"uri": editor.uri("closed.btq"), "version": None, "kind": "full", "items": []}
+    assert again[0] == gone
+    assert [(Path(each["uri"]).name, each["kind"]) for each in again[1:]] == (
+        [("main.btq", "unchanged")] if why == "deleted" else []
+    )
     assert editor.close() == ""
 
 
@@ -685,6 +706,29 @@ def test_columns_are_counted_as_agreed(tmp_path: Path, encoding: str, column: in
     assert editor.close() == ""
 
 
+@pytest.mark.parametrize(("encoding", "robot"), [("utf-8", 4), ("utf-16", 2), ("utf-32", 1)])
+def test_a_part_of_a_text_is_changed_where_the_editor_says(tmp_path: Path, encoding: str, robot: int) -> None:
+    editor = Editor(tmp_path, capabilities={"general": {"positionEncodings": [encoding]}})
+    assert editor.capabilities["textDocumentSync"]["change"] == 2
+    editor.open("main.btq", "# \f\u2028\r# \U0001f916\r\nBehaviorTree Main\n    Pick")
+    assert editor.diagnostics("main.btq") == []
+    editor.change(
+        "main.btq",
+        part((1, 2), (1, 2 + robot), "\U0001f916\U0001f916\n"),  # each change counts in what the one before made
+        part((1, 2 + robot), (2, 0), ""),
+        part((2, 13), (2, 99), "Tree"),  # beyond the end of a line is its end
+        part((3, 0), (9, 9), "    Sequnce\n        Dock\n"),
+    )
+    assert editor.diagnostics("main.btq") == [("unknown-node", 3, 4, 11)]
+    outline = editor.request("textDocument/documentSymbol", **editor.document("main.btq"))
+    assert [one["name"] for one in outline] == ["Tree"]
+    editor.change("main.btq", "Ignored", part((0, 0), (0, 7), "BehaviorTree Anew\n    Pick"))
+    assert editor.diagnostics("main.btq") == []
+    outline = editor.request("textDocument/documentSymbol", **editor.document("main.btq"))
+    assert [one["name"] for one in outline] == ["Anew"]
+    assert editor.close() == ""
+
+
 def test_lines_end_where_editors_end_them(editor: Editor) -> None:
     editor.open("main.btq", "# a\u2028b\fc\r# d\r\nBehaviorTree Main\n    Sequnce\n        Pick\n")
     assert editor.diagnostics("main.btq") == [("unknown-node", 3, 4, 11)]
@@ -756,14 +800,11 @@ def test_a_key_leaves_nothing_behind(tmp_path: Path) -> None:
         "server.main([])\n"
         "print(len(made.protocol._request_futures), file=sys.stderr)\n"
     )
-    kept = []
-    for keys in (0, 50):
-        editor = Editor(tmp_path, command=(sys.executable, "-c", program))
-        editor.open("main.btq", RIGHT)
-        for _ in range(keys):
-            editor.change("main.btq", RIGHT)
-        kept.append(int(editor.close()))
-    assert kept[0] == kept[1]
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor.open("main.btq", RIGHT)
+    for _ in range(50):
+        editor.change("main.btq", RIGHT)
+    assert int(editor.close()) < 5  # what goes on while the server ends
 
 
 def test_a_request_for_what_nobody_does_answers_an_error(editor: Editor) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from btq_lang.features.colours import Colours, colours, delta
 from btq_lang.features.completion import complete
 from btq_lang.features.navigation import find_references
 from btq_lang.features.outline import document_symbols
@@ -69,11 +70,13 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int) -> None:
+def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0 if seed % 2 else 100_000)
     chance = random.Random(seed)
     session = session_of(folder, {})
     told = {path: session.diagnostics(path) for path in session.paths()}
     texts: dict[str, str] = {}
+    known: dict[str, Colours] = {}
     for step in range(60):
         name = chance.choice(sorted(FILES))
         path = f"{folder}/{name}"
@@ -87,6 +90,7 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int) -> No
             texts[path] = text[:at] + chance.choice(PIECES) + text[at + gone :]
             changed = session.edit(path, texts[path])
         told.update({each: session.diagnostics(each) for each in changed})
+        session.let_go()
         new = session_of(folder, texts)
         assert told == {each: new.diagnostics(each) for each in new.paths()}, (seed, step, texts)
         if path in texts:
@@ -98,6 +102,37 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int) -> No
                 assert mine == fresh
             mine, fresh = (document_symbols(each, path) for each in workspaces if each is not None)
             assert mine == fresh
+            coloured, anew = (colours(each, path, "utf-16") for each in workspaces if each is not None)
+            assert coloured.data == anew.data
+            edit = delta(known.get(path, coloured), coloured)
+            assert edit is None or patched(known[path].data, *edit) == coloured.data
+            known[path] = coloured
+
+
+def patched(data: list[int], start: int, gone: int, come: list[int]) -> list[int]:
+    return [*data[:start], *come, *data[start + gone :]]
+
+
+def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def held() -> set[str]:
+        (workspace,) = session.workspaces()
+        return {Path(path).name for path, file in workspace.files.items() if file.has_tree}
+
+    session = session_of(folder, {f"{folder}/other.btq": OTHER})
+    told = {path: session.diagnostics(path) for path in session.paths()}
+    session.let_go()
+    assert held() == set(FILES)  # they are few
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    session.let_go()
+    assert held() == {"other.btq"}
+    session.edit(f"{folder}/skills.btq", SKILLS)
+    session.let_go()
+    assert held() == {"other.btq"}
+    assert {path: session.diagnostics(path) for path in session.paths()} == told
+    session.reload()
+    assert {path: session.diagnostics(path) for path in session.paths()} == told
+    session.let_go()
+    assert held() == set(FILES)  # all of one mission
 
 
 def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None:

@@ -337,7 +337,7 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     xml, side = btq.folder / "out" / "main.xml", btq.folder / "out" / "main.qreq.json"
     xml.write_text(xml.read_text().replace("<Move", "<Drive"))
     assert main(["import", "out/main.xml"]) == 0
-    summary = "out/main.xml:2:1: what a build put there is left out: its mark, {}\n1 file imported with 1 change\n"
+    summary = "out/main.xml:5:27: what a build put there is left out: {}\n1 file imported with 1 change\n"
     put = "1 node that enforces, 3 descriptions"
     lost = "its node is not there any more: satisfices ergonomics (line 18 of the mission as built)"
     after = "Next: btq check out/main.btq\n"

@@ -7,6 +7,7 @@ import pickle
 import pytest
 from check_asserts import assert_clean, assert_problems, workspace_of
 
+from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.project import Project
@@ -94,6 +95,32 @@ def test_explicit_forms_are_refused_only_directly_below_a_reactive_sequence() ->
     old = Project(engines=("4.6",))
     workspace = workspace_of({"a.xml": xml.replace("{tag}", "ReactiveSequence")}, old)
     assert [each.rule for each in check(workspace, "a.xml") if each.rule == "explicit-in-reactive"] == []
+
+
+def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> None:
+    text = "BehaviorTree T\n    R->\n        Ok\n        {node}\n"
+    apart = "it cannot be an XML tag, and the engine takes no other form here: put it in a Sequence of its own"
+
+    def found(node: str, version: str = "4.10", symbol: str = "R->") -> list[tuple[str, tuple[str, ...]]]:
+        files = {"a.btq": text.replace("{node}", node).replace("R->", symbol)}
+        workspace = Workspace.of(files, Project(engines=(version,)))
+        diagnostics = check(workspace, "a.btq")
+        return [(each.message, each.notes) for each in diagnostics if each.rule == "explicit-in-reactive"]
+
+    for node, name in (('Action "3d scan"', "3d scan"), ('"3d-scan"', "3d-scan"), ('Condition "a.b"', "a.b")):
+        told = [(f"the engine refuses `{name}` directly below a ReactiveSequence", (apart,))]
+        assert found(node) == told
+        assert found(node, symbol="R?") == []
+        assert found(node, "4.6") == []
+        workspace = Workspace.of({"a.btq": text.replace("{node}", node)})
+        assert [each.message for each in export(workspace, "a.btq").problems] == [
+            f"the engine refuses `{name}` directly in a ReactiveSequence: put it in a Sequence of its own"
+        ]
+    for node in ("Action Scan", "Scan", '"Größe"', 'SubTree "3d scan"', 'ScriptAction (name = "3d scan")', '"3d scan"'):
+        assert found(node) == []  # a forbidden tag is told as such
+    xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><ReactiveSequence><Action ID="3d scan"/></ReactiveSequence>'
+    (told,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
+    assert told.notes == ("`Unknown node type: Action`, it says, and means the tag: put it in a Sequence of its own",)
 
 
 def test_files_of_any_name_that_begin_like_xml_are_xml() -> None:

@@ -194,8 +194,8 @@ def test_where_things_stand() -> None:
     assert isinstance(t, Text)
     assert text[b.start : b.end] == "<b  x = \"1&lt;\"\n y='2'>"
     assert text[b.start : b.close] == "<b  x = \"1&lt;\"\n y='2'><!-- c --></b>"
-    assert [text[each.start :].startswith(each.name) for each in b.attributes] == [True, True]
-    assert [text[each.value_start :].startswith(each.raw) for each in b.attributes] == [True, True]
+    assert [text[b.place(each)[0] :].startswith(each.name) for each in b.attributes] == [True, True]
+    assert [text[b.place(each)[1] :].startswith(each.raw) for each in b.attributes] == [True, True]
     assert text[a.start : a.close] == text
     assert text[t.start :].startswith(t.text)
 

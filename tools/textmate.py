@@ -83,10 +83,10 @@ _CONDITION = (*_VALUES, "logic", "function", "comparison", "condition-group", "a
 _CLAUSES = ("clause-words", "outcome", *_CONDITION, "punctuation")
 
 _ITEM = "keyword.control.item"
-_KEYWORD = "keyword.other.clause"
+_KEYWORD = "keyword.control.clause"
 _TREE = "entity.name.type.tree"
-_REQUIREMENT = "entity.name.function.requirement"
-_ATTRIBUTE = "entity.other.attribute-name"
+_REQUIREMENT = "entity.name.type.requirement"
+_ATTRIBUTE = "variable.other.property.attribute"
 _ASSIGN = "keyword.operator.assignment"
 _COLON = "punctuation.separator.type"
 
@@ -120,7 +120,7 @@ _REPOSITORY: dict[str, Rule] = {
         ]
     },
     "truth": _match(_word(words.TRUTH), "constant.language"),
-    "logic": _match(_word(words.LOGIC), "keyword.operator.logical"),
+    "logic": _match(_word(words.LOGIC), "keyword.control.logical"),
     "function": _match(rf"(?<![\w-])({_any(words.FUNCTION_WORDS)})(?=\s*\()", "support.function.statistic"),
     "comparison": _match(_any(words.COMPARISON_SIGNS), "keyword.operator.comparison"),
     "arithmetic": _match(r"[-+*/]", "keyword.operator.arithmetic"),
@@ -130,14 +130,14 @@ _REPOSITORY: dict[str, Rule] = {
     "file": {
         "patterns": [
             _region(r"^\s*(include)\b(?=\s*[\"'])", _LINE, (_ITEM,), "comment", "string", "group"),
-            _match(rf"^\s*(qualities)\s+({_any(words.EDITION_WORDS)})?", _ITEM, "support.constant.edition"),
+            _match(rf"^\s*(qualities)\s+({_any(words.EDITION_WORDS)})?", _ITEM, "variable.other.enummember.edition"),
             _region(r"^\s*(metadata)\b(?=\s*\()", _LINE, (_ITEM,), "comment", "group"),
         ]
     },
     "quality": _region(
         rf"^\s*(quality)\s+({_NAME})?(?!\s*=)",
         _LINE,
-        (_ITEM, "entity.name.type.quality"),
+        (_ITEM, "variable.other.enummember.quality"),
         "quality-type",
         "comment",
         "string",
@@ -146,13 +146,13 @@ _REPOSITORY: dict[str, Rule] = {
     "port": _region(
         rf"^\s*({_any(words.PORT_WORDS)})(?!\s*[=(\w-]*=|[\w-])\s*({_NAME})?(?:\s*(:)\s*((?:{_NAME}|::)+))?",
         _LINE,
-        ("storage.modifier.port", "variable.parameter.port", _COLON, "storage.type.port"),
+        ("keyword.control.port", "variable.other.property.port", _COLON, "entity.name.type.port"),
         *("pair-value", "string", "comment", "group"),
     ),
     "signal": _region(
         rf"^\s*(signal)\s+({_NAME})\s*(:)\s*({_UNITS}|1|bool|text)?",
         _LINE,
-        (_ITEM, "variable.other.signal", _COLON, "keyword.other.unit"),
+        (_ITEM, "variable.other.signal", _COLON, "entity.name.type.unit"),
         *("signal-words", *_VALUES),
     ),
     "signal-words": _match(_word(words.SIGNAL_WORDS), _KEYWORD),
@@ -189,20 +189,20 @@ _REPOSITORY: dict[str, Rule] = {
         rf"\((?=\s*{_NAME}\s*:)", rf"\)|{_NEXT_ITEM}", (), "parameter", "clause-words", *_CONDITION, "punctuation"
     ),
     "parameter": _match(
-        rf"({_NAME})\s*(:)\s*({_UNITS}|1)?\s*(=)?", "variable.parameter", _COLON, "keyword.other.unit", _ASSIGN
+        rf"({_NAME})\s*(:)\s*({_UNITS}|1)?\s*(=)?", "variable.parameter", _COLON, "entity.name.type.unit", _ASSIGN
     ),
     # Behind a colon: the quality that a requirement or a quality of one's own is of.
     "quality-type": _region(r"(?<!:):(?!:)", r"(?=[\"'#)]|/[/*])|(?<=[\w>])(?=\s+\w)|$", (), "quality-path"),
     "quality-path": {
         "patterns": [
-            _match(rf"(?<![\w-])(?i:{_QUALITY})(?![\w?!]|-\w)", "support.type.quality"),
-            _match(_NAME, "entity.name.type.quality"),
+            _match(rf"(?<![\w-])(?i:{_QUALITY})(?![\w?!]|-\w)", "variable.other.enummember.quality.standard"),
+            _match(_NAME, "variable.other.enummember.quality"),
             _match(r"[<>.]", "punctuation.separator.quality"),
         ]
     },
     "clause-words": _match(_word(words.REQUIREMENT_WORDS), _KEYWORD),
     "outcome": _match(
-        rf"(?<=violation|\bby)(\s+)({_any(words.OUTCOME_WORDS)})(?![\w-])", "", "constant.language.outcome"
+        rf"(?<=violation|\bby)(\s+)({_any(words.OUTCOME_WORDS)})(?![\w-])", "", "keyword.control.outcome"
     ),
     # A clause's line begins with its head or verb, or with the subject whose verb follows at once.
     "clause-line": _region(
@@ -218,19 +218,19 @@ _REPOSITORY: dict[str, Rule] = {
             _region(
                 r"(?<![\w-])(satisfices)(?![\w-])(?!\s*=)",
                 rf"{_LINE}|(?=\)|(?<![\w-])(?:satisfies|tags|parameters)(?![\w-]))",
-                ("keyword.other.satisfices",),
+                ("keyword.control.satisfices",),
                 *("comment", "string", "quality-pair", "requirement", "group", "quality-path", "punctuation"),
             ),
             _region(
                 r"(?<![\w-])(satisfies)(?![\w-])(?!\s*=)",
                 rf"{_LINE}|(?=\)|(?<![\w-])(?:satisfices|tags|parameters)(?![\w-])|{_NAME}\s*=)",
-                ("keyword.other.satisfies",),
+                ("keyword.control.satisfies",),
                 *("comment", "string", "requirement", "requirement-group", "requirement-name", "punctuation"),
             ),
             _region(
                 r"(?<![\w-])(tags)(?![\w-])(?!\s*[=(])",
                 rf"{_LINE}|(?=\)|(?<![\w-])(?:satisfices|satisfies|parameters)(?![\w-])|{_NAME}\s*=)",
-                ("keyword.other.tags",),
+                ("keyword.control.tags",),
                 *("comment", "string", "tag", "punctuation"),
             ),
         ]
@@ -240,7 +240,7 @@ _REPOSITORY: dict[str, Rule] = {
     "requirement-group": _region(
         r"\(", rf"\)|{_NEXT_ITEM}", (), "comment", "pair", "clause-words", *_CONDITION, "punctuation"
     ),
-    "tag": _match(_NAME, "entity.name.tag"),
+    "tag": _match(_NAME, "entity.name.function.decorator.tag"),
     "group": _region(
         r"\(",
         rf"\)|{_NEXT_ITEM}",
@@ -268,7 +268,7 @@ _REPOSITORY: dict[str, Rule] = {
                 (rf"(?:{_any(words.NODE_SYMBOLS)})(?=[\s(#]|$)", ("keyword.control.node", "variable.other.label")),
                 (
                     rf"(?:{_any(words.CATEGORY_WORDS)})(?![\w-])(?!\s*=)",
-                    ("storage.type.category", "entity.name.function.node"),
+                    ("keyword.control.category", "entity.name.function.node"),
                 ),
                 (
                     rf"(?:{_any((*words.CONTROLS, *words.DECORATORS))})(?![\w-])(?!\s*=)",

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from btq_lang.btcpp.document import Attribute
 from btq_lang.btcpp.source import Source
-from btq_lang.btcpp.spelling import in_unit, is_xml_name, spelt
+from btq_lang.btcpp.spelling import in_unit, spelt
 from btq_lang.catalog.kinds import NodeKind
+from btq_lang.catalog.names import is_xml_name
 from btq_lang.syntax import Entry, Pair, Word
 from btq_lang.tokens import QUANTITY
 

@@ -48,6 +48,7 @@ def bundle(
         tuple(remark for done in exports for remark in done.repairs),
         (*(remark for done in exports for remark in done.problems), *_twice(workspace, paths)),
         {key: element for done in exports for key, element in done.elements.items()},
+        {name: category for done in exports for name, category in done.guessed.items()},
     )
 
 
@@ -75,14 +76,19 @@ def _merge(
 
 def _add_models(palette: Element, models: Element) -> None:
     """A node that two files speak of has one model: the first, with the ports that only the second knows."""
-    known = {(model.tag, model.get("ID")): model for model in palette.elements if model.get("ID") is not None}
+    known = {_named(model): model for model in palette.elements if model.get("ID") is not None}
     for content in models.children:
-        first = known.get((content.tag, content.get("ID"))) if isinstance(content, Element) else None
+        first = known.get(_named(content)) if isinstance(content, Element) else None
         if first is None or not isinstance(content, Element):
             palette.children.append(content)
             continue
         ports = {port.get("name") for port in first.elements}
         first.children.extend(port for port in content.elements if _is_port(port) and port.get("name") not in ports)
+
+
+def _named(model: Element) -> tuple[bool, str | None]:
+    """What a model is of: a tree may be called as a node is."""
+    return model.tag == "SubTree", model.get("ID")
 
 
 def _is_port(element: Element) -> bool:

@@ -15,59 +15,21 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
 
-class StartTag:
-    """A start tag in a file that was read: it knows where the attributes stand, and looks when somebody asks.
-
-    Not the element's business, or each element and its attributes would be a circle that only the collector of garbage
-    can break.
-    """
-
-    __slots__ = ("_places", "end", "source", "start")
-
-    def __init__(self, source: str, start: int, end: int) -> None:
-        self.source: Final = source
-        self.start: Final = start
-        self.end: Final = end
-        self._places: dict[str, tuple[int, int]] | None = None
-
-    @property
-    def places(self) -> dict[str, tuple[int, int]]:
-        """Where name and value begin, by name."""
-        if self._places is None:
-            found = attribute_matches(self.source, self.start, self.end)
-            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
-        return self._places
-
-
 class Attribute:
     """`name="raw"`.
 
     Attributes:
         raw: what stands between the quotes, references as they are.
-        origin: where name and value begin in the file it was read from, or the start tag that knows it.
+        place: where name and value begin in the file that it comes from; None where it was made, or where it stands in
+            its element as it was read, which knows it.
     """
 
-    __slots__ = ("name", "origin", "raw")
+    __slots__ = ("name", "place", "raw")
 
-    def __init__(self, name: str, raw: str, origin: StartTag | tuple[int, int] = (-1, -1)) -> None:
+    def __init__(self, name: str, raw: str, place: tuple[int, int] | None = None) -> None:
         self.name: Final = name
         self.raw: Final = raw
-        self.origin: Final = origin
-
-    @property
-    def place(self) -> tuple[int, int]:
-        """Where name and value begin in the file it was read from; -1 where it was made."""
-        return self.origin if isinstance(self.origin, tuple) else self.origin.places[self.name]
-
-    @property
-    def start(self) -> int:
-        """Where the name begins."""
-        return self.place[0]
-
-    @property
-    def value_start(self) -> int:
-        """Where `raw` begins."""
-        return self.place[1]
+        self.place: Final = place
 
     @property
     def value(self) -> str:
@@ -83,25 +45,28 @@ class Element:
 
     Attributes:
         children: what stands in it, in order.
-        start, end: its start tag in the file it was read from; -1 where it was made.
+        source, start, end: the file it was read from, and its start tag there; -1 where it was made.
         close: where its end tag ends, likewise.
     """
 
-    __slots__ = ("attributes", "children", "close", "end", "start", "tag")
+    __slots__ = ("_places", "attributes", "children", "close", "end", "source", "start", "tag")
 
     def __init__(
         self,
         tag: str,
-        attributes: Iterable[Attribute] = (),
-        children: Iterable[Content] = (),
+        attributes: Iterable[Attribute] | None = None,
+        children: Iterable[Content] | None = None,
+        source: str = "",
         start: int = -1,
         end: int = -1,
     ) -> None:
         self.tag = tag
         self.attributes: Final = list(attributes) if attributes else []
         self.children: Final = list(children) if children else []
+        self.source: Final = source
         self.start: Final = start
         self.end: Final = end
+        self._places: dict[str, tuple[int, int]] | None = None
         self.close = end  # set once more, by the reader, when the end tag comes
 
     @property
@@ -115,6 +80,15 @@ class Element:
             if attribute.name == name:
                 return attribute.value
         return None
+
+    def place(self, attribute: Attribute) -> tuple[int, int]:
+        """Where name and value of one of its attributes begin in the file that it comes from; -1 where it was made."""
+        if attribute.place is not None:
+            return attribute.place
+        if self._places is None:  # looked up when somebody asks, for few do
+            found = attribute_matches(self.source, max(self.start, 0), self.end)
+            self._places = {match[1]: (match.start(1), match.start(3)) for match in found}
+        return self._places.get(attribute.name, _NOWHERE)
 
     def __repr__(self) -> str:
         return f"<{self.tag} {self.attributes} {len(self.children)} children>"
@@ -268,9 +242,12 @@ def _referred(match: re.Match[str]) -> str:
     return chr(code) if 0 < code <= 0x10FFFF and not 0xD800 <= code < 0xE000 else match[0]
 
 
+_NOWHERE: Final = (-1, -1)
 _STEP: Final = "  "
-# As the engine reads it: a name, a value in quotes, blanks around the sign.
-WORD: Final = r"[A-Za-z_:\x80-\U0010ffff][A-Za-z0-9_:.\-\x80-\U0010ffff]*"
+# As the engine reads it: a name, a value in quotes, blanks around the sign.  A name is of letters, digits, `_:.-` and
+# all that is not ASCII; it is said by what is not in it, for `re` takes long to compile sets of so many characters.
+IN_WORD: Final = r"[^\x00-,/;-@\[-\^`{-\x7f]"
+WORD: Final = rf"[^\x00-9;-@\[-\^`{{-\x7f]{IN_WORD}*"
 SPACE: Final = r"[ \t\n\v\f\r]*"
 _TAG_NAME: Final = re.compile(rf"<{SPACE}{WORD}").match
 ATTRIBUTE: Final = re.compile(rf"({WORD}){SPACE}={SPACE}([\"'])(.*?)\2", re.DOTALL)

@@ -24,7 +24,7 @@ from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import START, FirstValues, Leaf, Wrapper, may_be_skipped, wrapped
 from btq_lang.diagnostics import Place
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.budgets import Budget, Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
@@ -39,8 +39,7 @@ if TYPE_CHECKING:
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 
-@record
-class Held:
+class Held(Record):
     """How a clause is held.
 
     Attributes:
@@ -64,8 +63,7 @@ class Held:
     subject: str = ""
 
 
-@record
-class Enforcement:
+class Enforcement(Record):
     """A file with what its requirements add to it.
 
     Attributes:
@@ -78,8 +76,7 @@ class Enforcement:
     loose: tuple[tuple[Requirement, Claim], ...] = ()
 
 
-@record
-class _Plan:
+class _Plan(Record):
     """What is to stand around the nodes of some files.
 
     Attributes:

@@ -16,10 +16,10 @@ from btq_lang.btcpp.models import Models, model_element
 from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
-from btq_lang.btcpp.undeclared import undeclared
+from btq_lang.btcpp.undeclared import suggested_model, undeclared
 from btq_lang.comments import NO_COMMENTS
 from btq_lang.garbage import NotCollecting
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax import Models as ModelsItem
 from btq_lang.workspace import Workspace, is_btq
@@ -31,20 +31,21 @@ if TYPE_CHECKING:
 IncludedAs: TypeAlias = Callable[[str], str]
 
 
-@record
-class Export:
+class Export(Record):
     """A file as XML.
 
     Attributes:
         repairs: what the file says was mended, for the engine would refuse it.
         problems: what the file says cannot be written; the document is then not what the file means.
         elements: the element of each node of the file, by `id(node)`.
+        guessed: the nodes of which nobody says what they are, with the category that their models say.
     """
 
     document: Document
     repairs: tuple[Remark, ...]
     problems: tuple[Remark, ...]
     elements: Mapping[int, Element]
+    guessed: Mapping[str, str]
 
 
 def export(
@@ -69,9 +70,11 @@ def export(
     with NotCollecting():
         source = Source(workspace, path, target or workspace.project.target, verbatim)
         trees = Trees(source)
-        document = _document(source, trees, included_as or (lambda target: xml_path(workspace, path, target)))
+        guessed: dict[str, str] = {}
+        name = included_as or (lambda target: xml_path(workspace, path, target))
+        document = _document(source, trees, name, guessed)
         source.finish()
-        return Export(document, tuple(source.repairs), tuple(source.problems), trees.elements)
+        return Export(document, tuple(source.repairs), tuple(source.problems), trees.elements, guessed)
 
 
 def xml_path(workspace: Workspace, path: str, included: str) -> str:
@@ -90,7 +93,7 @@ def xml_name(path: str) -> str:
     return posixpath.splitext(path)[0] + ".xml"
 
 
-def _document(source: Source, trees: Trees, included_as: IncludedAs) -> Document:
+def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: dict[str, str]) -> Document:
     entries = source.file.parsed.entries
     before: list[Content] = []
     behind: list[Content] = []
@@ -125,7 +128,9 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs) -> Document
             source.put(contents, source.raw(entry, item), around)
         else:  # what it says is in no element, and so are the comments in it
             contents += source.written(around.before)
-    contents += models.rest(source, () if source.verbatim else undeclared(source, trees.custom))
+    missing = {} if source.verbatim else undeclared(source.workspace, source.path)
+    guessed.update({name: node.category for name, node in missing.items() if node.said is None})
+    contents += models.rest(source, (suggested_model(name, node) for name, node in missing.items()))
     contents += end_of_block
     end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)
     has_block = any(entry.in_root for entry in entries)

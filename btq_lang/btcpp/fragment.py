@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.btcpp.spelling import is_xml_name
+from btq_lang.catalog.names import is_xml_name
 
 
 def fragment_problem(text: str) -> str | None:

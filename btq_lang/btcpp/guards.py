@@ -11,7 +11,7 @@ from collections.abc import Callable
 from btq_lang.btcpp.conditions import NoScript, condition_script, real, signal_script, table_script, value_script
 from btq_lang.btcpp.keys import legal
 from btq_lang.btcpp.wrappers import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements.model import (
     Bounded,
     Claim,
@@ -40,8 +40,7 @@ class NotEnforced(Exception):
     """No wrapper makes the engine do what a clause asks; the text is the reason, to stand behind "because"."""
 
 
-@record
-class Guarded:
+class Guarded(Record):
     """What stands around nodes for a clause.
 
     Attributes:

@@ -19,7 +19,7 @@ from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, s
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.garbage import NotCollecting
 from btq_lang.places import Places
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.rules import RULES, Severity
 from btq_lang.syntax import is_name
 from btq_lang.text import Span
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
     IncludedAs: TypeAlias = Callable[[str], str]
-    # A word of a line, and what it was made of: an element's tag, an attribute's value, what stands between two places.
+    # A word of a line, and what it was made of: an element's tag (the first word of its line), the value of one of its
+    # attributes, what stands between two places.
     Piece: TypeAlias = tuple[str, Element | Attribute | tuple[int, int] | None]
     # A line: which one it is and where on it the words begin, the words, the pairs in brackets with what they were made
     # of, and what is between them.
     Mark: TypeAlias = tuple[int, int, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
 
 
-@record
-class Imported:
+class Imported(Record):
     """An XML file in this language.
 
     Attributes:
@@ -110,6 +110,9 @@ class _Writer:
     def __init__(self, source: str, for_people: bool, included_as: IncludedAs) -> None:
         self.source: Final = source
         self.symbols: Final = for_people
+        # What stands in brackets, in pieces and on one line, by the attributes: those that are alike in many elements
+        # are read once.
+        self.groups: Final[dict[tuple[Attribute, ...], tuple[list[str], str]]] = {}
         self.columns: Final = _COLUMNS if for_people else len(source) * 10
         self.included_as: Final = included_as
         self.out: Final[list[str]] = []
@@ -177,7 +180,8 @@ class _Writer:
             others = [each for each in attributes if each is not path]
             named = path.value if element.get("ros_pkg") else self.included_as(path.value)
             if named != path.value:
-                span = Span(path.value_start, path.value_start + len(path.raw))
+                start = element.place(path)[1]
+                span = Span(start, start + len(path.raw))
                 self.changes.append(Change(span, f"includes `{named}`"))
             said = string_of(named) if named != path.value else string(path.raw)
             self.line(level, [tag, (said, path)], others)
@@ -192,7 +196,8 @@ class _Writer:
         for index, attribute in enumerate(element.attributes):
             if attribute.name == key:
                 if index:
-                    span = Span(attribute.start, attribute.start + len(key))
+                    start = element.place(attribute)[0]
+                    span = Span(start, start + len(key))
                     self.changes.append(Change(span, f"`{key}` of <{element.tag}> stands before its other attributes"))
                 return attribute
         return None
@@ -231,7 +236,8 @@ class _Writer:
         tag = element.tag
         index = 0
         head: list[Piece]
-        if tag not in CATEGORIES:
+        is_explicit = tag in _CATEGORIES
+        if not is_explicit:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
             word = kind(tag, False, has_code, self.symbols)
             head = [(word, element)]
@@ -248,7 +254,7 @@ class _Writer:
                 has_code = raw not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
                 word = name(raw) if tag == "SubTree" else kind(raw, True, has_code)
                 head.append((word, attributes[0]))
-        if index < len(attributes) and attributes[index].name == "name" and (index or tag not in CATEGORIES):
+        if index < len(attributes) and attributes[index].name == "name" and (index or not is_explicit):
             head.append((name(attributes[index].raw), attributes[index]))
             index += 1
         self.line(level, head, attributes[index:] if index else attributes)
@@ -263,7 +269,7 @@ class _Writer:
             elif isinstance(child, Comment):
                 self.comment_line(child, level)
             elif isinstance(child, Element):
-                identity = self.first(child, "ID") if child.tag in CATEGORIES else None
+                identity = self.first(child, "ID") if child.tag in _CATEGORIES else None
                 if identity is None:
                     self.verbatim(child, level)
                 else:
@@ -324,13 +330,19 @@ class _Writer:
             attributes: None: there are no brackets; empty ones are for `Root ()` alone.
         """
         indent = _INDENT * level
-        out = f"{indent}{head[0][0]}" if len(head) == 1 else indent + " ".join([word for word, _ in head])
+        out = indent + head[0][0]
+        for word, _ in head[1:]:
+            out += f" {word}"
         behind = "" if text is None else f" {string_of(text)}"
         pairs: list[str] = []
         between = " "
         if attributes:
-            pairs = [pair(each.name, each.raw) for each in attributes]
-            group = " ".join(pairs)
+            key = tuple(attributes)
+            known = self.groups.get(key)
+            if known is None:
+                pairs = [pair(each.name, each.raw) for each in attributes]
+                known = self.groups[key] = pairs, " ".join(pairs)
+            pairs, group = known
             line = f"{out} ({group}){behind}\n"
             if len(line) > self.columns or line.count("\n") > 1:  # it may be too long
                 columns = self.columns
@@ -341,7 +353,7 @@ class _Writer:
                     between = f"\n{indent}{_INDENT}"
                     line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
             if self.has_returns:
-                self.lost_returns(attributes)
+                self.lost_returns(head[0][1], attributes)
         elif attributes is not None and head[0][0] == "Root":
             line = f"{out} ()\n"
         else:
@@ -385,15 +397,21 @@ class _Writer:
         begin = text.start + len(text.text) - len(text.text.lstrip())
         shown = said if len(said) <= 20 else f"{said[:20]}…"
         span = Span(begin, begin + len(said))
+        if len(self.ignored) >= _TEXTS_TOLD:
+            if len(self.ignored) == _TEXTS_TOLD:
+                self.ignored.append(Diagnostic("xml-ignored", span, "the engine ignores this text and all behind it"))
+                self.changes.append(Change(span, "text that the engine ignores is left out from here on"))
+            return
         message = f"the engine ignores this text: `{shown}`"
         note = "remove it, or write <!-- … --> round it; a node is written <Name/>"
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
         self.changes.append(Change(span, f"text that the engine ignores is left out: {shown}"))
 
-    def lost_returns(self, attributes: Sequence[Attribute]) -> None:
+    def lost_returns(self, element: object, attributes: Sequence[Attribute]) -> None:
         for each in attributes:
-            if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw:
-                span = Span(each.value_start, each.value_start + len(each.raw))
+            if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw and isinstance(element, Element):
+                start = element.place(each)[1]
+                span = Span(start, start + len(each.raw))
                 self.changes.append(Change(span, f"a carriage return in `{each.name}` is written as a line end"))
 
 
@@ -403,20 +421,23 @@ def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int,
     starts = [0, *accumulate(map(len, lines))]
     for line, column, head, pairs, attributes, between in marks:
         at = starts[line] + column
+        element = head[0][1]  # whose attributes these are
         for word, origin in head:
             if isinstance(origin, Element):
                 places.append((at, at + len(word), origin.start + 1, origin.start + 1 + len(origin.tag)))
             elif isinstance(origin, tuple):
                 places.append((at, at + len(word), *origin))
-            elif origin is not None and (start := origin.value_start) >= 0:
+            elif origin is not None and isinstance(element, Element) and (start := element.place(origin)[1]) >= 0:
                 places.append((at, at + len(word), start, start + len(origin.raw)))
             at += len(word) + 1
+        if not attributes or not isinstance(element, Element):
+            continue
         at += len("(") + (len(between) if between != " " else 0)
-        for said, attribute in zip(pairs, attributes or (), strict=True):
-            key, start = len(name(attribute.name)), attribute.start
+        for said, attribute in zip(pairs, attributes, strict=True):
+            key, (name_start, start) = len(name(attribute.name)), element.place(attribute)
             if start >= 0:
-                places.append((at, at + key, start, start + len(attribute.name)))
-                end, start, size = at + len(said), attribute.value_start, len(attribute.raw)
+                places.append((at, at + key, name_start, name_start + len(attribute.name)))
+                end, size = at + len(said), len(attribute.raw)
                 value_at = at + key + len(" = ")
                 if said[-1] == '"' and 0 < size == end - value_at - 2:
                     places.append((value_at + 1, end - 1, start, start + size))
@@ -475,7 +496,9 @@ def _is_metadata(element: Element) -> bool:
 
 
 _INDENT: Final = "    "
+_TEXTS_TOLD: Final = 100  # one by one: where there are more, the file is none that somebody mends by hand
 _COLUMNS: Final = 100  # the formatter's
 _DIRECTIONS: Final = {"input_port": "input", "output_port": "output", "inout_port": "inout"}
+_CATEGORIES: Final = frozenset(CATEGORIES)
 _MAY_BE_PLACEHOLDERS: Final = frozenset(("Script", "ScriptCondition", "ScriptAction"))
 _RETURN: Final = re.compile("&#(?:0*13|[xX]0*[dD]);")

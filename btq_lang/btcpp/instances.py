@@ -13,15 +13,14 @@ from collections.abc import Iterator, Mapping
 
 from btq_lang.btcpp.document import Element, Raw
 from btq_lang.btcpp.reader import read
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Instance:
+class Instance(Record):
     """A node of the tree that runs.
 
     Attributes:

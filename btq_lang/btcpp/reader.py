@@ -15,6 +15,7 @@ import re
 
 from btq_lang.btcpp.document import (
     ATTRIBUTE,
+    IN_WORD,
     SPACE,
     WORD,
     Attribute,
@@ -22,7 +23,6 @@ from btq_lang.btcpp.document import (
     Content,
     Document,
     Element,
-    StartTag,
     Text,
     attribute_matches,
     unescape,
@@ -30,7 +30,7 @@ from btq_lang.btcpp.document import (
 from btq_lang.btcpp.strict import not_well_formed
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.garbage import NotCollecting
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import LINE_END, Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -40,8 +40,7 @@ if TYPE_CHECKING:
 MAX_DEPTH: Final = 498  # open elements; the engine gives up at the next one
 
 
-@record
-class Read:
+class Read(Record):
     """What a file says.
 
     Attributes:
@@ -93,70 +92,59 @@ class _Reader:
         self.text: Final = text
         self.is_strict: Final = is_strict  # no attribute stands twice: that has been looked at
         self.open: Final[list[Element]] = []
+        self.is_marked = False  # there was a DOCTYPE, or the like
         self.has_prefixes = False  # names like `xsi:type`, perhaps: not all tools take all of them
 
     def contents(self) -> list[Content]:
         """{ Element | Comment | Text | Declaration | DOCTYPE }: what stands at the top of the document."""
-        text = self.text
+        text, opened, is_strict = self.text, self.open, self.is_strict
+        known: dict[str, list[Attribute]] = {}  # attributes by their text: many nodes say the same
         top: list[Content] = []
         contents = top  # of the innermost open element
-        opened = self.open
-        scan = _TAG
-        declared = True  # nothing but declarations so far
         at = 1 if text.startswith("\ufeff") else 0
-        behind = 0  # where the last thing ended
         while True:
-            tag = scan(text, at)
-            if tag is None:
-                start = self.behind_text(at, contents)
-                if start != at:
-                    declared = declared and not text[at:start].strip(_BLANKS)
-                    at = start
-                elif at == len(text):
-                    break
-                elif text.startswith("<!", at):
-                    at = behind = self.marked(at, contents)
-                    declared = False
-                elif text.startswith("<?", at):
-                    at = behind = self.declaration(at, declared)
-                else:
-                    self.broken_tag(at)
-                continue
-            name, pairs, slash, closing = tag.groups()
-            start, at = behind, tag.end()
-            behind = at
-            if name is None:
-                if closing is None:
-                    at = behind = self.comment(at - len("<!--"), start, contents)
-                    declared = False
+            for tag in _TAGS(text, at):
+                name, pairs, slash, closing = tag.groups()
+                if closing is not None:
+                    if not opened:  # the engine reads no further
+                        return top
+                    if closing != opened[-1].tag:
+                        self.mismatched(tag, closing)
+                    opened.pop().close = at = tag.end()
+                    contents = opened[-1].children if opened else top
                     continue
-                if not opened:  # the engine reads no further
+                if name is None:
                     break
-                if closing != opened[-1].tag:
-                    self.mismatched(tag, closing)
-                opened.pop().close = at
-                contents = opened[-1].children if opened else top
-                continue
-            start = tag.start(1) - 1
-            if text[start] != "<":  # `< name`
-                start = text.rfind("<", 0, start)
-            element = Element(name, (), (), start, at)
-            if pairs:
-                start_tag = StartTag(text, start, at)
-                element.attributes.extend([Attribute(key, raw, start_tag) for key, _, raw in _ATTRIBUTES(pairs)])
-                if ":" in pairs:
-                    self.has_prefixes = self.has_prefixes or any(":" in each.name for each in element.attributes)
-                if not self.is_strict and len({each.name for each in element.attributes}) < len(element.attributes):
+                attributes = None
+                if pairs:
+                    attributes = known.get(pairs)
+                    if attributes is None:
+                        attributes = known[pairs] = [Attribute(key, raw) for key, _, raw in _ATTRIBUTES(pairs)]
+                        if ":" in pairs and any(":" in each.name for each in attributes):
+                            self.has_prefixes = True
+                start, at = text.find("<", at), tag.end()
+                element = Element(name, attributes, None, text, start, at)
+                if not is_strict and len({each.name for each in element.attributes}) < len(element.attributes):
                     self.twice(element)
-            if ":" in name:
-                self.has_prefixes = True
-            contents.append(element)
-            declared = False
-            if not slash:
-                opened.append(element)
-                contents = element.children
-                if len(opened) > MAX_DEPTH:
-                    raise _Broken(Diagnostic("nested-too-deep", Span(element.start, at), _TOO_DEEP))
+                if ":" in name:
+                    self.has_prefixes = True
+                contents.append(element)
+                if not slash:
+                    opened.append(element)
+                    contents = element.children
+                    if len(opened) > MAX_DEPTH:
+                        raise _Broken(Diagnostic("nested-too-deep", Span(start, at), _TOO_DEEP))
+            behind, at = at, self.behind_text(at, contents)
+            if at == len(text):
+                break
+            if text.startswith("<!--", at):
+                at = self.comment(at, behind, contents)
+            elif text.startswith("<!", at):
+                at = self.marked(at, contents)
+            elif text.startswith("<?", at):
+                at = self.declaration(at, is_first=not top)
+            elif at == behind:
+                self.broken_tag(at)
         if opened:
             self.unclosed(opened[-1])
         return top
@@ -201,6 +189,7 @@ class _Reader:
 
     def marked(self, start: int, contents: list[Content]) -> int:
         """ "<![CDATA[" … "]]>", "<!" … ">"; the latter is passed over, as the engine does"""
+        self.is_marked = True
         text = self.text
         if text.startswith("<![CDATA[", start):
             end = self.closing("]]>", start + 9, start, "this CDATA section has no ]]>")
@@ -210,11 +199,11 @@ class _Reader:
         self.has_prefixes = True  # in a DOCTYPE there may be anything
         return self.closing(">", start + 2, start, "this declaration has no >") + 1
 
-    def declaration(self, start: int, declared: bool) -> int:
+    def declaration(self, start: int, is_first: bool) -> int:
         """ "<?" … "?>": the engine takes every one for a declaration, and wants those first"""
         end = self.closing("?>", start + 2, start, "this declaration has no ?>") + 2
         self.has_prefixes = self.has_prefixes or ":" in self.text[start:end]
-        if not declared:
+        if not is_first or self.is_marked:
             span = Span(start, end)
             what = "an XML declaration" if self.text.startswith("<?xml ", start) else "a processing instruction"
             self.broken(
@@ -284,12 +273,12 @@ def _line_ends(text: str) -> str:
 
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} elements inside each other: the engine reads no more"
 _BLANKS: Final = " \t\n\v\f\r"
-_IN_NAME: Final = WORD[WORD.rindex("[") : -1]  # what may stand behind the first character of a name
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
-# No two parts of it can match the same characters, so there is one way to match, or none: the time is linear.
-_TAG: Final = re.compile(
-    rf"{SPACE}<(?:{SPACE}({WORD})(?!{_IN_NAME}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{_IN_NAME})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>|!--)"
-).match
+# No two parts of it can match the same characters, so there is one way to match: the time is linear.  Where no tag
+# stands it matches nothing, so that no search goes on to the next one.
+_TAGS: Final = re.compile(
+    rf"{SPACE}<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)|"
+).finditer
 _ATTRIBUTES: Final = ATTRIBUTE.findall
 _NAME: Final = re.compile(WORD).match
 _SPACE: Final = re.compile(SPACE).match

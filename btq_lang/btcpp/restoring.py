@@ -16,7 +16,7 @@ from btq_lang.catalog.nodes import xml_tag
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -38,8 +38,7 @@ from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 from btq_lang.workspace import is_btq
 
 
-@record
-class Restored:
+class Restored(Record):
     """A mission.
 
     Attributes:
@@ -58,8 +57,7 @@ class Restored:
     others: tuple[tuple[str, str], ...] = ()
 
 
-@record
-class Lost:
+class Lost(Record):
     """Clauses of one node.
 
     Attributes:

@@ -15,7 +15,7 @@ from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
-from btq_lang.record import fields_of, record
+from btq_lang.record import Record, fields_of
 from btq_lang.requirements import requirements
 from btq_lang.requirements.model import Applied, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
@@ -35,8 +35,7 @@ FORMAT: Final = "btq-requirements"
 VERSION: Final = 1
 
 
-@record
-class Built:
+class Built(Record):
     """An XML file that was built.
 
     Attributes:
@@ -214,7 +213,7 @@ def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, runnin
         for entry in workspace.files[path].parsed.entries:
             if not isinstance(entry.item, Tree):
                 continue
-            parts = [(nodes.root_of(entry), entry.item.clauses)]
+            parts = [(nodes.within(entry.item).root, entry.item.clauses)]
             parts += [(nodes.of(node), node.clauses) for node in entry.item.walk() if node.clauses]
             for node, clauses in parts:
                 qualities: list[Json] = [
@@ -276,5 +275,5 @@ def _plain(value: object, place: _Places) -> Json:
     return found
 
 
-_LEFT_OUT: Final = frozenset(("place", "path", "entry"))
+_LEFT_OUT: Final = frozenset(("place", "path", "item"))
 _RENAMED: Final = {"name": "id", "action": "on_violation", "method": "verified_by"}

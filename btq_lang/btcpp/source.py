@@ -14,7 +14,7 @@ from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.comments import NO_COMMENTS, Comments, comments
 from btq_lang.comments import Comment as SourceComment
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Entry, Verbatim, Word
 from btq_lang.text import Span
 from btq_lang.workspace import File, Scope, Workspace
@@ -32,8 +32,7 @@ if TYPE_CHECKING:
         def end(self) -> int: ...
 
 
-@record
-class Remark:
+class Remark(Record):
     """Something that an export has to say, and the place it is about, counted from the start of the file."""
 
     path: str

@@ -53,11 +53,6 @@ def as_comment(text: str) -> str:
     return text
 
 
-def is_xml_name(name: str) -> bool:
-    """Whether a name can be a tag or the name of an attribute, for every reader; namespaces aside."""
-    return _XML_NAME.fullmatch(name) is not None
-
-
 def _spelt_in_string(match: re.Match[str]) -> str:
     return _SPELT[match[0]]
 
@@ -82,8 +77,3 @@ _SPELT: Final = {
     "\r\n": "\n",
     "\r": "\n",
 }
-_NAME_START: Final = (
-    "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
-    "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
-)
-_XML_NAME: Final = re.compile(f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*")

@@ -6,17 +6,17 @@ does not know what stands around the trees, nor what a requirement asks of the e
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
-from btq_lang.btcpp.spelling import is_xml_name
+from btq_lang.btcpp.undeclared import likely_category
 from btq_lang.catalog.kinds import CATEGORIES, at_least
-from btq_lang.catalog.names import is_port_name, legal_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, xml_tag
+from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
+from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, xml_tag
 from btq_lang.comments import NO_COMMENTS
 from btq_lang.entry_types import is_number
 from btq_lang.placeholders import is_placeholder
@@ -30,31 +30,15 @@ _UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
 _NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence
 
 
-class CustomNode:
-    """A node that is none of the engine's, as its uses have it.
-
-    Attributes:
-        ports: each with whether a blackboard entry is given to it somewhere.
-    """
-
-    __slots__ = ("category", "ports")
-
-    def __init__(self, category: str) -> None:
-        self.category: Final = category
-        self.ports: Final[dict[str, bool]] = {}
-
-
 class Trees:
     """The trees of a file, made one after the other.
 
     Attributes:
         elements: the element of each node, by `id(node)`.
-        custom: the nodes that are none of the engine's, by ID.
     """
 
     def __init__(self, source: Source) -> None:
         self.elements: Final[dict[int, Element]] = {}
-        self.custom: Final[dict[str, CustomNode]] = {}
         self._source: Final = source
         self._tags: Final[dict[str, tuple[str, NodeKind | None]]] = {}
         self._placeholders: Final[dict[str, tuple[str, str]]] = {}  # what a name says and becomes, by its spelling
@@ -136,11 +120,8 @@ class Trees:
         if tag == "SubTreePlus":
             return Element(tag, self._subtree_attributes(entry, node))
         attributes = attributes_of(self._source, entry, node.attributes, builtin, node.label)
-        if builtin is None:
-            category = _likely_category(node)
-            self._remember(tag, category, attributes)
-            if not is_xml_name(tag):
-                return self._as_explicit(entry, node, category, attributes, parent)
+        if builtin is None and not is_xml_name(tag):
+            return self._as_explicit(entry, node, likely_category(len(node.children)), attributes, parent)
         return Element(tag, attributes)
 
     def _explicit(self, entry: Entry, node: Node, category: str, parent: Element) -> Element:
@@ -150,15 +131,12 @@ class Trees:
             return Element(category, self._subtree_attributes(entry, node))
         word = node.id if node.category is not None else node.attribute("ID")
         name = "" if word is None else xml_tag(word.text, word.quoted, len(node.children))
-        builtin = BUILTINS.get(name)
-        attributes = attributes_of(source, entry, node.attributes, builtin, node.label)
+        attributes = attributes_of(source, entry, node.attributes, BUILTINS.get(name), node.label)
         in_brackets = next((index for index, each in enumerate(attributes) if each.name == "ID"), None)
         if in_brackets is not None:
             attributes[in_brackets] = Attribute("ID", escape(name))
         elif word is not None:
             attributes.insert(0, Attribute("ID", escape(name)))
-        if builtin is None and word is not None:
-            self._remember(name, category, attributes)
         if parent.tag != "ReactiveSequence" or source.verbatim or word is None:
             return Element(category, attributes)
         if not is_xml_name(name) or model_name_problem(name, source.target) is not None:
@@ -196,7 +174,6 @@ class Trees:
         attributes = attributes_of(source, entry, node.attributes, None, node.label)
         if tag == text:
             attributes = [each for each in attributes if each.name != "name"]
-        self._remember(tag, PLACEHOLDERS[node.head.raw], attributes)
         return Element(tag, attributes)
 
     def _new_placeholder(self, entry: Entry, name: Word) -> tuple[str, str]:
@@ -271,24 +248,3 @@ class Trees:
             attributes.append(Attribute("_description", raw))
         else:
             attributes[index] = Attribute("_description", raw)
-
-    def _remember(self, name: str, category: str, attributes: Iterable[Attribute]) -> None:
-        if self._source.verbatim or not name:
-            return
-        node = self.custom.get(name)
-        if node is None:
-            node = self.custom[name] = CustomNode(category)
-        for each in attributes:
-            if each.name not in _NO_PORTS and is_port_name(each.name):
-                node.ports[each.name] = each.raw.startswith("{") or node.ports.get(each.name, False)
-
-
-def _likely_category(node: Node) -> str:
-    """The category of a custom node, as the number of its children suggests where nothing says it."""
-    kind = node.kind
-    if kind is not None and not kind.quoted and kind.raw in KNOWN_WORDS:
-        return KNOWN_WORDS[kind.raw].category
-    return ("Action", "Decorator", "Control")[min(len(node.children), 2)]
-
-
-_NO_PORTS: Final = frozenset(("ID", "name"))

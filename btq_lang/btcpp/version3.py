@@ -12,7 +12,7 @@ from __future__ import annotations
 from btq_lang.btcpp.document import Attribute, Element
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
 
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Change:
+class Change(Record):
     """Something that is said otherwise than in the XML.
 
     Attributes:
@@ -83,7 +82,7 @@ class _Translator:
             port = OLD_PORTS.get((identity or "", attribute.name))
             if port is not None:
                 self.tell(f"{attribute.name} of {identity} is now {port}", attribute)
-                element.attributes[index] = _renamed(attribute, port)
+                element.attributes[index] = self.changed(attribute, name=port)
 
     def rename(self, is_explicit: bool, new: str) -> None:
         element = self.element
@@ -91,7 +90,7 @@ class _Translator:
             for index, attribute in enumerate(element.attributes):
                 if attribute.name == "ID":
                     self.tell(f"{attribute.raw} is now {new}", attribute)
-                    element.attributes[index] = _valued(attribute, new)
+                    element.attributes[index] = self.changed(attribute, raw=new)
         else:
             self.tell(f"{element.tag} is now {new}")
             element.tag = new
@@ -108,12 +107,12 @@ class _Translator:
             if key == "__shared_blackboard":
                 if _is_true(said):
                     self.tell('__shared_blackboard is now _autoremap="true"', attribute)
-                    found.append(_valued(_renamed(attribute, "_autoremap"), "true"))
+                    found.append(self.changed(attribute, "_autoremap", "true"))
                 else:
                     self.tell("__shared_blackboard is left out: version 4 shares nothing that is not said", attribute)
             elif key == "__autoremap":
                 self.tell("__autoremap is now _autoremap", attribute)
-                found.append(_renamed(attribute, "_autoremap"))
+                found.append(self.changed(attribute, "_autoremap"))
             elif is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
                 found.append(attribute)
             elif said == "":
@@ -121,7 +120,7 @@ class _Translator:
                 found.append(attribute)
             else:
                 self.tell(f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute)
-                found.append(_valued(attribute, f"{{{attribute.raw}}}"))
+                found.append(self.changed(attribute, raw=f"{{{attribute.raw}}}"))
         element.attributes[:] = found
 
     def subtree_model(self) -> None:
@@ -133,14 +132,19 @@ class _Translator:
                 self.changes.append(Change(Span(child.start, child.end), message))
                 element.children.remove(child)
 
+    def changed(self, attribute: Attribute, name: str | None = None, raw: str | None = None) -> Attribute:
+        """An attribute with another name or value, in its place."""
+        place = self.element.place(attribute)
+        return Attribute(attribute.name if name is None else name, attribute.raw if raw is None else raw, place)
+
     def tell(self, message: str, attribute: Attribute | None = None) -> None:
         """Report a change: of an attribute, or of the element's tag."""
         if attribute is None:
             start = self.element.start + 1
             self.changes.append(Change(Span(start, start + len(self.element.tag)), message))
         else:
-            end = attribute.value_start + len(attribute.raw) + 1
-            self.changes.append(Change(Span(attribute.start, end), message))
+            start, value_start = self.element.place(attribute)
+            self.changes.append(Change(Span(start, value_start + len(attribute.raw) + 1), message))
 
 
 def _is_new(element: Element) -> bool:
@@ -161,14 +165,6 @@ def _walk(root: Element) -> Iterator[Element]:
 
 def _is_true(said: str) -> bool:
     return said.strip().lower() in ("true", "1")
-
-
-def _renamed(attribute: Attribute, name: str) -> Attribute:
-    return Attribute(name, attribute.raw, attribute.place)
-
-
-def _valued(attribute: Attribute, raw: str) -> Attribute:
-    return Attribute(attribute.name, raw, attribute.place)
 
 
 # Nodes of version 3 that version 4 has no word for.

@@ -7,11 +7,11 @@ attributes it took from the node and where they stood.  It does not know why som
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -32,8 +32,7 @@ LIMIT: Final = 5
 INSIDE: Final = 6  # what notes that the node itself starts and ends
 
 
-@record
-class Leaf:
+class Leaf(Record):
     """A Script or a ScriptCondition beside a node.
 
     Attributes:
@@ -46,8 +45,7 @@ class Leaf:
     failed: str | None = None
 
 
-@record
-class FirstValues:
+class FirstValues(Record):
     """What entries are where nobody has written them before the tree runs for the first time.
 
     A script cannot ask whether an entry is there, so a node does: `WasEntryUpdated` fails where its entry was never
@@ -61,8 +59,7 @@ class FirstValues:
     values: tuple[tuple[str, str], ...]
 
 
-@record
-class Wrapper:
+class Wrapper(Record):
     """An element around a node.
 
     Attributes:
@@ -104,15 +101,31 @@ def may_be_skipped(names: Sequence[str]) -> bool:
     return "_skipIf" in names or "_while" in names
 
 
-def unwrapped(element: Element) -> list[Content] | None:
+def unwrapped(element: Element, holding: Container[Element]) -> list[Content] | None:
     """What stands in a wrapper: the node as it was, with the comments around it, and no node for a Script or a
-    ScriptCondition that was put there; None: somebody has put another node there."""
-    nodes = _nodes(element)
+    ScriptCondition that was put there; None: somebody has put another node there.
+
+    Args:
+        holding: those in the document that hold a node.
+    """
+    nodes = [child for child in element.elements if child in holding]
     if len(nodes) > 1:
         return None
     if nodes:
-        _give_back(element, _innermost(nodes[0]))
+        _give_back(element, _innermost(nodes[0], holding))
     return [child for child in element.children if child in nodes or isinstance(child, Comment)]
+
+
+def holding_nodes(root: Element) -> set[Element]:
+    """The elements that are nodes themselves, or stand around one."""
+    outside_in = [root]
+    for element in outside_in:
+        outside_in += element.elements
+    found: set[Element] = set()
+    for element in reversed(outside_in):
+        if element.get(MARK) is None or not found.isdisjoint(element.elements):
+            found.add(element)
+    return found
 
 
 def _moved(element: Element) -> list[tuple[int, Attribute]]:
@@ -164,20 +177,14 @@ def _first_values(first: FirstValues, mark: Attribute) -> Element:
     return Element("RunOnce", [Attribute("name", "btq_first"), mark], [inside])
 
 
-def _innermost(element: Element) -> Element:
+def _innermost(element: Element, holding: Container[Element]) -> Element:
     """The node itself, in what is around it."""
-    while element.get(MARK) is not None and len(inside := _nodes(element)) == 1:
+    while element.get(MARK) is not None:
+        inside = [child for child in element.elements if child in holding]
+        if len(inside) != 1:
+            break
         element = inside[0]
     return element
-
-
-def _nodes(element: Element) -> list[Element]:
-    """The children that are nodes, or stand around one."""
-    return [child for child in element.elements if _has_node(child)]
-
-
-def _has_node(element: Element) -> bool:
-    return element.get(MARK) is None or any(map(_has_node, element.elements))
 
 
 def _give_back(outermost: Element, node: Element) -> None:
@@ -186,7 +193,8 @@ def _give_back(outermost: Element, node: Element) -> None:
     for said in moved.split():
         name, _, index = said.partition(":")
         if name in own and index.isdecimal() and node.get(name) is None:
-            node.attributes.insert(int(index), own[name])
+            place = outermost.place(own[name])
+            node.attributes.insert(int(index), Attribute(name, own[name].raw, place))
 
 
 _PRECONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")

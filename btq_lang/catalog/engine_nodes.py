@@ -7,7 +7,7 @@ row against them); what is said of behaviour was read in the sources of 4.10.0 a
 
 from __future__ import annotations
 
-from btq_lang.catalog.kinds import Direction, NodeKind, PortKind
+from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -15,13 +15,16 @@ if TYPE_CHECKING:
 
 _STRING: Final = "std::string"
 _MILLISECONDS: Final = "unsigned int"
-_STATUS: Final = "BT::NodeStatus"
 _ANYTHING: Final = "BT::AnyTypeAllowed"
 _ENTRY: Final = "BT::Any"
 
 
 def _input(name: str, type_: str, doc: str, default: str | None = None, *, required: bool = False) -> PortKind:
     return PortKind(name, "input", type_, doc, default, required)
+
+
+def _result(name: str, doc: str, default: str) -> PortKind:
+    return PortKind(name, "input", "BT::NodeStatus", doc, default, literal=RESULT)
 
 
 def _duration(name: str, doc: str) -> PortKind:
@@ -213,7 +216,7 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
                 literal=f"std::deque<{type_}>",
                 type_before=("4.9", queue_before),
             ),
-            _input("if_empty", _STATUS, "What an empty queue gives: SUCCESS, FAILURE or SKIPPED", "SUCCESS"),
+            _result("if_empty", "What an empty queue gives: SUCCESS, FAILURE or SKIPPED", "SUCCESS"),
             PortKind("value", "output", type_, "The entry that gets the item"),
         ),
         aliases=aliases,
@@ -325,7 +328,7 @@ _DECORATORS: Final = (
         "ReactiveSequence.",
         (
             _script("if", _STRING, "The condition"),
-            _input("else", _STATUS, "What a false condition returns: FAILURE, SUCCESS, SKIPPED", "FAILURE"),
+            _result("else", "What a false condition returns: FAILURE, SUCCESS, SKIPPED", "FAILURE"),
         ),
     ),
     _loop("Int", "int", _queue("int")),

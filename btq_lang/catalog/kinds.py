@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -34,9 +34,11 @@ Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
 # What the text of a port is: a value, a script, or the name of a blackboard entry, written without braces.
 Content: TypeAlias = "Literal['value', 'script', 'key']"
 
+# The literals of a port that says what its node returns: with IDLE the engine ends with an error.
+RESULT: Final = "BT::NodeStatus but IDLE"
 
-@record
-class PortKind:
+
+class PortKind(Record):
     """A port of a built-in.
 
     Attributes:
@@ -61,8 +63,7 @@ class PortKind:
     type_before: tuple[str, str] | None = None
 
 
-@record
-class NodeKind:
+class NodeKind(Record):
     """A built-in node of the engine.
 
     Attributes:

@@ -9,15 +9,14 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Phrase:
+class Phrase(Record):
     """A word of the language, or several that go together.
 
     Attributes:
@@ -71,20 +70,27 @@ _MODEL: Final = "a model: the interface of a node"
 _PLACE: Final = "at the start of a line of the file, the interface of {}; in a tree, the category of the node behind it"
 _SPAN: Final = "from FindPart succeeds to Sort succeeds takes at most 12 s"
 
+# By what they are: the words, how they are written, what stands beside them in a list, and what they mean.
 _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
     "item": (
         ("BehaviorTree", "BehaviorTree Deliver", "a tree", "a tree: its ports, and one node with all below it"),
         ("Root", "Root Deliver", "the main tree", "which tree is the mission, the one that the engine runs"),
         (
-            *("include", 'include "skills.btq"', "another file's names"),
+            "include",
+            'include "skills.btq"',
+            "another file's names",
             "the trees, models and requirements of another file, a .btq or XML of BehaviorTree.CPP, are known here",
         ),
         (
-            *("QualityReq", 'QualityReq rq1 : reliability "In time"', "a requirement"),
+            "QualityReq",
+            'QualityReq rq1 : reliability "In time"',
+            "a requirement",
             "a requirement: its ID, its quality, a title, and clauses that say what is demanded",
         ),
         (
-            *("signal", "signal battery : % from {battery_level} level initially 100 %", "what is measured"),
+            "signal",
+            "signal battery : % from {battery_level} level initially 100 %",
+            "what is measured",
             "a value on the robot's blackboard, with its unit, for conditions to speak of",
         ),
         (
@@ -94,19 +100,27 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
             "a situation that conditions can name",
         ),
         (
-            *("apply", "apply slow to every MoveBase except ToDock", "a requirement for many nodes"),
+            "apply",
+            "apply slow to every MoveBase except ToDock",
+            "a requirement for many nodes",
             "attaches a requirement to nodes, wherever they are",
         ),
         (
-            *("quality", 'quality hygiene : safety "Nothing is carried along"', "a quality of one's own"),
+            "quality",
+            'quality hygiene : safety "Nothing is carried along"',
+            "a quality of one's own",
             "a quality of your own, under one that is known",
         ),
         (
-            *("qualities", "qualities iso25010-2011", "the edition of the quality model"),
+            "qualities",
+            "qualities iso25010-2011",
+            "the edition of the quality model",
             "the edition of ISO/IEC 25010 whose names the file uses",
         ),
         (
-            *("TreeNodesModel", "TreeNodesModel", "models, where the element stands"),
+            "TreeNodesModel",
+            "TreeNodesModel",
+            "models, where the element stands",
             "models that the XML has in this place; without it they stand last",
         ),
         ("Action", "Action MoveBase", _MODEL, _PLACE.format("an action")),
@@ -122,7 +136,9 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("gauge", "signal speed : m/s gauge", "just a value", "a value that nothing uses up"),
         ("fresh within", "signal speed : m/s fresh within 200 ms", "its age", "an older reading counts as unknown"),
         (
-            *("initially", "signal speed : m/s initially 0 m/s", "before the first reading"),
+            "initially",
+            "signal speed : m/s initially 0 m/s",
+            "before the first reading",
             "its value before the first reading; guards begin with it",
         ),
     ),
@@ -134,18 +150,84 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
     ),
     "clause of a node": (
         (
-            *("satisfices", "satisfices safety, comfort", "mark a concern: a quality"),
+            "satisfices",
+            "satisfices safety, comfort",
+            "mark a concern: a quality",
             "early design: the node matters for a quality, and nobody says yet how much",
         ),
         (
-            *("satisfies", "satisfies in_time", "attach a requirement"),
+            "satisfies",
+            "satisfies in_time",
+            "attach a requirement",
             "late design: a requirement, which can be measured, holds for the node",
         ),
         (
-            *("tags", "tags driving, indoor", "mark the node for `apply`"),
+            "tags",
+            "tags driving, indoor",
+            "mark the node for `apply`",
             "the node is one of those that `every node tagged driving` means",
         ),
         ("parameters", "parameters station = home", "ports, as the published tool has them", "the node's ports"),
+    ),
+    "attribute of a node": (
+        (
+            "name",
+            'MoveBase (name = "ToBench")',
+            "the node's own name",
+            "the name of this one node; short: `MoveBase ToBench`",
+        ),
+        (
+            "ID",
+            "SubTree (ID = PickPlace)",
+            "the kind of node",
+            "the node's kind, or a SubTree's tree; short: `SubTree PickPlace`",
+        ),
+        (
+            "Quality",
+            "MoveBase (satisfices Quality = safety)",
+            "a quality, as the published tool has it",
+            "a concern of the node; short: `satisfices safety`",
+        ),
+    ),
+    "attribute of the file": (
+        (
+            "BTCPP_format",
+            'Root Deliver (BTCPP_format = "4")',
+            "the version of the XML",
+            "the version of the format; `btq build` writes 4 where nobody says it",
+        ),
+        (
+            "main_tree_to_execute",
+            'Root (main_tree_to_execute = "Deliver")',
+            "the main tree",
+            "the tree that runs; short: `Root Deliver`",
+        ),
+        (
+            "ros_pkg",
+            'include "trees.xml" (ros_pkg = "my_robot")',
+            "the package that has the file",
+            "the ROS package below which the engine looks for an included file",
+        ),
+    ),
+    "classic form": (
+        (
+            "description",
+            'QualityReq ID = "rq1" description = "In time"',
+            "a requirement's text",
+            'what is required, in words; short: `QualityReq rq1 : time-behaviour "In time"`',
+        ),
+        (
+            "SuccessIf",
+            'QualityReq ID = "rq1" description = "SuccessIf takes at most 30 s"',
+            "a hard constraint in a description",
+            "what must hold; a clause behind it is read as one and held by `btq build`, prose is for people only",
+        ),
+        (
+            "FailureIf",
+            'QualityReq ID = "rq1" description = "FailureIf takes more than 30 s"',
+            "a hard constraint in a description",
+            "what must not happen; a clause behind it is read as one and held by `btq build`, prose is for people only",
+        ),
     ),
     "subject": (
         ("mission", "mission takes at most 1 h", "subject: the whole run", "the whole run: the main tree"),
@@ -153,7 +235,9 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("from", _SPAN, "subject: between two events", "the time from an event to the next one behind `to`"),
         ("to", _SPAN, "the later event", "the event that ends the time"),
         (
-            *("sum of", "sum of ToBox, ToHome takes at most 120 s", "subject: several nodes together"),
+            "sum of",
+            "sum of ToBox, ToHome takes at most 120 s",
+            "subject: several nodes together",
             "the durations of several nodes in one run, added up",
         ),
     ),
@@ -163,30 +247,42 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("needs", "needs rear_is_clear", "a condition when it starts", "the condition is false when the node starts"),
         ("keeps", "keeps battery >= 15 %", "a condition while it runs", "it is false at any time while the node runs"),
         (
-            *("never", "never lamp_on and humans_near", "what must not be while it runs"),
+            "never",
+            "never lamp_on and humans_near",
+            "what must not be while it runs",
             "it is true at any time while the node runs",
         ),
         (
-            *("leaves", "leaves battery >= 3 %", "a condition when it has succeeded"),
+            "leaves",
+            "leaves battery >= 3 %",
+            "a condition when it has succeeded",
             "it is false when the node has succeeded",
         ),
         ("uses", "uses at most 20 Wh of energy", "a resource", "the signal changes by more while the node runs"),
         (
-            *("tries", "tries at most 3 per PickTray", "attempts"),
-            "the node starts more often within one activation of the other",
+            "tries",
+            "tries at most 3 per PickTray",
+            "attempts",
+            "the node starts more often within one activation of the other; without `per`, in the whole run",
         ),
         ("runs every", "runs every 500 ms", "period", "two starts are further apart"),
         ("runs", "runs at least 9 per 10 s", "rate", "there are fewer starts in any such time"),
         (
-            *("starts", "starts within 2 s after Batch succeeds", "reaction"),
+            "starts",
+            "starts within 2 s after Batch succeeds",
+            "reaction",
             "it starts (ends) later than that, or not at all",
         ),
         (
-            *("ends", "ends within 2 s after Batch succeeds", "reaction"),
+            "ends",
+            "ends within 2 s after Batch succeeds",
+            "reaction",
             "it starts (ends) later than that, or not at all",
         ),
         (
-            *("follows", "follows SlotFree succeeds", "order"),
+            "follows",
+            "follows SlotFree succeeds",
+            "order",
             "it starts although the event has not happened since its previous start",
         ),
     ),
@@ -218,15 +314,21 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
     ),
     "clause": (
         (
-            *("while", "while humans_near", "only while a condition holds"),
+            "while",
+            "while humans_near",
+            "only while a condition holds",
             "only the time (or the activations) in which the condition holds counts",
         ),
         (
-            *("when", "when fragile", "only when a condition holds"),
+            "when",
+            "when fragile",
+            "only when a condition holds",
             "only activations at whose start the condition holds count",
         ),
         (
-            *("in at least", "in at least 98 % of activations", "how often"),
+            "in at least",
+            "in at least 98 % of activations",
+            "how often",
             "it may fail now and then; also `of runs`, also `with probability >= 98 %`",
         ),
         ("with probability", "with probability >= 98 % of runs", "how often", "it may fail now and then"),
@@ -235,7 +337,9 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("confidence", "confidence 95 %", "how sure", "how sure the verdict about the odds has to be"),
         ("over last", "over last 200 activations", "window", "older ones do not count; also `over last 7 d`"),
         (
-            *("on violation", "on violation fail", "what happens: fail, halt, warn or log"),
+            "on violation",
+            "on violation fail",
+            "what happens: fail, halt, warn or log",
             "what the robot does: `fail` the node, `halt` the mission, `warn`, `log`; else it is only monitored",
         ),
         (
@@ -246,7 +350,9 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ),
         ("because", 'because "visitors do not know the robot"', "the reason", "the reason"),
         (
-            *("verified by", "verified by review", "monitor, analysis, test or review"),
+            "verified by",
+            "verified by review",
+            "monitor, analysis, test or review",
             "how it is verified: `monitor`, `test`, `analysis` or `review`",
         ),
     ),
@@ -296,6 +402,25 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
 }
 PHRASES: Final = tuple(
     Phrase(words, part, form, brief, meaning) for part, rows in _TABLE.items() for words, form, brief, meaning in rows
+)
+
+# What is no word: the sign, how it is written, and what it means.
+SIGNS: Final = (
+    ("{ }", "MoveBase (goal = {pose})", "an entry of the blackboard: `{pose}` is the entry `pose` of this tree"),
+    ("{=}", "MoveBase (goal = {=})", "the entry that is called as the port"),
+    ("{@ }", "Sensors (battery = {@battery_level})", "an entry of the root blackboard, which all trees share"),
+    ('" "', '"3 Waypoints"', "a text, or a name with blanks in it; a quoted word is never one of the language"),
+    ("( )", 'MoveBase (station = "charger")', "what belongs to the node before it: ports, attributes, clauses"),
+    ("#", "Charge  # until it is full", "a comment, to the end of the line, as `//`"),
+    ("//", "Charge  // until it is full", "a comment, to the end of the line, as `#`"),
+    ("/* */", "/* until it is full */", "a comment, over any number of lines"),
+    (
+        ":",
+        "signal battery : %",
+        "what a signal is measured in, what type a port has, which quality a requirement is of",
+    ),
+    ("/", "Recharge/MoveBase", "a path: the node MoveBase somewhere below Recharge; in a condition a division"),
+    ("btq: ignore", "# btq: ignore[unused-tree]", "in a comment: nothing is told of this line, or only not that rule"),
 )
 
 

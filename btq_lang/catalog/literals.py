@@ -11,16 +11,15 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
-from btq_lang.record import record
+from btq_lang.catalog.kinds import DEFAULT_VERSION, RESULT, at_least
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final, Literal
 
 
-@record
-class LiteralProblem:
+class LiteralProblem(Record):
     """What is wrong with a literal.
 
     Attributes:
@@ -35,6 +34,7 @@ class LiteralProblem:
     reads: str | None = None
 
 
+@lru_cache(1_000)  # the same values are given again and again
 def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
     """What is wrong with a literal on a port of that type, in that version of the engine; None: nothing.
 
@@ -78,6 +78,9 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
     if plain == "bool":
         known = text in ("0", "1", "true", "True", "TRUE", "false", "False", "FALSE")
         return None if known else LiteralProblem("refused", "is no bool: true, false, 1 or 0")
+    if plain == RESULT:
+        known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
+        return None if known else LiteralProblem("refused", "is no result: SUCCESS, FAILURE, SKIPPED or RUNNING")
     if plain == "BT::NodeStatus":
         known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
         return None if known else LiteralProblem("refused", "is no status: SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE")

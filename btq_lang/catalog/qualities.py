@@ -17,7 +17,7 @@ from functools import lru_cache
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.near import near
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -30,8 +30,7 @@ EDITIONS: Final[dict[str, Edition]] = {"iso25010-2023": "2023", "iso25010-2011":
 DEFAULT_EDITION: Final[Edition] = "2023"
 
 
-@record
-class Quality:
+class Quality(Record):
     """A quality.
 
     Attributes:
@@ -56,8 +55,7 @@ class Quality:
     measures: str = ""
 
 
-@record
-class QualityMatch:
+class QualityMatch(Record):
     """What a QualityPath means.
 
     Attributes:

@@ -7,15 +7,14 @@ node all the same; the table only says what to tell its writer.
 from __future__ import annotations
 
 from btq_lang.catalog.kinds import Category
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class KnownWord:
+class KnownWord(Record):
     """A word that is no node of the engine.
 
     Attributes:

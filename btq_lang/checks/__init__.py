@@ -6,15 +6,18 @@ count from that entry; it never raises, whatever the file.  A module holds the r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 
 from btq_lang.checks import (
+    bounds,
     children,
     clauses,
     conditions,
     constants,
     counts,
     demands,
+    empty,
     includes,
     kinds,
     literals,
@@ -29,19 +32,19 @@ from btq_lang.checks import (
     prose,
     qualities,
     reactive,
+    repeated,
     requirements,
     scripts,
     trees,
     unreachable,
+    unused,
 )
-from btq_lang.checks.origins import shown_on_origins
-from btq_lang.checks.view import Noted, View
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
-from btq_lang.project import Project, configured
-from btq_lang.record import record, replace
+from btq_lang.project import configured
+from btq_lang.record import Record, replace
 from btq_lang.rules import Severity
 from btq_lang.scan import line_start
-from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -57,11 +60,13 @@ from btq_lang.syntax import (
     Tree,
 )
 from btq_lang.text import Span
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Facts, File, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import TypeAlias
+
+    from btq_lang.checks.answers import Answers
 
 Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 
@@ -76,7 +81,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         requirements.conflicting_requirement,
         ports.duplicate_attribute,
     ),
-    Root: (trees.unknown_tree, ports.duplicate_attribute),
+    Root: (trees.unknown_tree, empty.empty_text, ports.duplicate_attribute),
     Tree: (
         trees.unknown_tree,
         trees.duplicate_tree,
@@ -118,6 +123,10 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         clauses.duplicate_clause,
         clauses.clause_without_odds,
         clauses.unused_parameter,
+        bounds.impossible_bound,
+        bounds.uses_of_gauge,
+        repeated.named_twice,
+        empty.empty_text,
         qualities.unknown_quality,
         qualities.old_quality_name,
         qualities.ambiguous_quality,
@@ -142,6 +151,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.quantity_on_unitless_port,
         constants.number_for_text,
         names.forbidden_name,
+        empty.empty_text,
     ),
     Models: (
         kinds.duplicate_definition,
@@ -152,9 +162,15 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         literals.quantity_on_unitless_port,
         constants.number_for_text,
         names.forbidden_name,
+        empty.empty_text,
     ),
-    Signal: (kinds.duplicate_definition, measures.unresolved, demands.demands),
-    Context: (kinds.duplicate_definition, conditions.subtraction_without_blanks, measures.unresolved),
+    Signal: (kinds.duplicate_definition, empty.empty_text, unused.unused_signal, measures.unresolved, demands.demands),
+    Context: (
+        kinds.duplicate_definition,
+        conditions.subtraction_without_blanks,
+        unused.unused_context,
+        measures.unresolved,
+    ),
     Requirement: (
         requirements.conflicting_requirement,
         requirements.unused_requirement,
@@ -162,6 +178,9 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         clauses.duplicate_clause,
         clauses.clause_without_odds,
         clauses.unused_parameter,
+        bounds.impossible_bound,
+        bounds.uses_of_gauge,
+        empty.empty_text,
         qualities.unknown_quality,
         qualities.old_quality_name,
         qualities.ambiguous_quality,
@@ -171,10 +190,11 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         measures.requirement_without_subject,
         demands.demands,
     ),
-    Apply: (requirements.unknown_requirement, measures.unresolved, demands.demands),
+    Apply: (requirements.unknown_requirement, repeated.named_twice, measures.unresolved, demands.demands),
     Qualities: (qualities.unknown_quality,),
     QualityDecl: (
         kinds.duplicate_definition,
+        empty.empty_text,
         qualities.unknown_quality,
         qualities.old_quality_name,
         qualities.ambiguous_quality,
@@ -197,56 +217,25 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
 )
 
 
-# What these find in an item depends on the item, and of all else only on what a view notes: so it holds until an edit
-# changes the item, or one of the answers.  The others look further, and are asked after every edit.
-_NARROW: frozenset[Check] = frozenset(
-    (
-        kinds.not_an_engine_node,
-        kinds.newer_engine_node,
-        kinds.category_mismatch,
-        kinds.clause_as_node,
-        ports.unknown_port,
-        ports.missing_port,
-        ports.unknown_attribute,
-        ports.duplicate_attribute,
-        ports.duplicate_port,
-        ports.misspelt_type,
-        literals.invalid_literal,
-        literals.quantity_on_unitless_port,
-        counts.count_of_nothing,
-        children.child_count,
-        children.switch_cases,
-        children.parallel_threshold,
-        names.forbidden_name,
-        names.duplicate_instance_name,
-        placeholders.classic_placeholder,
-        scripts.script_error,
-        qualities.old_quality_name,
-        qualities.ambiguous_quality,
-        conditions.subtraction_without_blanks,
-        clauses.duplicate_clause,
-        clauses.clause_without_odds,
-        clauses.unused_parameter,
-    )
-)
+class Found(Record):
+    """What was found in an item.
+
+    Attributes:
+        restless: the checks that must be asked again after every edit, for they look at the whole workspace.
+        has_places_elsewhere: some places count from other items, and so move with these.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    restless: tuple[Check, ...]
+    has_places_elsewhere: bool
 
 
-@record
-class Kept:
-    """What the narrow checks found in an item, and the answers that this rests on."""
-
-    entry: Entry
-    project: Project
-    found: tuple[Diagnostic, ...]
-    noted: Noted
-
-
-def check(workspace: Workspace, path: str, kept: dict[int, Kept] | None = None) -> tuple[Diagnostic, ...]:
+def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
     Args:
         path: one of the workspace's files.
-        kept: what an earlier check of the file has left here, to ask no more than an edit asks for; left anew.
+        answers: what earlier checks of the file have left here, to ask no more than an edit asks for.
 
     Returns:
         Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
@@ -255,35 +244,83 @@ def check(workspace: Workspace, path: str, kept: dict[int, Kept] | None = None) 
     Raises:
         KeyError: there is no such file.
     """
-    view = View(workspace, path)
-    noting = View(workspace, path, notes=True)
-    found: list[Diagnostic] = []
-    before = dict(kept or {})
-    if kept is not None:
-        kept.clear()
-    for entry in view.file.parsed.entries:
-        checks = CHECKS.get(type(entry.item), ())
-        if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
-            checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
-        diagnostics: list[Diagnostic] = []
-        if kept is not None and _can_be_kept(entry):
-            narrow = kept[id(entry.item)] = _narrow(noting, entry, checks, before.get(id(entry.item)))
-            diagnostics += narrow.found
-            checks = tuple([each for each in checks if each not in _NARROW])
-        diagnostics += [diagnostic for each in checks for diagnostic in each(view, entry)]
-        if entry.diagnostics:
-            diagnostics = [*entry.diagnostics, *_on_sound_lines(diagnostics, entry, view.file.text)]
-        found += [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in diagnostics]
-    if "btq:" in view.file.text:
+    view = View(workspace, path, answers)
+    file = workspace.files[path]
+    if answers is not None:
+        answers.begin(view, workspace)
+    if answers is None:
+        found = [each for entry in file.parsed.entries for each in _told(view, entry, _found(view, entry), workspace)]
+    else:
+        found = _known(view, workspace, answers)
+        answers.end()
+    if "btq:" in file.text:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
 
-        suppressions = Suppressions(view.file)
+        suppressions = Suppressions(file)
         found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
-    found = list(configured(workspace.project, shown_on_origins(workspace, path, found)))
+    if workspace.origins:
+        from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
+
+        found = shown_on_origins(workspace, path, found)
+    found = list(configured(workspace.project, found))
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
 
 
-def _on_sound_lines(found: list[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
+def _found(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """What the checks find in an entry."""
+    return (diagnostic for each in _checks_of(entry) for diagnostic in each(view, entry))
+
+
+def _told(view: View, entry: Entry, found: Iterable[Diagnostic], workspace: Workspace) -> list[Diagnostic]:
+    """All that is to be told of an entry, as it counts in the file."""
+    if entry.diagnostics:
+        found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
+    return [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in found]
+
+
+def _known(view: View, workspace: Workspace, answers: Answers) -> list[Diagnostic]:
+    """All that is to be told of the file's entries, from what is kept of each; most have nothing."""
+    file = workspace.files[view.path]
+    told: list[Diagnostic] = []
+    before, answers.told = answers.told, {}
+    found = answers.conclude_each(view, _kept, file.facts.values())
+    for entry, facts, known in zip(file.parsed.entries, file.facts.values(), found, strict=True):
+        if not (known.diagnostics or known.restless or entry.diagnostics):
+            continue
+        same = before.get(facts)
+        moves = known.restless or known.has_places_elsewhere
+        if same is None or same[0] is not known or same[1] != entry.start or moves:
+            restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
+            same = known, entry.start, _told(view, entry, (*known.diagnostics, *restless), workspace)
+        answers.told[facts] = same
+        told += same[2]
+    return told
+
+
+def _kept(view: View, facts: Facts) -> Found:
+    """What the checks find in an item, as far as they say what they ask for."""
+    entry = view.entry(facts)
+    found: list[Diagnostic] = []
+    restless: list[Check] = []
+    for each in _checks_of(entry):
+        diagnostics = view.watched(each, entry)
+        if diagnostics is None:
+            restless.append(each)
+        else:
+            found += diagnostics
+    places = (each.place for diagnostic in found for each in diagnostic.related)
+    changed = (change.place for diagnostic in found for fix in diagnostic.fixes for change in fix.changes)
+    return Found(tuple(found), tuple(restless), any(place.anchor is not None for place in chain(places, changed)))
+
+
+def _checks_of(entry: Entry) -> tuple[Check, ...]:
+    checks = CHECKS.get(type(entry.item), ())
+    if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
+        checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
+    return checks
+
+
+def _on_sound_lines(found: Iterable[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
     """What is not on a line with a syntax error: what a line means is not known before it can be read."""
     broken = {_line(text, entry, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
     return (each for each in found if _line(text, entry, each) not in broken)
@@ -291,34 +328,6 @@ def _on_sound_lines(found: list[Diagnostic], entry: Entry, text: str) -> Iterato
 
 def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
     return line_start(text, entry.start, entry.start + diagnostic.span.start)
-
-
-def _can_be_kept(entry: Entry) -> bool:
-    """A tree without a name is told what else stands in the file."""
-    return not isinstance(entry.item, Include) and not (isinstance(entry.item, Tree) and entry.item.name is None)
-
-
-def _narrow(view: View, entry: Entry, checks: tuple[Check, ...], before: Kept | None) -> Kept:
-    """What the narrow checks find in an entry, found anew only where an answer has changed."""
-    project = view.workspace.project
-    view.noted = None
-    if (
-        before is not None
-        and before.project is project
-        and before.entry.diagnostics is entry.diagnostics
-        and all(_is_same(view.answer(question), answer) for question, answer in before.noted.items())
-    ):
-        return before
-    noted: Noted = {}
-    view.noted = noted
-    found = tuple([diagnostic for each in checks if each in _NARROW for diagnostic in each(view, entry)])
-    if any(change.place.path is not None for each in found for fix in each.fixes for change in fix.changes):
-        noted["place", Kind.TREE, ""] = ()  # it moves without being asked for, so this holds once
-    return Kept(entry, project, found, noted)
-
-
-def _is_same(now: object, before: object) -> bool:
-    return now is before or (not isinstance(now, Symbol) and now == before)
 
 
 def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:

@@ -34,8 +34,8 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
 
 def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
     """A Timeout shorter than the shortest way to its child's success."""
-    for node in demanded.requirements.nodes.all:
-        limit = port_seconds(node, "msec") if node.tag == "Timeout" and len(node.children) == 1 else None
+    for node in demanded.tree.timeouts:
+        limit = port_seconds(node, "msec") if len(node.children) == 1 else None
         if not limit or node.path != demanded.view.path:
             continue
         (child,) = node.children

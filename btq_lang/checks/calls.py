@@ -5,8 +5,47 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 
+from btq_lang.checks import lookups
 from btq_lang.symbols import Kind, Use
-from btq_lang.workspace import Scope, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from btq_lang.checks.view import View
+
+# The trees that a tree runs, and those that it means to: where `SubTree` is missing.
+Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
+
+
+def calls(view: View) -> Calls:
+    """Which tree runs which, of all trees in scope."""
+    return Calls({name: view.ask(_runs, name) for name in view.scope.names(Kind.TREE)})
+
+
+def callers(view: View, tree: str) -> tuple[str, ...]:
+    """The other trees that run a tree, or mean to."""
+    return view.ask(calls).callers(tree)
+
+
+def is_reached(view: View, tree: str, main: str) -> bool:
+    """Whether the mission runs a tree, directly or not, or means to."""
+    return tree in view.ask(calls).reached_from(main)
+
+
+def circle(view: View, tree: str) -> tuple[str, ...] | None:
+    """The shortest way from a tree back to itself; see Calls.circle."""
+    return view.ask(calls).circle(tree)
+
+
+def is_circular(view: View, tree: str, called: str) -> bool:
+    """Whether a tree that another one runs leads back to that."""
+    return view.ask(calls).are_in_circle(tree, called)
+
+
+def has_gaps(view: View) -> bool:
+    """Whether a SubTree names a tree that nobody knows, so that what is reached cannot be told."""
+    return not view.scope.complete or view.ask(calls).has_gaps
 
 
 class Calls:
@@ -16,19 +55,18 @@ class Calls:
         has_gaps: a SubTree names a tree that nobody knows, so that what is reached cannot be told.
     """
 
-    def __init__(self, workspace: Workspace, scope: Scope) -> None:
-        self._called: dict[str, tuple[str, ...]] = {}
-        self._meant: dict[str, list[str]] = {}
-        trees = frozenset(scope.names(Kind.TREE))
-        for name in scope.names(Kind.TREE):
-            definition = scope.find(Kind.TREE, name)
-            assert definition is not None, "the scope has just named it"
-            uses = workspace.files[definition.path].summary_of(definition.entry).uses
-            self._called[name] = tuple(dict.fromkeys(use.name for use in uses if use.kind is Kind.TREE))
-            self._meant[name] = [use for use in map(_meant, uses) if use in trees]
-        self.has_gaps = not scope.complete or any(
-            called not in trees for names in self._called.values() for called in names
+    def __init__(self, runs: Mapping[str, Runs]) -> None:
+        self._called = {name: called for name, (called, _) in runs.items()}
+        self._meant = {name: meant for name, (_, meant) in runs.items()}
+        self.has_gaps = any(name not in runs for names in self._called.values() for name in names)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both say the same of every tree, in the same order."""
+        return isinstance(other, Calls) and (
+            (self._called, self._meant, [*self._called]) == (other._called, other._meant, [*other._called])
         )
+
+    __hash__ = None  # type: ignore[assignment]  # nobody looks for one
 
     def called_by(self, name: str) -> tuple[str, ...]:
         """The trees that a tree runs, in the order of their SubTrees; none for an unknown tree."""
@@ -72,6 +110,10 @@ class Calls:
                     waiting.append(called)
         return None
 
+    def are_in_circle(self, tree: str, called: str) -> bool:
+        """Whether two trees run each other, directly or not."""
+        return any(tree in knot and called in knot for knot in self._knots.values())
+
     @cached_property
     def _reached(self) -> dict[str, frozenset[str]]:
         return {}
@@ -85,8 +127,8 @@ class Calls:
         return _turned(self._meant)
 
     @cached_property
-    def _knots(self) -> dict[str, frozenset[str]]:
-        """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
+    def callees_first(self) -> tuple[str, ...]:
+        """The trees, each behind those that it runs, but for circles."""
         finished: list[str] = []
         seen: set[str] = set()
         for start in self._called:
@@ -101,6 +143,12 @@ class Calls:
                 else:
                     finished.append(tree)
                     stack.pop()
+        return tuple(finished)
+
+    @cached_property
+    def _knots(self) -> dict[str, frozenset[str]]:
+        """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
+        finished = self.callees_first
         knots: dict[str, frozenset[str]] = {}
         place = {name: number for number, name in enumerate(self._called)}
         left_over = set(finished)
@@ -125,6 +173,13 @@ def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
             if tree != name:
                 turned.setdefault(tree, []).append(name)
     return turned
+
+
+def _runs(view: View, tree: str) -> Runs:
+    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
+    uses = facts.summary.uses if facts is not None else ()
+    called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
+    return tuple(called), tuple([name for name in map(_meant, uses) if name and view.defines(Kind.TREE, name)])
 
 
 def _meant(use: Use) -> str:

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
-from btq_lang.checks.view import SeenNode, View, misspelt_clause
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
 from btq_lang.text import Span
 
-_INTEGER = re.compile(r"-?[0-9]{1,18}")
+_INTEGER = r"-?[0-9]{1,18}"
 _THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 
 
@@ -33,7 +34,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if any(misspelt_clause(child) for child in seen.node.nodes):
             continue  # of a child that is meant for a clause, that is told
         if count == 0 and entry.diagnostics:
-            after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.file.text)
+            after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
             if any(seen.node.start <= problem.span.start < after for problem in entry.diagnostics):
                 continue  # its child may be what could not be read
         notes: tuple[str, ...] = ()
@@ -111,7 +112,7 @@ def _is_switch_by_children(seen: SeenNode) -> bool:
 
 
 def _integer(word: Word | None) -> int | None:
-    return int(word.text) if word is not None and _INTEGER.fullmatch(word.text) else None
+    return int(word.text) if word is not None and re.fullmatch(_INTEGER, word.text) else None
 
 
 def _called(seen: SeenNode) -> str:

@@ -7,7 +7,20 @@ from collections.abc import Iterator
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Clause, Confidence, Entry, Goal, How, Odds, OnViolation, Requirement, Window, Word, walk
+from btq_lang.syntax import (
+    Clause,
+    Confidence,
+    Entry,
+    Goal,
+    How,
+    NodeClause,
+    Odds,
+    OnViolation,
+    Requirement,
+    Window,
+    Word,
+    walk,
+)
 from btq_lang.text import Span
 
 _ONCE: dict[type, str] = {
@@ -22,7 +35,7 @@ _ONCE: dict[type, str] = {
 
 def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A second clause of a kind of which the first counts; one that says the same can go."""
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
             continue
@@ -34,7 +47,7 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A confidence, or a number of experiments, where nothing is said of how often the requirement is to hold."""
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
             continue
@@ -55,7 +68,7 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A parameter that no clause of its requirement names, so that its value changes nothing."""
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or not requirement.parameters:
             continue
@@ -69,7 +82,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diagnostic:
-    text = view.file.text[entry.start :]
+    text = view.text[entry.start :]
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
     removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
     return Diagnostic(
@@ -78,13 +91,13 @@ def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diag
         f"the requirement says {_ONCE[type(clause)]} already: `{said}`",
         related=(Related(Place(Span(counts.start, counts.end)), "this one counts"),),
         fixes=tuple(
-            replace_fix(f"Remove `{words}`", _with_blanks(text, each), "", safe=said == again)
+            replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=said == again)
             for words, each in removals
         ),
     )
 
 
-def _with_blanks(text: str, clause: Clause) -> Span:
+def with_blanks(text: str, clause: Clause | NodeClause) -> Span:
     """A clause with the blanks that would be left over, and with its line where nothing else stands there."""
     start, end = clause.start, clause.end
     while start and text[start - 1] in " \t":

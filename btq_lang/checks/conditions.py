@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.symbols import Kind, requirements_at
-from btq_lang.syntax import Context, Entry, Operand, Requirement, Tree, walk
+from btq_lang.syntax import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.tokens import NAME
 
 
@@ -34,15 +34,23 @@ def _operands(view: View, entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
         clauses = (item.clauses, *(seen.node.clauses for seen in view.nodes(entry) if seen.node.clauses))
-        roots: Iterable[object] = (requirement for each in clauses for requirement in requirements_at(each))
+        roots: Iterable[Requirement | ReqRef | Context] = (
+            requirement for each in clauses for requirement in requirements_at(each)
+        )
     elif isinstance(item, Requirement | Context):
         roots = (item,)
     else:
         return
+    text = view.text
     for root in roots:
         # Else a requirement is words: its name, its quality, its text.
-        parts = (root.parameters, root.clauses) if isinstance(root, Requirement) else root
-        for part in walk(parts):
+        parts: tuple[object, ...] = root.arguments if isinstance(root, ReqRef) else ()
+        clauses_of: tuple[Clause | Context, ...] = (root,) if isinstance(root, Context) else ()
+        if isinstance(root, Requirement):
+            parts, clauses_of = root.parameters, root.clauses
+        # Nearly all clauses are without a `-`, and need not be looked at word by word.
+        minus = [each for each in clauses_of if "-" in text[entry.start + each.start : entry.start + each.end]]
+        for part in walk((*parts, *minus)):
             if isinstance(part, Operand):
                 yield part
 

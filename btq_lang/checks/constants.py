@@ -19,7 +19,7 @@ _TYPED_SINCE = "4.9.1"
 
 def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
-    if not at_least(view.workspace.project.target, _TYPED_SINCE):
+    if not at_least(view.project.target, _TYPED_SINCE):
         return
     for seen in view.nodes(entry):
         if not seen.is_subtree or seen.node.id is None:
@@ -40,7 +40,7 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
         return None
     if not is_port_name(port.text):
         return None
-    found = meetings(view.scope, view.workspace.project.target, tree.text, port.text)
+    found = meetings(view.scope, view.project.target, tree.text, port.text)
     return next((meeting for meeting in found if is_text(meeting.type)), None)
 
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.syntax import Entry, Word

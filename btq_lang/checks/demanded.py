@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import inf
 
 from btq_lang.checks.view import View
@@ -10,36 +10,77 @@ from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Term
-from btq_lang.requirements.model import Applied, Bounded, Claim, SourceNode, Span, Table, Value
+from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 from btq_lang.requirements.spans import node_of
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import Any, TypeAlias
+
+    from btq_lang.requirements.memory import Question
+    from btq_lang.requirements.trees import TreeNodes
 
 Found: TypeAlias = tuple[Place, Diagnostic]
 
 
+Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
+
+
 class Demanded:
-    """What is demanded in a file.
+    """What is demanded in a file.  Rules look at one tree after the other; what they want to know of other trees, they
+    ask, and it is noted.
 
     Attributes:
-        claims: all that hold for nodes and can be told of in this file: what is applied, the claim, the node (of a
-            span the one that takes as long), and where to tell of it.
+        files: those whose names the file can use.
         budgets: how long the nodes take if they all hold.
+        tree: the tree that is looked at.
+        claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
+            a span the one that takes as long), and where to tell of it.
+        noted: what was asked of other trees.
     """
+
+    tree: TreeNodes
+    claims: tuple[tuple[Applied, Claim, SourceNode, Place], ...]
 
     def __init__(self, view: View) -> None:
         assert view.requirements is not None, "the rules are asked only where there are requirements"
         assert view.budgets is not None, "there are budgets where there are requirements"
         self.view = view
+        self.files = [view.workspace.files[path] for path in view.workspace.scope(view.path).paths]
         self.requirements: Requirements = view.requirements
         self.budgets: Budgets = view.budgets
-        self.claims = tuple(_claims(view, self.requirements, self.budgets))
+        self.noted: dict[Question, object] = {}
+        self._answers: dict[Question, object] = {}
+
+    def look_at(self, tree: TreeNodes) -> None:
+        """What follows is about the nodes of this tree."""
+        self.tree = tree
+        self.claims = tuple(_claims(self.view, self.requirements.in_tree(tree), self.budgets))
+        for _, _, node, _ in self.claims:
+            if node.category == "SubTree":
+                self.ask((_root, node))  # budgets of it name the root
+
+    def ask(self, question: Question) -> Any:
+        """What is so outside of the tree: a function, called with this and with what it is asked about."""
+        answer = self.noted[question] = self.answer(question)
+        return answer
+
+    def answer(self, question: Question) -> object:
+        """What the answer is now."""
+        if question not in self._answers:
+            what, about = question
+            self._answers[question] = what(self, about)
+        return self._answers[question]
 
 
-def _claims(view: View, found: Requirements, budgets: Budgets) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
-    for applied in found.applied:
+def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:
+    return demanded.requirements.nodes.run_by(node)
+
+
+def _claims(
+    view: View, held: Iterable[Applied], budgets: Budgets
+) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
+    for applied in held:
         for claim in applied.requirement.claims:
             node = applied.node
             if isinstance(applied.subject, Span) and claim.verb == "takes":

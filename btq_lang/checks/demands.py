@@ -1,49 +1,116 @@
 """What is wrong with what requirements demand, seen from the nodes that they hold for.
 
 One invariant: a finding stands in the file that is checked: at the claim, or where the claim is somebody else's, at the
-reference that attaches it.  The rules are in modules by their subject; this one only brings them together.
+reference that attaches it.  The rules are in modules by their subject; this one only brings them together: what they
+find of the nodes of a tree is kept for as long as what they look at stays the same.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.syntax import Entry
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from btq_lang.checks.demanded import Demanded, Found, Guard
+    from btq_lang.requirements.model import Requirement
+    from btq_lang.requirements.trees import TreeNodes
+
+ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
+
 
 def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """All that these rules find in an entry."""
-    if view.requirements is not None:
-        yield from view.demands.get(id(entry.item), ())
+    yield from view.look_up_in(_all_demands, entry) or ()
 
 
-def all_demands(view: View) -> dict[int, list[Diagnostic]]:
+def _all_demands(view: View) -> ByItem:
     """What the rules find in the file, by the item that it stands in."""
-    from btq_lang.checks import budgets, limits, odds, signals, swallowing  # few files need them
-    from btq_lang.checks.demanded import Demanded
+    if view.requirements is None:
+        return {}
+    from btq_lang.checks.demanded import Demanded  # few files need it
+    from btq_lang.checks.signals import of_signals
 
-    held = Demanded(view)
-    found: dict[int, dict[Diagnostic, None]] = {}  # each once: it may hold for many nodes
-    for rule in (
+    demanded = Demanded(view)
+    memory = view.resolved
+    found: list[ByItem] = []
+    guards: list[Guard] = []
+    table = memory.table("demands of trees", demanded)
+    for tree in demanded.requirements.nodes.trees:
+        applied = demanded.requirements.in_tree(tree)
+        if applied or tree.timeouts:
+            made_of = demanded.budgets.in_tree(tree)  # another one where what is applied is another
+            known = table.take(tree, made_of) or table.put(tree, made_of, _of_tree(demanded, tree))
+            found.append(known[0])
+            guards += known[1]
+    table = memory.table("demands by themselves", demanded)
+    for requirement in demanded.requirements.all.values():
+        if requirement.goal is not None or requirement.window is not None:
+            of_itself = table.take(requirement)
+            found.append(
+                table.put(requirement, None, _of_requirement(view, requirement)) if of_itself is None else of_itself
+            )
+    found.append(_by_item(view, of_signals(demanded, guards, memory)))
+    return _together(found)
+
+
+def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
+    """What the rules find of the nodes of a tree, and the claims about them for which the engine reads signals."""
+    from btq_lang.checks import budgets, limits, odds, signals, swallowing  # as above
+
+    demanded.look_at(tree)
+    rules = (
         limits.limit_too_small,
         limits.limit_on_synchronous_node,
         limits.dead_bound,
         limits.outbid_bound,
-        limits.goal_beyond_bound,
         limits.attempts_mismatch,
         limits.contradicting_bounds,
         budgets.budget_exceeded,
         budgets.timeout_never_succeeds,
         odds.odds_beyond_children,
-        odds.window_too_small,
-        signals.signal_never_written,
-        signals.signal_of_text,
-        signals.signal_may_be_unset,
         swallowing.swallowed_failure,
-    ):
-        for place, diagnostic in rule(held):
-            if place.path == view.path:
-                found.setdefault(id(place.anchor), {})[diagnostic] = None
-    return {item: list(same) for item, same in found.items()}
+    )
+    found = [each for rule in rules for each in rule(demanded)]
+    return _by_item(demanded.view, found), list(signals.guards(demanded))
+
+
+def _of_requirement(view: View, requirement: Requirement) -> ByItem:
+    """What is wrong with a requirement, whatever it holds for."""
+    from btq_lang.checks import limits, odds  # as above
+
+    found = (*limits.goal_beyond_bound(view, requirement), *odds.window_too_small(requirement))
+    return _by_item(view, found)
+
+
+def _by_item(view: View, found: Iterable[Found]) -> ByItem:
+    by_item: ByItem = {}
+    for place, diagnostic in found:
+        if place.path == view.path:
+            by_item.setdefault(id(place.anchor), []).append(diagnostic)
+    return {item: _once([diagnostics]) for item, diagnostics in by_item.items()}
+
+
+def _together(found: list[ByItem]) -> ByItem:
+    """All of it, each once: a claim may hold for nodes of many trees."""
+    lists: dict[int, list[list[Diagnostic]]] = {}
+    for by_item in found:
+        for item, diagnostics in by_item.items():
+            lists.setdefault(item, []).append(diagnostics)
+    return {item: same[0] if len(same) == 1 else _once(same) for item, same in lists.items()}
+
+
+def _once(lists: list[list[Diagnostic]]) -> list[Diagnostic]:
+    """They are compared, for to hash one is to hash the whole items that its places stand in."""
+    known: dict[tuple[object, ...], list[Diagnostic]] = {}
+    for diagnostics in lists:
+        for each in diagnostics:
+            same = known.setdefault((each.rule, each.span, each.message), [])
+            if each not in same:
+                same.append(each)
+    return [each for same in known.values() for each in same]

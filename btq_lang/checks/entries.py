@@ -6,16 +6,20 @@ the robot's program does with entries, nor whether a name is right.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from btq_lang.checks import lookups
+from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
+from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import SeenNode, View
-from btq_lang.record import record
+from btq_lang.checks.view import View
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Pair, Port, Signal, Tree
+from btq_lang.syntax import Model, Pair, Port, Signal, Tree
 from btq_lang.text import Span
+from btq_lang.workspace import Facts
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -25,8 +29,7 @@ if TYPE_CHECKING:
 Name: TypeAlias = tuple[str, str]
 
 
-@record
-class Mention:
+class Mention(Record):
     """A place where a tree names an entry.
 
     Attributes:
@@ -46,9 +49,18 @@ class Mention:
     in_script: bool
 
 
-def mentions(view: View, entry: Entry) -> Iterator[Mention]:
-    """Every name of an entry in a tree."""
-    for seen in view.nodes(entry):
+def mentions(view: View, tree: Facts) -> tuple[Mention, ...]:
+    """Every name of an entry in a tree, in document order."""
+    return tuple(_mentions(view, tree))
+
+
+def blackboards(view: View) -> Blackboards:
+    """The entries of the trees in scope."""
+    return Blackboards(view)
+
+
+def _mentions(view: View, tree: Facts) -> Iterator[Mention]:
+    for seen in view.nodes_of(tree):
         for pair in seen.node.attributes:
             value = pair.value
             if value is None:
@@ -64,6 +76,31 @@ def mentions(view: View, entry: Entry) -> Iterator[Mention]:
                 yield Mention(value.text, value.span, seen, not creates, creates, creates, False)
 
 
+class Handling(Record):
+    """What a tree does with entries, by their names in it.
+
+    Attributes:
+        ports: those of its own ports.
+        touches: what is done, once for each mention.
+        gives: the trees it runs, with their ports and the entries that it gives to these.
+        shares: the trees that it gives all entries under their own names, but for some.
+    """
+
+    ports: tuple[str, ...]
+    touches: tuple[Touch, ...]
+    gives: tuple[tuple[str, str, str], ...]
+    shares: tuple[tuple[str, frozenset[str]], ...]
+
+
+class Touch(Record):
+    """What may happen to an entry in one place: see Mention."""
+
+    name: str
+    reads: bool
+    writes: bool
+    creates: bool
+
+
 class Blackboards:
     """The entries of the trees in scope.
 
@@ -74,19 +111,19 @@ class Blackboards:
     def __init__(self, view: View) -> None:
         self._view = view
         self._same: dict[Name, Name] = {}
-        self._uses: dict[Name, list[Mention]] = {}
+        self._uses: dict[Name, list[Touch]] = {}
         self._ports: set[Name] = set()
-        self._signals: set[Name] = set()
+        self._signals = view.ask(_signal_entries)
         self.root_names: dict[str, int] = {}
-        for tree in view.scope.names(Kind.TREE):
-            self._add(tree)
-        for signal in view.scope.names(Kind.SIGNAL):
-            self._add_signal(signal)
+        trees = {tree: view.ask(_handling, tree) for tree in view.scope.names(Kind.TREE)}
+        self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
+        for tree, handling in trees.items():
+            self._add(tree, handling, trees)
 
-    def of(self, tree: str, name: str) -> list[Mention]:
+    def of(self, tree: str, name: str) -> list[Touch]:
         """All that is done with an entry, wherever it is handed to."""
         if self._merged is None:
-            merged: dict[Name, list[Mention]] = {}
+            merged: dict[Name, list[Touch]] = {}
             for key, uses in self._uses.items():
                 merged.setdefault(self._first(key), []).extend(uses)
             self._merged = merged
@@ -113,46 +150,23 @@ class Blackboards:
 
     def is_root(self, tree: str) -> bool:
         """Whether the tree's own blackboard is that of the root."""
-        return not self._view.calls.callers(tree)
+        return tree in self._roots
 
-    _merged: dict[Name, list[Mention]] | None = None
+    _merged: dict[Name, list[Touch]] | None = None
 
-    def _add(self, tree: str) -> None:
-        definition = self._view.scope.find(Kind.TREE, tree)
-        if definition is None or not isinstance(target := definition.symbol.target, Tree):
-            return
-        model = self._view.scope.find(Kind.MODEL, tree)
-        ports = (
-            *target.ports,
-            *(model.symbol.target.ports if model and isinstance(model.symbol.target, Model) else ()),
-        )
-        self._ports.update(self.place(tree, port.name.text) for port in ports if port.name is not None)
-        for mention in self._view.mentions(definition.entry):
-            place = self.place(tree, mention.name)
-            self._uses.setdefault(place, []).append(mention)
+    def _add(self, tree: str, handling: Handling, trees: Mapping[str, Handling]) -> None:
+        self._ports.update(self.place(tree, port) for port in handling.ports)
+        for touch in handling.touches:
+            place = self.place(tree, touch.name)
+            self._uses.setdefault(place, []).append(touch)
             if not place[0]:
                 self.root_names[place[1]] = self.root_names.get(place[1], 0) + 1
-        for seen in self._view.nodes(definition.entry):
-            if seen.is_subtree and seen.node.id is not None:
-                self._hand_on(tree, seen, seen.node.id.text)
-
-    def _hand_on(self, tree: str, seen: SeenNode, below: str) -> None:
-        given = {pair.key.text for pair in seen.node.attributes}
-        for pair in seen.node.attributes:
-            name = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
-            if name is not None:
-                self._join(self.place(tree, name), (below, pair.key.text))
-        definition = self._view.scope.find(Kind.TREE, below) if remaps_all(seen) else None
-        if definition is not None:
-            for mention in self._view.mentions(definition.entry):
-                if mention.name not in given and mention.name[:1] not in ("_", "@"):
-                    self._join(self.place(tree, mention.name), (below, mention.name))
-
-    def _add_signal(self, name: str) -> None:
-        definition = self._view.scope.find(Kind.SIGNAL, name)
-        signal = definition.symbol.target if definition is not None else None
-        if isinstance(signal, Signal) and signal.source is not None:
-            self._signals.add(("", signal.source.text.strip("{}").removeprefix("@")))
+        for below, port, name in handling.gives:
+            self._join(self.place(tree, name), (below, port))
+        for below, given in handling.shares:
+            for name in [touch.name for touch in trees[below].touches] if below in trees else ():
+                if name not in given and name[:1] not in ("_", "@"):
+                    self._join(self.place(tree, name), (below, name))
 
     def _join(self, one: Name, other: Name) -> None:
         first, second = self._first(one), self._first(other)
@@ -165,12 +179,45 @@ class Blackboards:
         return name
 
 
+def _handling(view: View, tree: str) -> Handling:
+    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
+    if facts is None or not isinstance(facts.item, Tree):
+        return Handling((), (), (), ())
+    model = view.scope.find(Kind.MODEL, tree)
+    declared = model.symbol.target.ports if model is not None and isinstance(model.symbol.target, Model) else ()
+    gives: list[tuple[str, str, str]] = []
+    shares: list[tuple[str, frozenset[str]]] = []
+    for seen in view.nodes_of(facts):
+        if not seen.is_subtree or seen.node.id is None:
+            continue
+        below = seen.node.id.text
+        for pair in seen.node.attributes:
+            name = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
+            if name is not None:
+                gives.append((below, pair.key.text, name))
+        if remaps_all(seen):
+            shares.append((below, frozenset([pair.key.text for pair in seen.node.attributes])))
+    return Handling(
+        tuple([port.name.text for port in (*facts.item.ports, *declared) if port.name is not None]),
+        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, facts)]),
+        tuple(gives),
+        tuple(shares),
+    )
+
+
+def _signal_entries(view: View) -> frozenset[Name]:
+    """The entries that signals are read from."""
+    found = [view.scope.find(Kind.SIGNAL, name) for name in view.scope.names(Kind.SIGNAL)]
+    signals = [each.symbol.target for each in found if each is not None]
+    sources = [each.source for each in signals if isinstance(each, Signal) and each.source is not None]
+    return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
+
+
 def _use(view: View, seen: SeenNode, pair: Pair) -> tuple[bool, bool, bool]:
     """Whether a port reads, writes and makes the entry that it is given."""
     key = pair.key.text
     if seen.is_subtree:
-        definition = view.scope.find(Kind.TREE, seen.node.id.text) if seen.node.id is not None else None
-        unknown = definition is None
+        unknown = seen.node.id is None or not view.defines(Kind.TREE, seen.node.id.text)
         return unknown, unknown, unknown
     direction: str | None = None
     if seen.kind is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator
 
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.rules import Severity
@@ -25,7 +26,11 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     fixes = tuple(
         replace_fix(f"Replace it by `{other}`", include.path.span, quote(other)) for other in _meant(view, path)
     )
-    places = ", ".join(f"`{place}`" for place in (folder or ".", *view.workspace.project.include_paths))
+    project = view.project
+    places = ", ".join(
+        f"`{place}`{' (no folder)' if place in project.lost_paths else ''}"
+        for place in (folder or ".", *project.include_paths)
+    )
     yield Diagnostic(
         "missing-include",
         include.path.span,
@@ -91,20 +96,8 @@ def _errors(file: File) -> list[tuple[Place | None, str]]:
 def include_fix(view: View, path: str) -> Fix:
     """Include another file, behind the includes that are there."""
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
-    at, margin = behind_includes(view)
+    at, margin = view.look_up(lookups.head)
     return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), f"{margin}include {quote(shown)}\n"),))
-
-
-def behind_includes(view: View) -> tuple[int, str]:
-    """Where a line may be put in that belongs to the head of a file, and what it is indented with."""
-    text = view.file.text
-    includes = [entry for entry in view.file.parsed.entries if isinstance(entry.item, Include)]
-    if includes:
-        last = includes[-1]
-        at = text.find("\n", last.start + last.item.end) + 1
-        if at:
-            return at, text[last.start : last.start + last.item.start]
-    return (1 if text.startswith("\ufeff") else 0), ""
 
 
 def _from_ros_package(include: Include) -> bool:

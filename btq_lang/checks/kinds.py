@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
-from btq_lang.checks.view import SeenNode, View, misspelt_clause
+from btq_lang.checks import lookups
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -17,6 +19,8 @@ from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.text import Span
+from btq_lang.tokens import CATEGORIES
+from btq_lang.workspace import Facts
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -46,10 +50,14 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
         elif name is None:
             continue
-        elif view.scope.find(Kind.TREE, name.text) is not None:
+        elif view.defines(Kind.TREE, name.text):
             yield _tree_as_node(view, seen, name)
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
             continue  # no node of the engine, which is told
+        elif (category := _category_meant(seen)) is not None:
+            fix = replace_fix(f"Replace `{name.text}` by `{category}`", name.span, category)
+            message = f"`{name.text}` is a node here: did you mean `{category}`?"
+            yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, entry, seen, name)
 
@@ -74,7 +82,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A built-in that a version which the project is for does not have."""
-    project = view.workspace.project
+    project = view.project
     for seen in view.nodes(entry):
         if seen.kind is None or seen.node.id is None:
             continue
@@ -92,16 +100,25 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A mission of many nodes with ports and not one model: an include may be forgotten, and nothing says so."""
-    if view.is_xml or not view.trees or entry is not view.trees[0] or view.scope.names(Kind.MODEL):
+    if view.is_xml or not view.is_first_tree(entry) or view.has_names(Kind.MODEL):
         return
-    nodes = [seen for tree in view.trees for seen in view.nodes(tree)] if view.scope.complete and view.is_read else []
-    given = dict.fromkeys(seen.node.head.text for seen in nodes if _gives_ports(seen))
+    given = view.ask(_given_ports) if view.scope.complete and view.is_read else ()
     own = view.nodes(entry)
     if own and len(given) >= _MANY:
-        shown = ", ".join(f"`{name}`" for name in tuple(given)[:3])
+        shown = ", ".join(f"`{name}`" for name in given[:3])
         message = f"no node has a model here, so the ports of {len(given)} are not checked: {shown} …"
         notes = ("declare them, `Action …` with its ports, or include the file that does",)
         yield Diagnostic("no-models", own[0].node.head.span, message, notes=notes)
+
+
+def _given_ports(view: View) -> tuple[str, ...]:
+    """The custom nodes of the file that are given ports."""
+    found = (view.ask(_given_ports_in, tree) for tree in view.look_up(lookups.trees))
+    return tuple(dict.fromkeys(name for names in found for name in names))
+
+
+def _given_ports_in(view: View, tree: Facts) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(seen.node.head.text for seen in view.nodes_of(tree) if _gives_ports(seen)))
 
 
 def _gives_ports(seen: SeenNode) -> bool:
@@ -130,6 +147,12 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node called `keeps`."""
     for seen in view.nodes(entry):
+        for pair in seen.node.attributes:
+            if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
+                message = f"`{pair.key.raw} =` is a port of {seen.shown} here"
+                note = f"what a node {pair.key.raw} stands behind the word: `{pair.key.raw} {pair.value.raw}`"
+                fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
+                yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
         name = seen.node.kind
         meant = misspelt_clause(seen.node)
         if name is None or not (meant or _is_clause(seen)) or seen.definition:
@@ -156,7 +179,7 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if not _is_same_model(first.symbol, second.symbol):
             both = (view.defined_at(first, "the first one, which counts"), view.defined_at(second, "the second one"))
             yield _second(second.symbol, include_place(entry), both, "this file brings a second definition of")
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind in _DEFINED_ONCE else None
         if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
             one = (view.defined_at(counts, "the first one, which counts"),)
@@ -213,8 +236,8 @@ def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
 
 def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
     """What makes a file for version 4 of XML for version 3, where that is what a word comes from."""
-    origin = view.file.origin
-    if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
+    origin = view.look_up(lookups.origin)
+    if origin is None or known.word not in _TRANSLATED or re.search(_SAYS_VERSION_4, origin.text):
         return ()
     return ("`btq import` makes a .btq file of it that says this as version 4 does",)
 
@@ -233,19 +256,28 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
         if not likely:
             return
-    elif not likely and view.first_nodes.get(name.text) is not seen.node:
+    elif not likely and not view.is_first_use(entry, seen.node, name.text):
         return  # what is missing is one model, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
         model = f"{likely_category(seen)} {written(name.text)}"
-        margin = view.file.text[entry.start : entry.start + entry.item.start]
+        margin = view.text[entry.start : entry.start + entry.item.start]
         fixes = (Fix(f"Declare it: `{model}`", (Change(Place(Span(0, 0)), f"{margin}{model}\n"),)),)
         shortest = f"a line `{model}`"
-        if view.file.origin is not None:
+        if view.is_xml:
             shortest = f'`<{likely_category(seen)} ID="{name.text}"/>` in <TreeNodesModel>'
         notes = (f"the other nodes here have models; the shortest is {shortest}",)
     yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
+
+
+def _category_meant(seen: SeenNode) -> str | None:
+    """`action Lower`: a word for the node's category, not written as one."""
+    kind = seen.node.kind
+    if kind is None or kind.quoted or seen.node.category is not None or seen.node.label is None:
+        return None
+    meant = kind.raw.capitalize()
+    return meant if meant in CATEGORIES and meant != kind.raw else None
 
 
 def _is_slip(word: str, meant: str) -> bool:
@@ -281,7 +313,7 @@ def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
 
 def _is_refused(view: View, seen: SeenNode, name: Word) -> bool:
     """Whether the name itself is the mistake, which is told."""
-    target = view.workspace.project.target
+    target = view.project.target
     return seen.node.category is None and model_name_problem(name.text, target) is not None
 
 
@@ -322,4 +354,4 @@ _MANY: Final = 5
 
 # Words of version 3 that an import says in another way.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
-_SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")
+_SAYS_VERSION_4: Final = r"""BTCPP_format\s*=\s*["']\s*4"""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import inf
 
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
@@ -100,29 +101,26 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                 yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
 
 
-def goal_beyond_bound(demanded: Demanded) -> Iterator[Found]:
+def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
     """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
-    for requirement in demanded.requirements.all.values():
-        goal = requirement.goal
-        if not isinstance(goal, Value) or requirement.path != demanded.view.path:
+    goal = requirement.goal
+    clause = _goal_clause(view, requirement) if isinstance(goal, Value) and requirement.path == view.path else None
+    if clause is None or not isinstance(goal, Value):
+        return
+    for claim in requirement.claims:
+        most, least = highest(claim), lowest(claim)
+        of = _dimension(claim)
+        if of is None or of != goal.unit.dimension:
             continue
-        clause = _goal_clause(demanded, requirement)
-        if clause is None:
+        if most is not None and goal.si > most[0]:
+            message = f"the goal `{goal.text}` is worse than the bound, which is at most `{most[1]}`"
+        elif least is not None and most is None and goal.si < least[0]:
+            message = f"the goal `{goal.text}` is worse than the bound, which is at least `{least[1]}`"
+        else:
             continue
-        for claim in requirement.claims:
-            most, least = highest(claim), lowest(claim)
-            of = _dimension(claim)
-            if of is None or of != goal.unit.dimension:
-                continue
-            if most is not None and goal.si > most[0]:
-                message = f"the goal `{goal.text}` is worse than the bound, which is at most `{most[1]}`"
-            elif least is not None and most is None and goal.si < least[0]:
-                message = f"the goal `{goal.text}` is worse than the bound, which is at least `{least[1]}`"
-            else:
-                continue
-            place = Place(Span(clause.start, clause.end), requirement.path, requirement.entry.item)
-            related = (Related(claim.place, "the bound"),)
-            yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
+        place = Place(Span(clause.start, clause.end), requirement.path, requirement.item)
+        related = (Related(claim.place, "the bound"),)
+        yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
 
 
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
@@ -229,9 +227,9 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
     return []
 
 
-def _goal_clause(demanded: Demanded, requirement: Requirement) -> Goal | None:
+def _goal_clause(view: View, requirement: Requirement) -> Goal | None:
     """The clause that a goal stands in."""
-    for symbol in demanded.view.file.summary_of(requirement.entry).symbols:
+    for symbol in view.file.facts[id(requirement.item)].summary.symbols:
         written = symbol.target
         if symbol.span == requirement.place.span and isinstance(written, WrittenRequirement):
             return next((clause for clause in written.clauses if isinstance(clause, Goal)), None)

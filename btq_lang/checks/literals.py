@@ -6,26 +6,26 @@ import re
 from collections.abc import Iterator
 from math import isfinite
 
-from btq_lang.catalog.literals import check_literal
+from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
 from btq_lang.checks.kinds import written
-from btq_lang.checks.view import SeenNode, View, subtree_ports
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
 from btq_lang.units import convert, dimension_name, parse_unit
 
-_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_NUMBER = r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?"
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
-@record
-class _Target:
+class _Target(Record):
     """What a value goes to.
 
     Attributes:
@@ -43,7 +43,7 @@ class _Target:
 
 def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A literal that the port's type refuses, or whose tail the engine drops."""
-    version = view.workspace.project.target
+    version = view.project.target
     for target, value in _values(view, entry):
         if target.is_output:
             continue
@@ -51,6 +51,10 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _converted(target, value, version)
             continue
         text = value.text
+        if target.port == "_autoremap" and is_pointer(text):
+            note = "the engine reads this attribute before there are entries: write true, or leave it out"
+            yield Diagnostic("invalid-literal", value.span, f"`{text}` is no bool here", notes=(note,))
+            continue
         problem = check_literal(target.type, text, version)
         if problem is None:
             continue
@@ -78,7 +82,7 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         unit = quantity[1]
         wanted = parse_unit(target.unit) if target.unit is not None else None
         if wanted is None:
-            as_text = check_literal(target.type, value.raw, view.workspace.project.target) is None
+            as_text = check_literal(target.type, value.raw, view.project.target) is None
             # No fix: without its unit the number may mean something else, and not every node reads the text.
             yield Diagnostic(
                 "quantity-on-unitless-port",
@@ -126,7 +130,9 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
             continue
         for pair in seen.node.attributes:
             value = pair.value
-            if value is None or value.kind == BRACED or kind not in (None, value.kind):
+            if value is None or kind not in (None, value.kind):
+                continue
+            if value.kind == BRACED and pair.key.text != "_autoremap":
                 continue
             if (target := _target(view, seen, pair, value)) is not None:
                 yield target, value
@@ -147,7 +153,7 @@ def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | No
     builtin = BUILTINS["SubTree"] if seen.is_subtree and key == "_autoremap" else seen.kind
     if builtin is not None:
         port = builtin.port(key)
-        return _of_builtin(port, view.workspace.project.target) if port is not None else None
+        return _of_builtin(port, view.project.target) if port is not None else None
     ports = subtree_ports(view, seen) if seen.is_subtree else seen.model.ports if seen.model else ()
     declared = next((port for port in ports if port.name is not None and port.name.text == key), None)
     if declared is not None:
@@ -193,7 +199,7 @@ def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, 
 
 
 def _as_value(text: str) -> str:
-    return text if _NUMBER.fullmatch(text) else written(text)
+    return text if re.fullmatch(_NUMBER, text) else written(text)
 
 
 def _shown(text: str) -> str:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 
-from btq_lang.checks.entries import Blackboards, Mention
+from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.near import distance
@@ -22,15 +23,17 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     another entry has nearly the same name."""
     tree = entry.item
     mentions = view.mentions(entry)
-    if not isinstance(tree, Tree) or tree.name is None or not mentions or not view.scope.complete:
+    if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return
     if any(isinstance(child, Verbatim) for node in view.nodes(entry) for child in node.node.children):
         return  # XML that nobody reads here may name any entry
     yield from _misspelt_booleans(mentions, view, tree.name.text)
     counts = Counter(mention.name for mention in mentions)
+    if min(counts.values()) > 1:
+        return
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
     if any(mention.name[:1] == "@" for mention in mentions):
-        others |= dict.fromkeys(f"@{name}" for name in view.blackboards.root_names)
+        others |= dict.fromkeys(f"@{name}" for name in view.ask(_root_names))
     alike = _Alike(others)
     told: set[str] = set()
     for mention in mentions:
@@ -39,7 +42,7 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for meant in alike.to(mention.name):
             if meant in told or _stand_together(mentions, mention, meant):
                 continue
-            if _is_meant(view.blackboards, tree.name.text, mention, meant, counts):
+            if view.ask(_is_meant, tree.name.text, mention.name, meant, counts[meant] > 0) and view.scope.complete:
                 told.add(mention.name)
                 yield _told(mentions, mention, meant, counts[meant] == 1)
                 break
@@ -51,7 +54,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
         meant = mention.name.lower()
         if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
             continue
-        if not any(each.creates for each in view.blackboards.of(tree, mention.name)):
+        if not view.ask(_is_created, tree, mention.name) and view.scope.complete:
             message = f"in a script `{mention.name}` is the name of an entry: the engine's word is `{meant}`"
             fix = replace_fix(f"Write `{meant}`", mention.span, meant)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
@@ -68,9 +71,23 @@ def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -
     )
 
 
-def _is_meant(boards: Blackboards, tree: str, mention: Mention, meant: str, counts: Counter[str]) -> bool:
-    """Whether what happens to one entry leads nowhere, and to the other one where it would."""
-    name = mention.name
+def _root_names(view: View) -> frozenset[str]:
+    """The names of the root blackboard that the trees in scope mention."""
+    return frozenset(view.ask(blackboards).root_names)
+
+
+def _is_created(view: View, tree: str, name: str) -> bool:
+    """Whether anything makes an entry."""
+    return any(each.creates for each in view.ask(blackboards).of(tree, name))
+
+
+def _is_meant(view: View, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
+    """Whether what happens to one entry leads nowhere, and to the other one where it would.
+
+    Args:
+        is_mentioned: the tree names the other one not only as a port.
+    """
+    boards = view.ask(blackboards)
     if boards.is_given(tree, name) or boards.is_one(tree, name, meant):
         return False
     place = boards.place(tree, name)
@@ -85,7 +102,7 @@ def _is_meant(boards: Blackboards, tree: str, mention: Mention, meant: str, coun
     if not any(each.reads for each in uses):  # written only
         is_told = len(others) == 1 and not others[0].writes  # there, where it is read
         return is_port or (any(each.reads for each in others) and not is_told)
-    return len(uses) == 1 and (is_port or counts[meant] > 0)
+    return len(uses) == 1 and (is_port or is_mentioned)
 
 
 def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: bool) -> Diagnostic:
@@ -121,6 +138,7 @@ class _Alike:
         return sorted(likely, key=lambda other: (distance(name, other), other))
 
 
+@lru_cache(1_000)  # the same names are in tree after tree
 def _is_slip(word: str, meant: str) -> bool:
     """Whether a name is so near another one that nobody would call two things so: `traget`, `batteryLevel`, `imgg`.
 
@@ -148,9 +166,10 @@ def _is_slip(word: str, meant: str) -> bool:
     return any(one != two and min(len(one), len(two)) > 5 for one, two in pieces)
 
 
-def _pieces(name: str) -> set[str]:
+@lru_cache(1_000)
+def _pieces(name: str) -> frozenset[str]:
     name = _folded(name)
-    return {name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))}
+    return frozenset((name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))))
 
 
 def _is_skeleton(word: str, meant: str) -> bool:

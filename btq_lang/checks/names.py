@@ -6,14 +6,16 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
+from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.placeholders import is_placeholder
 from btq_lang.record import replace
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Include, Model, Models, Tree, Word
+from btq_lang.syntax import Entry, Model, Models, Tree, Word
 from btq_lang.text import Span
 
 _UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
@@ -21,7 +23,7 @@ _UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names
 
 def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """The name of a tree, a node, an instance or a SubTree's port that the engine refuses at load."""
-    version = view.workspace.project.target
+    version = view.project.target
     item = entry.item
     if isinstance(item, Tree):
         if item.name is None:
@@ -69,28 +71,24 @@ def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator
     name = seen.node.id
     label = seen.node.name
     if name is not None and (reason := model_name_problem(name.text, version)):
-        if seen.is_subtree and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
+        if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
             yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
         elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
             yield _refused("node", name, reason, _explicit(seen, name))
     if label is not None and (reason := instance_name_problem(label.text, version)):
         yield _refused("instance", label, reason)
-    if label is not None and label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE):
-        main = view.main_tree
-        if main is not None and view.is_this(main, entry):
-            refused = _refused("instance", label, "it is empty, as that of the main tree is")
-            note = "`btq build` leaves it out"
-            yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
+    is_empty = label is not None and label.text == ""
+    if label is not None and is_empty and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
+        refused = _refused("instance", label, "it is empty, as that of the main tree is")
+        note = "`btq build` leaves it out"
+        yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
 
 
 def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
     """A tree without an ID: the engine takes it where nothing stands beside it."""
-    others = [
-        other.item
-        for other in view.file.parsed.entries
-        if isinstance(other.item, Tree | Model | Models | Include) and other.item is not tree
-    ]
-    if others and not any(problem.span.start <= tree.end for problem in entry.diagnostics):
+    if view.look_up(lookups.has_neighbours) and not any(
+        problem.span.start <= tree.end for problem in entry.diagnostics
+    ):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
         note = "the engine takes a tree without ID only if nothing else is in the file"
         yield Diagnostic("forbidden-name", span, "this tree has no ID: `BehaviorTree <ID>`", notes=(note,))

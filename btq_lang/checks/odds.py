@@ -8,7 +8,7 @@ from math import ceil, inf, log
 from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.model import Applied, Claim, Mission, SourceNode
+from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, SourceNode
 
 
 def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
@@ -36,32 +36,25 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         yield place, Diagnostic("odds-beyond-children", place.span, message, related=related, notes=notes)
 
 
-def window_too_small(demanded: Demanded) -> Iterator[Found]:
+def window_too_small(requirement: Requirement) -> Iterator[Found]:
     """A window in which even a run without any failure shows too little.
 
     Of n experiments that all succeed, the probability is at least (1 - c)^(1/n) with confidence c (Clopper, Pearson,
     "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
     """
-    for requirement in demanded.requirements.all.values():
-        odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
-        if requirement.path != demanded.view.path or odds is None or window is None or window.count is None:
-            continue
-        if confidence is None or not 0.0 < confidence < 1.0:
-            continue
-        needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
-        if needed <= window.count:
-            continue
-        reason = f"that takes {needed} without any failure" if needed < inf else "no number of them can"
-        yield (
-            window.place,
-            Diagnostic(
-                "window-too-small",
-                window.place.span,
-                f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
-                f"{_percent(confidence)}: {reason}",
-                related=(Related(odds.place, "what is to be shown"),),
-            ),
-        )
+    odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
+    if odds is None or window is None or window.count is None or confidence is None or not 0.0 < confidence < 1.0:
+        return
+    needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
+    if needed <= window.count:
+        return
+    reason = f"that takes {needed} without any failure" if needed < inf else "no number of them can"
+    message = (
+        f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
+        f"{_percent(confidence)}: {reason}"
+    )
+    related = (Related(odds.place, "what is to be shown"),)
+    yield window.place, Diagnostic("window-too-small", window.place.span, message, related=related)
 
 
 def _ensured(budgets: Budgets, claim: Claim, node: SourceNode) -> tuple[float, list[tuple[SourceNode, float]]] | None:

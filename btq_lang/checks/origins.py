@@ -17,8 +17,6 @@ from btq_lang.workspace import Workspace
 def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics of a file, with those of its XML as such, if it is XML."""
     foreign = workspace.origins
-    if not foreign:
-        return list(found)
     origin = foreign.get(path)
 
     def on_origin(span: Span, where: str | None) -> Span:

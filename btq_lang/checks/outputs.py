@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.checks.view import SeenNode, View, subtree_ports
+from btq_lang.checks import lookups
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
+from btq_lang.workspace import Facts
 
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -25,10 +28,10 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
         value = pair.value
         if value is None or not _is_literal(value):
             continue
-        problem = check_literal(type_, value.text, view.workspace.project.target)
+        problem = check_literal(type_, value.text, view.project.target)
         is_refused = problem is not None and problem.kind == "refused"
-        is_custom = not is_refused and view.named_output is not None
-        if is_custom and view.named_output is not pair:
+        is_custom = not is_refused and view.ask(_is_custom)
+        if is_custom and not _is_first_value(view, entry, pair):
             continue
         name = value.text if is_name(value.text) else pair.key.text
         fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
@@ -53,7 +56,11 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
     """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
     keep whatever they are given."""
-    for seen in view.nodes(entry):
+    return _outputs_in(view, view.nodes(entry))
+
+
+def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNode, Pair, str]]:
+    for seen in nodes:
         if not seen.node.attributes or is_placeholder(seen.node):
             continue
         types = _types(view, seen)
@@ -62,12 +69,27 @@ def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
                 yield seen, pair, type_
 
 
-def named_output(view: View) -> Pair | None:
-    """The first value for an output, in a file that gives values to outputs as a rule."""
-    given = [pair for entry in view.trees for _, pair, _ in outputs(view, entry) if pair.value is not None]
-    values = [pair for pair in given if pair.value is not None and _is_literal(pair.value)]
-    is_custom = len(values) > 2 and (len(values) > len(given) / 2 or len(values) > 9)
-    return values[0] if is_custom else None
+def _is_custom(view: View) -> bool:
+    """Whether the file gives values to outputs as a rule."""
+    counts = [view.ask(_counts, tree) for tree in view.look_up(lookups.trees)]
+    given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
+    return values > 2 and (values > given / 2 or values > 9)
+
+
+def _is_first_value(view: View, entry: Entry, pair: Pair) -> bool:
+    """Whether no output of the file before this one is given a value."""
+    values = (each for _, each, _ in outputs(view, entry) if each.value is not None and _is_literal(each.value))
+    return view.ask(_first_with_value) is view.facts(entry) and next(values, None) is pair
+
+
+def _first_with_value(view: View) -> Facts | None:
+    return next((tree for tree in view.look_up(lookups.trees) if view.ask(_counts, tree)[1]), None)
+
+
+def _counts(view: View, tree: Facts) -> tuple[int, int]:
+    """How many outputs a tree gives something to, and how many of them a value."""
+    given = [pair.value for _, pair, _ in _outputs_in(view, view.nodes_of(tree)) if pair.value is not None]
+    return len(given), sum(map(_is_literal, given))
 
 
 def _is_literal(value: Word) -> bool:

@@ -7,16 +7,19 @@ from functools import lru_cache
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks import lookups
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Node, Pair, Word, is_name, quote
+from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.workspace import Facts
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"
@@ -50,27 +53,48 @@ def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         legal = _id_of(name.text)
         taken = _taken(view, legal)
-        path, other_entry, other = view.placeholders.get(legal, (view.path, entry, name))
+        other = view.ask(_first_name, legal)
         if taken is not None:
             yield Diagnostic("placeholder-clash", name.span, f"`{name.text}` becomes the node ID `{legal}`, {taken}")
-        elif other.text != name.text:
+        elif other != name.text and (first := view.ask(_first_place, legal)) is not None:
             yield Diagnostic(
                 "placeholder-clash",
                 name.span,
-                f"`{other.text}` and `{name.text}` both become the node ID `{legal}`",
-                related=(Related(Place(other.span, path, other_entry.item), "the first one"),),
+                f"`{other}` and `{name.text}` both become the node ID `{legal}`",
+                related=(Related(first, "the first one"),),
             )
 
 
-def first_placeholders(view: View) -> dict[str, tuple[str, Entry, Word]]:
-    """The first placeholder in scope that becomes each ID: its file, its tree and its name."""
-    found: dict[str, tuple[str, Entry, Word]] = {}
-    for path in view.scope.paths:
-        for entry in view.workspace.files[path].parsed.entries:
-            for seen in view.nodes(entry):
-                if is_placeholder(seen.node) and (name := seen.node.name) is not None:
-                    found.setdefault(_id_of(name.text), (path, entry, name))
+def _first_name(view: View, legal: str) -> str | None:
+    """The name of the first placeholder in scope that becomes an ID."""
+    return view.ask(_first_names).get(legal)
+
+
+def _first_names(view: View) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for _, tree in reversed(view.look_up(lookups.trees_in_scope)):
+        found.update(view.ask(_names_in, tree))
     return found
+
+
+def _first_place(view: View, legal: str) -> Place | None:
+    """Where that placeholder's name stands."""
+    for path, tree in view.look_up(lookups.trees_in_scope):
+        if legal in view.ask(_names_in, tree):
+            name = next(name for name in _placeholders(tree) if _id_of(name.text) == legal)
+            return Place(name.span, path, tree.item)
+    return None
+
+
+def _names_in(_: View, tree: Facts) -> dict[str, str]:
+    """The IDs that the placeholders of a tree become, each with the name that the first of them has."""
+    return {_id_of(name.text): name.text for name in reversed([*_placeholders(tree)])}
+
+
+def _placeholders(tree: Facts) -> Iterator[Word]:
+    for node in tree.item.walk() if isinstance(tree.item, Tree) else ():
+        if is_placeholder(node) and (name := node.name) is not None:
+            yield name
 
 
 @lru_cache(10_000)
@@ -83,7 +107,7 @@ def _taken(view: View, name: str) -> str | None:
     """Why a placeholder cannot become a node of this ID."""
     if name in BUILTINS:
         return "which is a node of the engine"
-    return "which is the name of a tree" if view.scope.find(Kind.TREE, name) is not None else None
+    return "which is the name of a tree" if view.defines(Kind.TREE, name) else None
 
 
 def _short_form(view: View, entry: Entry, seen: SeenNode, name: str) -> Fix | None:
@@ -99,10 +123,10 @@ def _short_form(view: View, entry: Entry, seen: SeenNode, name: str) -> Fix | No
         head = f"{seen.category} {head}"
     if node.name.text != name:
         head = f"{head} {_as_label(node.name)}"
-    changes = _replace_head(view.file.text, entry.start, node, head)
+    changes = _replace_head(view.text, entry.start, node, head)
     if changes is None:
         return None
-    return Fix(f"Write `{head}`", changes, not view.scope.names(Kind.MODEL))
+    return Fix(f"Write `{head}`", changes, not view.has_names(Kind.MODEL))
 
 
 def _as_kind(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.checks.view import SeenNode
+from btq_lang.checks.seen import SeenNode
 
 
 def pointed_at(port: str, text: str) -> str | None:

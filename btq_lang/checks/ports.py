@@ -10,11 +10,12 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks.kinds import is_torn, written
-from btq_lang.checks.view import SeenNode, View, subtree_ports
+from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance, near
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
@@ -56,6 +57,8 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port without a value: one the engine asks for, or an input without default of a model."""
     for seen in view.nodes(entry):
         known = _ports(view, seen) or ()
+        if not any(port.required for port in known):
+            continue
         given = {pair.key.text for pair in seen.node.attributes}
         if seen.is_subtree:  # the engine gives a tree only what it takes for ports
             given = set(filter(is_port_name, given))
@@ -166,8 +169,7 @@ def is_case(seen: SeenNode, key: str) -> bool:
     return is_switch and key.startswith("case_") and key[5:].isdecimal()
 
 
-@record
-class _Port:
+class KnownPort(Record):
     """A port that a node has, whoever says so."""
 
     name: str
@@ -175,7 +177,7 @@ class _Port:
     doc: str
 
 
-def _ports(view: View, seen: SeenNode) -> tuple[_Port, ...] | None:
+def _ports(view: View, seen: SeenNode) -> tuple[KnownPort, ...] | None:
     """The ports a node has; None where nobody knows."""
     if is_placeholder(seen.node):
         return None
@@ -186,27 +188,36 @@ def _ports(view: View, seen: SeenNode) -> tuple[_Port, ...] | None:
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag)
     if seen.model is not None:
-        return tuple(
-            _declared_port(port, port.direction.raw == "input" and port.default is None) for port in seen.model.ports
-        )
+        return _model_ports(view, seen.model)
     return None
 
 
+def _model_ports(view: View, model: Model) -> tuple[KnownPort, ...]:
+    known = view.model_ports.get(id(model))
+    if known is None:
+        known = view.model_ports[id(model)] = tuple(
+            _declared_port(port, port.direction.raw == "input" and port.default is None) for port in model.ports
+        )
+    return known
+
+
 @cache
-def _builtin_ports(tag: str) -> tuple[_Port, ...]:
+def _builtin_ports(tag: str) -> tuple[KnownPort, ...]:
     ports = BUILTINS[tag].ports
-    return tuple(_Port(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
+    return tuple(KnownPort(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
 
 
-def _declared_port(port: Port, required: bool) -> _Port:
+def _declared_port(port: Port, required: bool) -> KnownPort:
     name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
-    return _Port(name.text if name else "", required and name is not None, port.text.text if port.text else "")
+    return KnownPort(name.text if name else "", required and name is not None, port.text.text if port.text else "")
 
 
-def _meant(seen: SeenNode, known: tuple[_Port, ...]) -> dict[Word, tuple[str, ...]]:
+def _meant(seen: SeenNode, known: tuple[KnownPort, ...]) -> dict[Word, tuple[str, ...]]:
     """The keys that are no port, each with the ports that may be meant: none that has a value."""
     names = {port.name for port in known}
     given = {pair.key.text for pair in seen.node.attributes}
+    if given <= names:
+        return {}
     free = [port for port in known if port.name not in given]
     found: dict[Word, tuple[str, ...]] = {}
     for pair in seen.node.attributes:
@@ -253,7 +264,7 @@ def _declared(view: View, seen: SeenNode) -> tuple[Related, ...]:
     return (view.defined_at(definition, "its ports are declared here"),) if definition else ()
 
 
-def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[_Port]) -> tuple[Fix, ...]:
+def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
     """Give a custom node or a SubTree the blackboard entries that are called as its ports."""
     if seen.kind is not None:
         return ()
@@ -264,7 +275,7 @@ def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[_Port]) 
         end = node.attributes[-1].span.end
         return (replace_fix(title, Span(end, end), f" {pairs}"),)
     end = (node.label or node.kind or node.head).end
-    behind = view.file.text[entry.start + end : entry.start + node.end].lstrip(" \t")
+    behind = view.text[entry.start + end : entry.start + node.end].lstrip(" \t")
     return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.checks.results import result
+from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.statuses import RUNNING
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry
@@ -24,7 +26,7 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.nodes(entry):
         for pair in seen.node.attributes:
             key = pair.key.text
-            if key not in ("_failureIf", "_successIf") or not view.results.of(entry, seen.node).ever & RUNNING:
+            if key not in ("_failureIf", "_successIf") or not result(view, entry, seen.node).ever & RUNNING:
                 continue
             if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
                 continue
@@ -52,7 +54,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """
     for seen in view.nodes(entry):
         pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
-        if pair is None or not view.results.of(entry, seen.node).ever & RUNNING:
+        if pair is None or not result(view, entry, seen.node).ever & RUNNING:
             continue
         step = seen
         while step.parent is not None and _passes_skipped_on(step.parent):

@@ -16,11 +16,11 @@ from btq_lang.units import Dimension, parse_unit
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A keyword with prose behind it, in a requirement that has no clause yet: told once, where it is defined."""
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
             continue
-        found = _not_checked(view, requirement, symbol.name)
+        found = _not_checked(view, entry, requirement, symbol.name)
         first = view.scope.find(Kind.REQUIREMENT, symbol.name)
         if not found or (first is not None and first.symbol is not symbol):
             continue
@@ -37,14 +37,21 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         )
 
 
-def _not_checked(view: View, requirement: Requirement, name: str) -> list[Constraint]:
+def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
     """What stands behind keywords and is neither a script nor clauses that mean something."""
     found = view.constraints(requirement)
-    if any(checkable for _, checkable in found) and view.requirements is not None:
-        resolved = view.requirements.all.get(name)
-        if resolved is not None and not resolved.claims:
-            return [each for each, _ in found]
+    if any(checkable for _, checkable in found) and name in (view.look_up_in(_all_without_claims, entry) or ()):
+        return [each for each, _ in found]
     return [each for each, checkable in found if not checkable]
+
+
+def _all_without_claims(view: View) -> dict[int, set[str]]:
+    """The requirements that claim nothing, by the item they are defined in."""
+    found: dict[int, set[str]] = {}
+    for requirement in view.requirements.all.values() if view.requirements is not None else ():
+        if not requirement.claims:
+            found.setdefault(id(requirement.item), set()).add(requirement.name)
+    return found
 
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:

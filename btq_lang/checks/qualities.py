@@ -101,7 +101,7 @@ def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
 
 def _whole(view: View, entry: Entry, use: Use) -> Span:
     """The span to replace: of `performance <time-behavior>` with the `>`, which is no part of the name."""
-    text = view.file.text
+    text = view.text
     end = entry.start + use.span.end
     if "<" in text[entry.start + use.span.start : end]:
         closing = text.find(">", end)

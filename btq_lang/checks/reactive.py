@@ -9,13 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.kinds import at_least
+from btq_lang.catalog.names import is_xml_name, model_name_problem
+from btq_lang.checks.results import result
+from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
-from btq_lang.checks.view import SeenNode, View, called
+from btq_lang.checks.view import View, called
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word, quote
 
 _SEQUENCES = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory"))  # a reactive one asks at every tick itself
+_APART = "put it in a Sequence of its own"
+_BEGIN_WITH_A_CHILD = _SEQUENCES | {"Inverter"}
 
 
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -24,7 +30,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.nodes(entry):
         if seen.kind is None or not seen.kind.reactive:
             continue
-        refused = _second_async_sequence(seen, view.workspace.project.target)
+        refused = _second_async_sequence(seen, view.project.target)
         if refused is not None:
             yield refused
             continue
@@ -32,7 +38,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
         first: Node | None = None
         surely = False
         for child in seen.node.nodes:
-            results = view.results.of(entry, child)
+            results = result(view, entry, child)
             if first is not None and results.ever & RUNNING:
                 yield _never_gets_further(seen, first, child, surely)
                 break
@@ -42,28 +48,38 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An explicit form directly below a ReactiveSequence, which only XML can say: a build writes the compact one.
+    """An explicit form just below a ReactiveSequence: of a `.btq` file a build writes the compact one, where the name
+    makes a tag.
 
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
-    if not view.is_xml or not at_least(view.workspace.project.target, "4.8"):
+    target = view.project.target
+    if not at_least(target, "4.8"):
         return
     for seen in view.nodes(entry):
-        parent, category = seen.parent, seen.node.category
-        if parent is None or parent.kind is None or parent.kind.tag != "ReactiveSequence":
+        parent, category, name = seen.parent, seen.node.category, seen.node.id
+        if parent is None or parent.kind is None or parent.kind.tag != "ReactiveSequence" or seen.is_subtree:
             continue
-        if category is None or category.raw == "SubTree":
+        is_forbidden = name is not None and model_name_problem(name.text, target) is not None
+        can_be_tag = name is None or (is_xml_name(name.text) and not is_forbidden)
+        if category is not None and view.is_xml:
+            shown = (
+                f"write <{name.text}/>" if name is not None and can_be_tag else "write the node's own name as its tag"
+            )
+            note = f"`Unknown node type: {category.raw}`, it says, and means the tag: {shown if can_be_tag else _APART}"
+            message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
+            yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
+        elif name is None or can_be_tag or seen.kind is not None or is_placeholder(seen.node):
             continue
-        message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
-        name = seen.node.id
-        shown = f"<{name.text}/>" if name is not None and " " not in name.text else "the node's own name as its tag"
-        note = f"`Unknown node type: {category.raw}`, it says, and means the tag: write {shown}"
-        yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
+        elif category is not None or not is_forbidden:  # else forbidden-name tells it
+            message = f"the engine refuses `{name.text}` directly below a ReactiveSequence"
+            note = f"it cannot be an XML tag, and the engine takes no other form here: {_APART}"
+            yield Diagnostic("explicit-in-reactive", name.span, message, notes=(note,))
 
 
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
-    if view.main_tree is None or not view.is_this(view.main_tree, entry):
+    if not view.is_main(entry):
         return
     nodes = {id(seen.node): seen for seen in view.nodes(entry)}
     for seen in nodes.values():
@@ -71,7 +87,7 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         guard: SeenNode | None = None
         for child in seen.node.nodes:
-            if guard is not None and view.results.of(entry, child).usual & RUNNING:
+            if guard is not None and result(view, entry, child).usual & RUNNING:
                 yield _not_asked_again(seen, guard, child, fixable=_can_be_asked_again(view, entry, nodes, seen))
                 break
             guard = guard or _guard(nodes, nodes[id(child)])
@@ -125,7 +141,7 @@ def _guard(nodes: dict[int, SeenNode], branch: SeenNode) -> SeenNode | None:
         return None
     seen: SeenNode | None = branch
     while seen is not None and seen.category != "Condition":
-        inside = seen is branch or (seen.kind is not None and seen.kind.tag in (*_SEQUENCES, "Inverter"))
+        inside = seen is branch or (seen.kind is not None and seen.kind.tag in _BEGIN_WITH_A_CHILD)
         first = seen.node.children[0] if inside and seen.node.children else None
         seen = nodes.get(id(first))
     return seen
@@ -135,7 +151,7 @@ def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], se
     """Whether `R?` would start again only what its condition asks for: any other child that takes time and fails would
     start again at the next tick, and halt what was to follow it."""
     return all(
-        _guard(nodes, nodes[id(child)]) is not None or not view.results.of(entry, child).ever & RUNNING
+        _guard(nodes, nodes[id(child)]) is not None or not result(view, entry, child).ever & RUNNING
         for child in seen.node.nodes[:-1]
     )
 

@@ -15,18 +15,18 @@ from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement that is named but defined nowhere."""
-    if not view.scope.complete:
-        return
     for use in view.uses(entry, Kind.REQUIREMENT):
-        if view.scope.find(Kind.REQUIREMENT, use.name) is not None:
+        if view.defines(Kind.REQUIREMENT, use.name):
             continue
-        elsewhere = view.workspace.defined_anywhere(Kind.REQUIREMENT, use.name)
+        if not view.scope.complete:
+            return
+        elsewhere = view.elsewhere(Kind.REQUIREMENT, use.name)
         quality = view.quality(use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
             yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
-        fixes = tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         fixes += tuple(
             replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
             for name in view.near(use.name, Kind.REQUIREMENT)
@@ -42,7 +42,7 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             related = (view.defined_at(first, _COUNTS), view.defined_at(second, "the other definition"))
             message = f"this file brings a second requirement `{second.symbol.name}`, which says something else"
             yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind is Kind.REQUIREMENT else None
         if counts is not None and counts.symbol is not symbol and _differ(symbol, counts.symbol):
             yield Diagnostic(
@@ -63,15 +63,15 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses):
         return
-    if not view.trees or view.path in view.workspace.included_files:
+    if not view.has_trees or view.is_included:
         return  # a file of requirements, or a library: its users may be anywhere
+    definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
+    if definition is None or not view.is_this(definition, entry):
+        return
+    if view.is_used(Kind.REQUIREMENT, requirement.name.text) or view.is_meant_as_requirement(requirement.name.text):
+        return
     if not view.is_read or view.names_unknown_requirements:
         return  # its user may be what could not be read, or misspells it
-    definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
-    if definition is None or not view.is_this(definition, entry) or view.workspace.references(definition):
-        return
-    if requirement.name.text in view.meant_as_requirements:
-        return
     yield Diagnostic(
         "unused-requirement",
         requirement.name.span,
@@ -83,7 +83,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement with neither a text nor a clause, or with nothing that its `on violation` could be about."""
-    for symbol in view.file.summary_of(entry).symbols:
+    for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement):
             continue

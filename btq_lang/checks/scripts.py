@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.strings import moved
-from btq_lang.checks.view import SeenNode, View
+from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import replace
 from btq_lang.rules import Severity
@@ -17,7 +18,7 @@ from btq_lang.syntax import Entry, Pair, Word
 def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """What is wrong with a script, in any version that the project is for: script-error, empty-script,
     script-version."""
-    project = view.workspace.project
+    project = view.project
     for seen in view.nodes(entry):
         for pair in seen.node.attributes:
             expects_value = _expects_value(seen, pair)
@@ -54,7 +55,7 @@ def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
     from btq_lang.script import check_script  # most files have no script, and it is large
 
-    versions = view.workspace.project.engines
+    versions = view.project.engines
     return check_script(view.script(script), versions=versions, expects_value=expects_value)
 
 

@@ -10,18 +10,23 @@ from btq_lang.requirements import Requirements
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.model import SourceNode
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
+
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
 
 def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
     """A failure that never reaches the root, whichever way the node is run."""
-    found = demanded.requirements
     for applied, claim, node, place in demanded.claims:
         if applied.requirement.action != "fail" or not is_enforced(applied) or claim.verb in _NEVER_ENFORCED:
             continue
         if claim.limit is not None and highest(claim) is None:
             continue  # what takes too little time is only seen when it is over
-        swallower = _swallower(found, node)
+        swallower = _in_tree(node) or _above(demanded, node.tree)
         if swallower is None:
             continue
         above, reason = swallower
@@ -37,32 +42,39 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         )
 
 
-def _swallower(found: Requirements, node: SourceNode) -> tuple[SourceNode, str] | None:
-    """Where the failure of a node ends, if it ends on every way up."""
-    first: tuple[SourceNode, str] | None = None
+def _above(demanded: Demanded, tree: str | None) -> Swallower | None:
+    answer: Swallower | None = demanded.ask((_above_tree, tree))
+    return answer
+
+
+def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
+    """Where a failure of a tree ends, if it ends on every way up."""
+    found = demanded.requirements
+    first: Swallower | None = None
     seen: set[int] = set()
-    waiting = [node]
+    waiting = list(_callers(found, tree))
+    ends = not waiting
     while waiting:
         at = waiting.pop()
         if id(at) in seen:
             continue
         seen.add(id(at))
         end = _in_tree(at)
-        if end is not None:
-            first = first or end
-            continue
-        callers = found.nodes.callers(at.tree)
-        if not callers or at.tree == _name_of_mission(found):
-            return None
-        waiting += callers
-    return first
+        first = first or end
+        if end is None:
+            callers = _callers(found, at.tree)
+            ends = ends or not callers
+            waiting += callers
+    return None if ends else first
 
 
-def _name_of_mission(found: Requirements) -> str | None:
-    return found.mission.tree if found.mission is not None else None
+def _callers(found: Requirements, tree: str | None) -> tuple[SourceNode, ...]:
+    """The SubTree nodes that run a tree; none where that is the mission's, from which a failure goes nowhere."""
+    is_mission = found.mission is not None and tree == found.mission.tree
+    return () if is_mission else found.nodes.callers(tree)
 
 
-def _in_tree(node: SourceNode) -> tuple[SourceNode, str] | None:
+def _in_tree(node: SourceNode) -> Swallower | None:
     below, at = node, node.parent
     while at is not None:
         reason = _swallows(at, below)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS
-from btq_lang.checks.includes import behind_includes, include_fix
+from btq_lang.checks import calls, lookups
+from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.symbols import Kind, Use
-from btq_lang.syntax import Entry, Model, Node, Root, Tree
+from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Definition
 
@@ -25,13 +26,12 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         is_nameless = seen.node.id is None or seen.node.id.text == ""
         if seen.is_subtree and word is not None and is_nameless and not is_torn(entry, seen):
             yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
-    if not isinstance(entry.item, Tree | Root) or not view.scope.complete or view.has_torn_tree:
-        return
     for use in view.uses(entry, Kind.TREE):
-        if use.name == "" or view.scope.find(Kind.TREE, use.name) is not None:
+        if use.name == "" or view.defines(Kind.TREE, use.name):
             continue
-        elsewhere = view.workspace.defined_anywhere(Kind.TREE, use.name)
-        fixes = tuple(include_fix(view, definition.path) for definition in elsewhere[:3])
+        if not view.scope.complete or view.has_torn_tree:
+            return
+        fixes = tuple(include_fix(view, path) for path in view.elsewhere(Kind.TREE, use.name)[:3])
         fixes += tuple(
             replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
             for name in view.near(use.name, Kind.TREE)
@@ -73,7 +73,7 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name.text
-    circle = view.calls.circle(name)
+    circle = view.ask(calls.circle, name)
     definition = view.scope.find(Kind.TREE, name)
     if circle is None or definition is None or not view.is_this(definition, entry):
         return
@@ -89,59 +89,62 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A tree that nothing refers to, or that only such trees refer to, in a file with a mission."""
-    if not isinstance(entry.item, Tree) or entry.item.name is None or view.path in view.workspace.included_files:
+    if not isinstance(entry.item, Tree) or entry.item.name is None or view.is_included:
         return
     name = entry.item.name
-    main = view.main_tree
     definition = view.scope.find(Kind.TREE, name.text)
-    if (
-        main is None
-        or view.calls.has_gaps
-        or not view.is_read
-        or name.text in view.calls.reached_from(main.symbol.name)
-    ):
+    if not view.ask(_is_missed, name.text):
         return
+    main = view.main_tree
     if definition is None or not view.is_this(definition, entry):
         return  # another tree of that name counts, which is told
-    users = view.calls.callers(name.text)
+    users = view.ask(calls.callers, name.text)
     if not users:
-        message = f"nothing refers to the tree `{name.text}`, and the mission is `{main.symbol.name}`"
+        message = f"nothing refers to the tree `{name.text}`, and the mission is `{main}`"
         yield Diagnostic("unused-tree", name.span, message, tags=(Tag.UNNECESSARY,))
         return
     user = view.scope.find(Kind.TREE, users[0])
     related = (view.defined_at(user, "it is used here, but this tree is not reached either"),) if user else ()
-    message = f"the mission `{main.symbol.name}` never reaches the tree `{name.text}`"
+    message = f"the mission `{main}` never reaches the tree `{name.text}`"
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
+
+
+def _is_missed(view: View, tree: str) -> bool:
+    """Whether there is a mission, and it is known for sure that it does not run a tree."""
+    main = view.main_tree
+    return (
+        main is not None
+        and not view.ask(calls.is_reached, tree, main)
+        and not view.ask(calls.has_gaps)
+        and view.is_read
+    )
 
 
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Several trees, and nothing says which of them is the mission; told at the first."""
-    if not view.trees or entry is not view.trees[0] or view.path in view.workspace.included_files:
+    if not isinstance(entry.item, Tree) or not view.is_first_tree(entry) or view.is_included:
         return
-    if view.calls.has_gaps or not view.is_read:
+    if view.ask(calls.has_gaps) or not view.is_read:
         return  # the tree that runs the others may be what is misspelt
-    roots = [other for other in view.file.parsed.entries if isinstance(other.item, Root)]
-    if view.main_tree or any(use.kind is Kind.TREE for root in roots for use in view.file.summary_of(root).uses):
+    if view.main_tree or view.look_up(lookups.has_root_of_tree):
         return
-    tops: dict[str, Related] = {}
-    for other in view.trees:
-        name = other.item.name if isinstance(other.item, Tree) else None
-        if name is not None and not view.calls.callers(name.text) and name.text not in tops:
-            place = Place(name.span.shifted(other.start), view.path)
-            tops[name.text] = Related(place, "another tree that no tree refers to")
-    if len(tops) < 2 or not isinstance(entry.item, Tree):
+    tops = [name for name in view.look_up(lookups.own_trees) if not view.ask(calls.callers, name)]
+    if len(tops) < 2:
         return  # without one at the top they run in circles, and that is told
-    names = ", ".join(f"`{name}`" for name in tuple(tops)[:_MOST_NAMES])
+    names = ", ".join(f"`{name}`" for name in tops[:_MOST_NAMES])
     span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
-    is_xml = view.file.origin is not None
-    way = '`main_tree_to_execute="…"` of <root>' if is_xml else "a line `Root <tree>`"
+    way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     yield Diagnostic(
         "unknown-main-tree",
         span,
         f"nothing says which tree is the mission: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
-        related=tuple(tops.values())[1:_MOST_NAMES],
+        related=tuple(
+            view.defined_at(other, "another tree that no tree refers to")
+            for name in tops[1:_MOST_NAMES]
+            if (other := view.scope.find(Kind.TREE, name)) is not None
+        ),
         notes=(f"{way} names the main tree",),
-        fixes=tuple(_main_tree_fix(view, roots, name) for name in tuple(tops)[:3]),
+        fixes=tuple(_main_tree_fix(view, name) for name in tops[:3]),
     )
 
 
@@ -200,14 +203,12 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
     return (replace_fix(f"Write `{node.kind.raw}` alone", span, ""),)
 
 
-def _main_tree_fix(view: View, roots: list[Entry], name: str) -> Fix:
+def _main_tree_fix(view: View, name: str) -> Fix:
     """Name the main tree: in the Root that is there, or in a line of its own behind the includes."""
-    if roots and isinstance(roots[0].item, Root):
-        at = roots[0].start + roots[0].item.start + len("Root")
-        change = Change(Place(Span(at, at), view.path), f" {written(name)}")
-    else:
-        at, margin = behind_includes(view)
-        change = Change(Place(Span(at, at), view.path), f"{margin}Root {written(name)}\n")
+    root = view.look_up(lookups.root)
+    at, margin = root or view.look_up(lookups.head)
+    text = f" {written(name)}" if root else f"{margin}Root {written(name)}\n"
+    change = Change(Place(Span(at, at), view.path), text)
     return Fix(f"Make `{name}` the main tree", (change,))
 
 

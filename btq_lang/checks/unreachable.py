@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.checks.results import result
+from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
-from btq_lang.checks.view import SeenNode, View, called
+from btq_lang.checks.view import View, called
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag
 from btq_lang.syntax import Entry, Node, Verbatim
 from btq_lang.text import Span
@@ -49,7 +51,7 @@ def _behind(
 ) -> Diagnostic | None:
     """The child behind one that can only end the node."""
     for child, following in pairwise(children):
-        if isinstance(child, Node) and not view.results.of(entry, child).ever & (goes_on | SKIPPED):
+        if isinstance(child, Node) and not result(view, entry, child).ever & (goes_on | SKIPPED):
             never = "succeeds" if goes_on == SUCCESS else "fails"
             return _unreachable(following, f"{_shown(child)} before it never {never}", child)
     return None
@@ -61,14 +63,14 @@ def _in_try_catch(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None
     found = _behind(view, entry, seen, tuple(tried), SUCCESS)
     if found is not None or seen.node.attribute("catch_on_halt") is not None:
         return found
-    if any(view.results.of(entry, child).ever & FAILURE for child in tried):
+    if any(result(view, entry, child).ever & FAILURE for child in tried):
         return None
     return _unreachable(last, "nothing before it can fail", None)
 
 
 def _by_condition(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
     condition, *branches = seen.node.children
-    results = view.results.of(entry, condition).ever
+    results = result(view, entry, condition).ever
     if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):
         return None
     if not results & SUCCESS:

@@ -5,229 +5,262 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
-import posixpath
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
 
+from btq_lang.attributes import meant_clause
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
-from btq_lang.checks.calls import Calls
+from btq_lang.checks import lookups
+from btq_lang.checks.calls import calls
+from btq_lang.checks.seen import SeenNode
 from btq_lang.constraints import Constraint, can_be_checked, constraints
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
-from btq_lang.nodes import meant_clause
-from btq_lang.record import record
-from btq_lang.rules import Severity
-from btq_lang.symbols import Kind, Use
+from btq_lang.symbols import Kind, Summary, Use
 from btq_lang.syntax import (
     Apply,
     Entry,
     Include,
     Model,
-    Models,
     Node,
-    Pair,
     Port,
-    Qualities,
     Requirement,
     Tree,
-    Word,
     is_name,
 )
-from btq_lang.workspace import Definition, File, Scope, Workspace
+from btq_lang.workspace import Definition, Facts, File, Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import Any, TypeVar
 
-    from btq_lang.checks.entries import Blackboards, Mention
-    from btq_lang.checks.mixed_types import EntryTypes
-    from btq_lang.checks.results import TreeResults
+    from btq_lang.checks.answers import Answers
+    from btq_lang.checks.entries import Mention
+    from btq_lang.checks.ports import KnownPort
     from btq_lang.diagnostics import Diagnostic
-    from btq_lang.requirements import Requirements
+    from btq_lang.requirements import Memory, Requirements
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.script import Script
 
-
-Question: TypeAlias = tuple[str, Kind | None, str]
-Noted: TypeAlias = dict[Question, object]  # questions with their answers
-
-
-@record
-class SeenNode:
-    """A node with what is known of it.
-
-    Attributes:
-        parent: the node whose child it is; None for a tree's own.
-        index: which child of its parent it is.
-        kind: the built-in it is, if it is one; for an older engine's word the one of today.
-        definition: where its model stands, where one is in scope.
-        model: that model.
-        category: as written, or as the built-in or the model has it; None where nobody says.
-        is_subtree: whether that is SubTree.
-        asked: the name that a model was looked for by; nothing where none was.
-    """
-
-    node: Node
-    tree: Tree
-    parent: SeenNode | None
-    index: int
-    kind: NodeKind | None
-    definition: Definition | None
-    model: Model | None
-    category: str | None
-    is_subtree: bool
-    asked: str
-
-    @property
-    def shown(self) -> str:
-        """The node as a message names it."""
-        return f"`{self.node.head.text}`"
-
-    def ancestors(self) -> Iterator[SeenNode]:
-        """Its parent, the parent's parent, and so on."""
-        above = self.parent
-        while above is not None:
-            yield above
-            above = above.parent
+    T = TypeVar("T")
 
 
 class View:
     """One file in its workspace.
 
+    Where answers are kept, it gives those, and notes who asks for what.  Then `workspace` and `file` are noted as asked
+    for everything there is: a check that can say what it wants to know asks for that.
+
     Attributes:
-        noted: what was asked of the rest of the file, while that is noted.
+        scope: the names that the file can use.
+        project: what holds for all files.
+        text: that of the file, for who looks up what stands at the offsets of an item.
+        is_xml: the file is XML that the engine loads as it is: no build comes between.
+        model_ports: the ports of models, by the model's id, as far as somebody asked.
     """
 
-    def __init__(self, workspace: Workspace, path: str, *, notes: bool = False) -> None:
-        self.workspace = workspace
+    def __init__(self, workspace: Workspace, path: str, answers: Answers | None = None) -> None:
+        self._workspace = workspace
+        self._file = workspace.files[path]
+        self._answers = answers
+        self._given: dict[object, Any] = {}
         self.path = path
-        self.file: File = workspace.files[path]
-        self.noted: Noted | None = None
-        self.scope: Scope = NotingScope(workspace.scope(path), self) if notes else workspace.scope(path)
+        self.project = workspace.project
+        self.text = self._file.text
+        self.is_xml = self._file.origin is not None
+        self._scope = workspace.scope(path)
+        self.scope: Scope = self._scope if answers is None else NotingScope(self._scope, self)
         self._nodes: dict[int, tuple[SeenNode, ...]] = {}
-        self._near: dict[tuple[Kind | None, str], tuple[str, ...]] = {}
-        self._compared = 0
-        self._constraints: dict[int, tuple[tuple[Constraint, bool], ...]] = {}
-        self._mentions: dict[int, tuple[Mention, ...]] = {}
         self._scripts: dict[str, Script] = {}
-        self._qualities: dict[str, QualityMatch | None] = {}
+        self.model_ports: dict[int, tuple[KnownPort, ...]] = {}
+        self._in_order: set[Callable[[View, str], object]] = set()
+
+    # ---- what is asked, and noted ----
+
+    def ask(self, what: Callable[..., T], *about: object) -> T:
+        """What `what(view, *about)` says, which asks this view and looks at nothing else (see answers.py)."""
+        question = (what, *about)
+        if self._answers is not None:
+            return self._answers.conclude(self, question)  # type: ignore[no-any-return]  # it is what `what` returns
+        if question not in self._given:
+            self._given[question] = what(self, *about)
+        return self._given[question]  # type: ignore[no-any-return]  # as above
+
+    def look_up(self, what: Callable[..., T], *about: object) -> T:
+        """What `what(workspace, path, *about)` says, which reads the files and asks nothing."""
+        question = (what, *about)
+        if self._answers is not None:
+            return self._answers.look_up(question, of_name=False)  # type: ignore[no-any-return]  # as above
+        if question not in self._given:
+            self._given[question] = what(self._workspace, self.path, *about)
+        return self._given[question]  # type: ignore[no-any-return]  # as above
+
+    def look_up_name(self, what: Callable[..., T], kind: Kind, name: str) -> T:
+        """The same, of what says nothing but what the items are that define a name."""
+        if self._answers is not None:
+            return self._answers.look_up((what, kind, name), of_name=True)  # type: ignore[no-any-return]  # as above
+        return what(self._workspace, self.path, kind, name)
+
+    def look_up_in(self, table: Callable[[View], Mapping[int, T]], entry: Entry) -> T | None:
+        """What a table, made for all items at once and given by their `id`, says of an entry."""
+        if self._answers is not None:
+            return self._answers.look_up_in(self, table, id(entry.item))  # type: ignore[no-any-return]  # as above
+        if table not in self._given:
+            self._given[table] = table(self)
+        return self._given[table].get(id(entry.item))  # type: ignore[no-any-return]  # as above
+
+    def note_everything(self) -> None:
+        """What is asked now is not kept."""
+        if self._answers is not None:
+            self._answers.note_everything()
+
+    @property
+    def workspace(self) -> Workspace:
+        self.note_everything()
+        return self._workspace
+
+    @property
+    def file(self) -> File:
+        self.note_everything()
+        return self._file
+
+    def facts(self, entry: Entry) -> Facts:
+        """What stands for an item of a file in scope where a question is about it."""
+        found = self._file.facts.get(id(entry.item))
+        if found is None:
+            files = (self._workspace.files[path] for path in self._scope.paths)
+            found = next(file.facts[id(entry.item)] for file in files if id(entry.item) in file.facts)
+        return found
+
+    def entry(self, facts: Facts) -> Entry:
+        """The file's entry whose item these are the facts of."""
+        return self._file.entry_of(facts.item)
+
+    def watched(self, check: Callable[[View, Entry], Iterator[Diagnostic]], entry: Entry) -> list[Diagnostic] | None:
+        """What a check finds; None where it looks at more than it says, which is no part of what is asked now."""
+        if self._answers is None:
+            return list(check(self, entry))
+        found, looks_around = self._answers.watch(lambda: list(check(self, entry)))
+        return None if looks_around else found
+
+    def summary(self, entry: Entry) -> Summary:
+        """What an entry of the file defines and refers to."""
+        return self._file.summary_of(entry)
+
+    def defines(self, kind: Kind, name: str) -> bool:
+        """Whether a name in scope means something."""
+        if self._answers is None:
+            return self._scope.find(kind, name) is not None
+        return self.look_up_name(lookups.is_defined, kind, name)
+
+    def has_names(self, kind: Kind) -> bool:
+        """Whether there is any name of a kind in scope."""
+        return self.ask(_has_names, kind)
+
+    def elsewhere(self, kind: Kind, name: str) -> tuple[str, ...]:
+        """The files that define a name, whether they are in scope or not: once for each definition."""
+        return self.look_up(lookups.elsewhere, kind, name)
+
+    # ---- one entry ----
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
-        if not isinstance(entry.item, Tree):
-            return ()
-        known = self._nodes.get(id(entry))
+        if self._answers is None and (known := self._nodes.get(id(entry.item))) is not None:
+            return known
+        return self.nodes_of(self.facts(entry)) if isinstance(entry.item, Tree) else ()
+
+    def nodes_of(self, tree: Facts) -> tuple[SeenNode, ...]:
+        """The same, of a tree of any file in scope."""
+        if self._answers is not None:
+            return self.ask(_seen_nodes, tree)
+        known = self._nodes.get(id(tree.item))
         if known is None:
-            known = self._nodes[id(entry)] = tuple(self._seen(entry.item))
-        elif self.noted is not None:
-            for seen in known:  # what was asked for them is asked by whoever looks at them
-                if seen.asked:
-                    self.scope.find(Kind.MODEL, seen.asked)
+            known = self._nodes[id(tree.item)] = _seen_nodes(self, tree)
         return known
 
     def uses(self, entry: Entry, kind: Kind) -> Iterator[Use]:
         """What an entry refers to, of one kind."""
-        uses = self.file.summary_of(entry).uses
+        uses = self.summary(entry).uses
         return (use for use in uses if use.kind is kind) if uses else iter(())
 
     @property
-    def is_xml(self) -> bool:
-        """Whether the file is XML that the engine loads as it is: no build comes between."""
-        return self.file.origin is not None
-
-    @cached_property
     def trees(self) -> tuple[Entry, ...]:
         """The file's trees, in order."""
-        return tuple(entry for entry in self.file.parsed.entries if isinstance(entry.item, Tree))
+        self.note_everything()
+        return self._trees
+
+    @cached_property
+    def _trees(self) -> tuple[Entry, ...]:
+        return tuple(entry for entry in self._file.parsed.entries if isinstance(entry.item, Tree))
 
     @property
-    def main_tree(self) -> Definition | None:
-        """The tree that runs when the engine loads the file."""
-        if self.noted is not None:
-            self.noted["main_tree", None, ""] = self._main_tree.symbol if self._main_tree else None
-        return self._main_tree
+    def has_trees(self) -> bool:
+        """Whether there is a tree in the file."""
+        return self.ask(_has_trees)
 
-    @cached_property
-    def _main_tree(self) -> Definition | None:
-        return self.workspace.main_tree(self.path)
+    def is_first_tree(self, entry: Entry) -> bool:
+        """Whether no other tree of the file stands before this one."""
+        return self.ask(_is_first_tree, self.facts(entry))
 
-    @cached_property
+    @property
+    def is_included(self) -> bool:
+        """Whether another file includes this one."""
+        return self.look_up(lookups.is_included)
+
+    @property
+    def main_tree(self) -> str | None:
+        """The name of the tree that runs when the engine loads the file."""
+        main = self.look_up(lookups.main_tree)
+        return main[0] if main is not None else None
+
+    def is_main(self, entry: Entry) -> bool:
+        """Whether an entry of the file is the tree that runs when the engine loads the file."""
+        return self.ask(_is_main, self.facts(entry))
+
+    @property
     def edition(self) -> str:
         """The edition of the quality model that holds for the file."""
-        for entry in self.file.parsed.entries:
-            edition = entry.item.edition if isinstance(entry.item, Qualities) else None
-            if edition is not None and edition.text in EDITIONS:
-                return edition.text
-        return self.workspace.project.qualities
+        return self.look_up(lookups.edition)
 
     def quality(self, name: str) -> QualityMatch | None:
         """What the catalog says of a quality's name; None for a quality that a file in scope declares."""
-        if self.noted is not None:
-            self.scope.names(Kind.QUALITY)
-            self.noted["edition", None, ""] = self.edition
-        if name not in self._qualities:
-            words = tuple(name.split("."))
-            is_own = bool(self._own_qualities) and fold(words[-1]) in self._own_qualities
-            self._qualities[name] = None if is_own else find(words, EDITIONS[self.edition])
-        return self._qualities[name]
+        return self.ask(_quality, name)
 
-    @cached_property
-    def _own_qualities(self) -> frozenset[str]:
-        return frozenset(map(fold, self.scope.names(Kind.QUALITY)))
-
-    @cached_property
+    @property
     def is_read(self) -> bool:
         """Whether the whole file could be read: else what seems to be missing may be what could not."""
-        problems = (problem for entry in self.file.parsed.entries for problem in entry.diagnostics)
-        return all(problem.effective_severity is not Severity.ERROR for problem in problems)
+        return self.look_up(lookups.is_read)
 
-    @cached_property
+    @property
     def has_torn_tree(self) -> bool:
         """Whether the name of one of the file's trees may be what could not be read."""
-        return any(
-            problem.span.start <= entry.item.end
-            for entry in self.trees
-            if isinstance(entry.item, Tree)
-            for problem in entry.diagnostics
-        )
+        return self.look_up(lookups.has_torn_tree)
 
-    @cached_property
+    @property
     def names_unknown_requirements(self) -> bool:
         """Whether the file refers to a requirement that is defined nowhere."""
-        names = {use.name for summary in self.file.summaries for use in summary.uses if use.kind is Kind.REQUIREMENT}
-        return any(self.scope.find(Kind.REQUIREMENT, name) is None for name in names)
+        return self.look_up(lookups.names_unknown_requirements)
 
-    @cached_property
-    def meant_as_requirements(self) -> frozenset[str]:
-        """Names that seem to be requirements, but stand where a quality or a node does; each is told."""
-        uses = (use for summary in self.file.summaries for use in summary.uses)
-        found = {use.name for use in uses if use.kind is Kind.QUALITY}
-        for entry in self.trees:
-            nodes = (seen.node for seen in self.nodes(entry))
-            found.update(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
-        return frozenset(found)
+    def is_used(self, kind: Kind, name: str) -> bool:
+        """Whether something in the file refers to a name."""
+        return self.ask(_is_used, kind, name)
 
-    @cached_property
+    def is_meant_as_requirement(self, name: str) -> bool:
+        """Whether a name stands where a quality or a node does, and seems to be a requirement's; each is told."""
+        return self.is_used(Kind.QUALITY, name) or self.ask(_is_misspelt_use, name)
+
+    @property
     def has_palette(self) -> bool:
         """Whether the models in scope are meant to be all there are: a TreeNodesModel, or models of another file."""
-        for path in self.scope.paths:
-            for entry in self.workspace.files[path].parsed.entries:
-                if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
-                    return True
-                if path != self.path and _is_of_node(entry.item):
-                    return True
-        return False
+        return self.look_up(lookups.has_palette)
 
-    @cached_property
-    def first_nodes(self) -> dict[str, Node]:
-        """The first node of the file for each ID that a node has."""
-        found: dict[str, Node] = {}
-        for summary in self.file.summaries:
-            for use in summary.uses:
-                if use.kind is Kind.MODEL and use.node is not None:
-                    found.setdefault(use.name, use.node)
-        return found
+    def is_first_use(self, entry: Entry, node: Node, name: str) -> bool:
+        """Whether no node of the file before this one has an ID."""
+        if self.look_up(lookups.first_user, Kind.MODEL, name) is not self.facts(entry):
+            return False
+        uses = self.summary(entry).uses
+        return next((use.node for use in uses if use.kind is Kind.MODEL and use.name == name), None) is node
 
     def near(self, word: str, kind: Kind | None) -> tuple[str, ...]:
         """The names of a kind that look like a word that is none; a node may have a built-in's name, too.
@@ -238,26 +271,12 @@ class View:
         Args:
             kind: None for the project's other files, as an include names them.
         """
-        if (kind, word) not in self._near:
-            names = self.other_files if kind is None else self._names(kind)
-            self._compared += len(names)
-            self._near[kind, word] = near(word, names) if self._compared <= _MOST_COMPARED else ()
-        return self._near[kind, word]
+        return self.ask(_near_names, kind, word)
 
-    def _names(self, kind: Kind) -> tuple[str, ...]:
-        names = self.scope.names(kind)
-        return (*_builtin_names(), *names) if kind is Kind.MODEL else names
-
-    @cached_property
+    @property
     def other_files(self) -> tuple[str, ...]:
         """The project's other files, as an include in this one names them."""
-        folder = posixpath.dirname(self.path) or "."
-        return tuple(posixpath.relpath(other, folder) for other in self.workspace.files if other != self.path)
-
-    @cached_property
-    def calls(self) -> Calls:
-        """Which tree runs which, of all trees in scope."""
-        return Calls(self.workspace, self.scope)
+        return self.look_up(lookups.other_files)
 
     def script(self, text: str) -> Script:
         """What a script says; several checks ask of each."""
@@ -270,72 +289,71 @@ class View:
 
     def mentions(self, entry: Entry) -> tuple[Mention, ...]:
         """The blackboard entries that a tree names, in document order."""
-        known = self._mentions.get(id(entry))
-        if known is None:
-            from btq_lang.checks.entries import mentions  # it asks views, too
+        from btq_lang.checks.entries import mentions  # it asks views, too
 
-            known = self._mentions[id(entry)] = tuple(mentions(self, entry))
-        return known
+        return self.ask(mentions, self.facts(entry))
 
-    @cached_property
-    def blackboards(self) -> Blackboards:
-        """Which names in which trees are one blackboard entry, and what is done with it."""
-        from btq_lang.checks.entries import Blackboards  # it asks views, too
+    def ask_in_order(self, what: Callable[[View, str], object]) -> None:
+        """Ask something of all trees in scope, of each behind those that it runs: where it asks the same of these, no
+        chain of trees is too long."""
+        if what not in self._in_order:
+            self._in_order.add(what)
+            trees: Iterable[str] = self._early(calls).callees_first
+            for tree in self._answers.unknown(what, trees) if self._answers is not None else trees:
+                self._early(what, tree)
 
-        return Blackboards(self)
+    def _early(self, what: Callable[..., T], *about: object) -> T:
+        """Ask for whoever will ask."""
+        if self._answers is None:
+            return self.ask(what, *about)
+        return self._answers.conclude_early(self, (what, *about))  # type: ignore[no-any-return]  # as above
 
-    @cached_property
-    def named_output(self) -> Pair | None:
-        """The first value for an output, in a file that gives values to outputs as a rule."""
-        from btq_lang.checks.outputs import named_output  # it asks views, too
-
-        return named_output(self)
-
-    @cached_property
-    def entry_types(self) -> EntryTypes:
-        """The types that blackboard entries meet."""
-        from btq_lang.checks.mixed_types import EntryTypes  # it asks views, too
-
-        return EntryTypes(self)
-
-    @cached_property
-    def results(self) -> TreeResults:
-        """What the nodes of a tree can return."""
-        from btq_lang.checks.results import TreeResults  # it asks views, too
-
-        return TreeResults(self)
-
-    @cached_property
+    @property
     def requirements(self) -> Requirements | None:
         """The requirements in scope, resolved; None where none has a clause and nothing is declared for one."""
+        self.note_everything()
+        return self._requirements
+
+    @cached_property
+    def _requirements(self) -> Requirements | None:
         if not self._has_clauses:
             return None
         from btq_lang.requirements import requirements  # most files have no use for it, and it is large
 
-        return requirements(self.workspace, self.path)
+        return requirements(self._workspace, self.path, self.resolved)
 
     @cached_property
+    def resolved(self) -> Memory:
+        """What was resolved and found of the requirements before; nothing where nobody keeps it."""
+        from btq_lang.requirements import Memory  # as above
+
+        memory = self._answers.resolved if self._answers is not None else None
+        if memory is None:
+            memory = Memory()
+            if self._answers is not None:
+                self._answers.resolved = memory
+        return memory
+
+    @property
     def budgets(self) -> Budgets | None:
         """How long the nodes take if what is demanded of those below them holds; None where nothing is demanded."""
+        self.note_everything()
+        return self._budgets
+
+    @cached_property
+    def _budgets(self) -> Budgets | None:
         if self.requirements is None:
             return None
         from btq_lang.requirements.budgets import Budgets  # as above
 
-        return Budgets(self.requirements)
-
-    @cached_property
-    def demands(self) -> dict[int, list[Diagnostic]]:
-        """What is wrong with what is demanded, by the item it stands in."""
-        from btq_lang.checks.demands import all_demands  # it asks views, too
-
-        return all_demands(self)
+        return Budgets(self.requirements, self.resolved)
 
     @cached_property
     def _has_clauses(self) -> bool:
-        if self.scope.names(Kind.SIGNAL) or self.scope.names(Kind.CONTEXT):
+        if self._scope.names(Kind.SIGNAL) or self._scope.names(Kind.CONTEXT):
             return True
-        for name in self.scope.names(Kind.REQUIREMENT):
-            definition = self.scope.find(Kind.REQUIREMENT, name)
+        for name in self._scope.names(Kind.REQUIREMENT):
+            definition = self._scope.find(Kind.REQUIREMENT, name)
             requirement = definition.symbol.target if definition is not None else None
             if isinstance(requirement, Requirement) and (
                 requirement.clauses
@@ -343,36 +361,14 @@ class View:
                 or any(checkable for _, checkable in self.constraints(requirement))
             ):
                 return True
-        return any(isinstance(entry.item, Apply) for entry in self.file.parsed.entries)
+        return any(isinstance(entry.item, Apply) for entry in self._file.parsed.entries)
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """What stands behind SuccessIf and FailureIf in a description, and whether it is more than prose."""
         if requirement.text is None or requirement.clauses:
             return ()
-        key = id(requirement)
-        if key not in self._constraints:
-            found = constraints(requirement.text)
-            names = self.node_names if found else frozenset()
-            self._constraints[key] = tuple((each, can_be_checked(each.text, names)) for each in found)
-        return self._constraints[key]
-
-    @cached_property
-    def placeholders(self) -> dict[str, tuple[str, Entry, Word]]:
-        """The first placeholder in scope that becomes each ID: its file, its tree and its name."""
-        from btq_lang.checks.placeholders import first_placeholders  # it asks views, too
-
-        return first_placeholders(self)
-
-    @cached_property
-    def node_names(self) -> frozenset[str]:
-        """Every name in scope by which a path can name a node: of trees, of kinds and of instances."""
-        found: set[str] = set()
-        for path in self.scope.paths:
-            for entry in self.workspace.files[path].parsed.entries:
-                if isinstance(entry.item, Tree):
-                    words = [entry.item.name, *(word for node in entry.item.walk() for word in (node.id, node.name))]
-                    found.update(word.text for word in words if word is not None)
-        return frozenset(found)
+        names = _NodeNames(self)
+        return tuple([(each, can_be_checked(each.text, names)) for each in constraints(requirement.text)])
 
     def _seen(self, tree: Tree) -> Iterator[SeenNode]:
         waiting: list[tuple[Node, SeenNode | None, int]] = []
@@ -403,11 +399,14 @@ class View:
             category = kind.category
         elif category is None and model is not None:
             category = model.category.raw
-        return SeenNode(node, tree, parent, index, kind, definition, model, category, category == "SubTree", asked)
+        return SeenNode(node, tree, parent, index, kind, definition, model, category, asked)
 
     def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
         """The names that a file included here and one included before it both define, each with the definition that
         counts and the other one.  Neither file can see the other, so nobody else says it."""
+        if not isinstance(entry.item, Include):
+            return
+        self.note_everything()
         for first, second in self._clashes.get(id(entry), ()):
             if second.symbol.kind in kinds:
                 yield first, second
@@ -415,13 +414,13 @@ class View:
     @cached_property
     def _clashes(self) -> dict[int, list[tuple[Definition, Definition]]]:
         found: dict[int, list[tuple[Definition, Definition]]] = {}
-        includes = [entry for entry in self.file.parsed.entries if isinstance(entry.item, Include)]
+        includes = [entry for entry in self._file.parsed.entries if isinstance(entry.item, Include)]
         before: set[str] = set()
         for entry in includes if len(includes) > 1 else ():
-            target = self.workspace.included_by(self.path, entry.item) if isinstance(entry.item, Include) else None
-            brought = self.workspace.closure(target) if target is not None else ()
+            target = self._workspace.included_by(self.path, entry.item) if isinstance(entry.item, Include) else None
+            brought = self._workspace.closure(target) if target is not None else ()
             for path in brought if before else ():
-                for definition in self.workspace.defined_in(path) if path not in before else ():
+                for definition in self._workspace.defined_in(path) if path not in before else ():
                     first = self.scope.find(definition.symbol.kind, definition.symbol.name)
                     if first is not None and first.path in before and first.path not in brought:
                         found.setdefault(id(entry), []).append((first, definition))
@@ -430,26 +429,30 @@ class View:
 
     def place(self, definition: Definition) -> Place:
         """Where a definition's name stands, to be shown beside a diagnostic."""
-        return Place(definition.symbol.span, definition.path, definition.entry.item)
+        symbol = definition.symbol
+        known = self.look_up_name(lookups.place, symbol.kind, symbol.name) if self._answers is not None else None
+        if known is not None and known[0] == definition.path and known[2] == symbol.span:
+            return Place(symbol.span, definition.path, known[1].item)
+        return Place(symbol.span, definition.path, definition.entry.item)
 
     def defined_at(self, definition: Definition, message: str) -> Related:
         return Related(self.place(definition), message)
 
     def is_this(self, definition: Definition, entry: Entry) -> bool:
-        """Whether a definition stands in this file's `entry`."""
-        return definition.path == self.path and definition.entry is entry
+        """Whether a definition, of those that count, stands in this file's `entry`."""
+        if self._answers is None:
+            return definition.path == self.path and definition.entry.item is entry.item
+        return self.look_up_name(lookups.owner, definition.symbol.kind, definition.symbol.name) is self.facts(entry)
 
-    def answer(self, question: Question) -> object:
-        """What the answer to a noted question is here."""
-        what, kind, name = question
-        if kind is None:
-            return (self.main_tree.symbol if self.main_tree else None) if what == "main_tree" else self.edition
-        if what == "find":
-            found = self.scope.find(kind, name)
-            return found.symbol if found is not None else None
-        if what == "names":
-            return self.scope.names(kind)
-        return self.scope.complete if what == "complete" else None  # of all definitions of a name: another answer
+
+class _NodeNames:
+    """Every name in scope by which a path can name a node: of trees, of kinds and of instances."""
+
+    def __init__(self, view: View) -> None:
+        self._view = view
+
+    def __contains__(self, name: object) -> bool:
+        return self._view.look_up(lookups.is_node_name, name)
 
 
 class NotingScope(Scope):
@@ -460,29 +463,20 @@ class NotingScope(Scope):
         self._scope = scope
         self._view = view
 
-    def _note(self, what: str, kind: Kind, name: str, answer: object) -> None:
-        if self._view.noted is not None:
-            self._view.noted[what, kind, name] = answer
-
     @property
     def complete(self) -> bool:
-        self._note("complete", Kind.TREE, "", self._scope.complete)
-        return self._scope.complete
+        return self._view.look_up(lookups.is_complete)
 
     def find(self, kind: Kind, name: str) -> Definition | None:
-        found = self._scope.find(kind, name)
-        self._note("find", kind, name, found.symbol if found is not None else None)
-        return found
+        self._view.look_up_name(lookups.meaning, kind, name)
+        return self._scope.find(kind, name)
 
     def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
-        found = self._scope.all(kind, name)
-        self._note("all", kind, name, [one.symbol for one in found])
-        return found
+        self._view.look_up_name(lookups.owners, kind, name)
+        return self._scope.all(kind, name)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
-        names = self._scope.names(kind)
-        self._note("names", kind, "", names)
-        return names
+        return self._view.look_up(lookups.names, kind)
 
 
 def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:
@@ -513,17 +507,66 @@ def called(node: Node) -> str:
     return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
 
 
-def _is_of_node(item: object) -> bool:
-    return isinstance(item, Model) and item.category.raw != "SubTree"
+def _seen_nodes(view: View, facts: Facts) -> tuple[SeenNode, ...]:
+    return tuple(view._seen(facts.item)) if isinstance(facts.item, Tree) else ()
+
+
+def _has_trees(view: View) -> bool:
+    return view.look_up(lookups.first_tree) is not None
+
+
+def _is_first_tree(view: View, tree: Facts) -> bool:
+    return view.look_up(lookups.first_tree) is tree
+
+
+def _is_main(view: View, tree: Facts) -> bool:
+    main = view.look_up(lookups.main_tree)
+    name = tree.item.name.text if isinstance(tree.item, Tree) and tree.item.name is not None else None
+    if main is None or main[0] != name:
+        return False
+    return main[1] or view.look_up_name(lookups.owner, Kind.TREE, name) is tree
+
+
+def _has_names(view: View, kind: Kind) -> bool:
+    return bool(view.scope.names(kind))
+
+
+def _quality(view: View, name: str) -> QualityMatch | None:
+    words = tuple(name.split("."))
+    if fold(words[-1]) in view.ask(_own_qualities):
+        return None
+    return find(words, EDITIONS[view.edition])
+
+
+def _own_qualities(view: View) -> frozenset[str]:
+    return frozenset(map(fold, view.scope.names(Kind.QUALITY)))
+
+
+def _near_names(view: View, kind: Kind | None, word: str) -> tuple[str, ...]:
+    if kind is None:
+        return near(word, view.other_files)
+    if view.look_up(lookups.is_crowded, kind):
+        return ()
+    names = view.scope.names(kind)
+    return near(word, (*_builtin_names(), *names) if kind is Kind.MODEL else names)
+
+
+def _is_used(view: View, kind: Kind, name: str) -> bool:
+    return name in view.look_up(lookups.used, kind)
+
+
+def _is_misspelt_use(view: View, name: str) -> bool:
+    return any(name in view.ask(_misspelt_uses, facts) for facts in view.look_up(lookups.trees))
+
+
+def _misspelt_uses(_: View, facts: Facts) -> frozenset[str]:
+    nodes = facts.item.walk() if isinstance(facts.item, Tree) else ()
+    return frozenset(node.label.text for node in nodes if node.label is not None and misspelt_clause(node))
 
 
 @cache
 def _builtin_names() -> tuple[str, ...]:
     return tuple(word for kind in BUILTINS.values() for word in spellings(kind) if is_name(word))
-
-
-# How many names one file's misspelt ones are compared with: 30 ms of work, a second where all look alike (rq_0001 …).
-_MOST_COMPARED = 20_000
 
 
 def _numbered(children: tuple[object, ...]) -> list[tuple[int, Node]]:

@@ -212,6 +212,11 @@ def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--on-click", metavar="COMMAND", help="run for a click on a node, with {file}, {line} and {column}; no shell"
     )
+    parser.add_argument(
+        "--follow",
+        action="store_true",
+        help='for an editor: read {"line": N} and {"text": "…"} from standard input, a JSON object a line; end with it',
+    )
 
 
 def _add_diff(commands: _SubParsersAction[Parser]) -> None:

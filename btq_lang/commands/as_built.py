@@ -16,7 +16,7 @@ from btq_lang.commands.files import Files, Group
 from btq_lang.loader import absolute, find_project, read, shown
 from btq_lang.parser import parse
 from btq_lang.project import include_candidates
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Include
 
 
@@ -56,8 +56,7 @@ def as_built(path: str) -> tuple[Group, str, Callable[[str], str]] | None:
     return group, target, lambda each: f"{shown(sources[each])}:{shown(each)}" if each in sources else shown(each)
 
 
-@record
-class _Made:
+class _Made(Record):
     """What an XML file was made of.
 
     Attributes:

@@ -18,7 +18,7 @@ from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.diagnostics import Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
@@ -26,9 +26,12 @@ from btq_lang.symbols import Kind
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
-@record
-class Output:
+
+class Output(Record):
     """A file to be written, or to be removed.
 
     Attributes:
@@ -41,8 +44,7 @@ class Output:
     old: str | None
 
 
-@record
-class Outcome:
+class Outcome(Record):
     """What one run did.
 
     Attributes:
@@ -122,6 +124,8 @@ def build(options: Namespace, files: Files) -> Outcome:
         for path in _without_tree(group):
             print(f"btq build: {shown(path)} has no tree, so there is nothing in it to run", file=sys.stderr)
     _tell_clauses([done for _, _, done in made], groups, options.verbose)
+    if not options.check:
+        _tell_guessed([done.export for _, _, done in made])
     if STDIN in options.paths:
         for path, _, done in made:
             if path == files.stdin:
@@ -228,6 +232,17 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
         counted += [f"{len(loose)} about no node"] if loose else []
         print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)
+
+
+def _tell_guessed(exports: list[Export]) -> None:
+    """Print which nodes have a model that says what they may be, for the mission does not say it."""
+    guessed = {name: category for each in exports for name, category in each.guessed.items()}
+    shown = [f"{name} ({category})" for name, category in sorted(guessed.items())[:_GUESSES_SHOWN]]
+    if len(guessed) > len(shown):
+        shown.append(f"{len(guessed) - len(shown)} more")
+    if shown:
+        which = "declare those that are something else, as in `Condition Name`"
+        print(f"models guessed from how nodes are used: {', '.join(shown)}; {which}", file=sys.stderr)
 
 
 def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
@@ -383,3 +398,6 @@ def _take_back(outputs: list[Output]) -> None:
         except OSError as error:
             problem = LoadProblem(output.path, f"was changed and cannot be put back: {error.strerror}")
             print(f"btq: {problem}", file=sys.stderr)
+
+
+_GUESSES_SHOWN: Final = 8

@@ -1,4 +1,4 @@
-"""`btq explain`: what a rule, a node, a quality or a word of the language is."""
+"""`btq explain`: what a rule, a node, a quality, a word or sign of the language, an attribute, a port or a unit is."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ import sys
 from argparse import Namespace
 from collections.abc import Iterator
 
-from btq_lang.catalog.language import PHRASES, Phrase, phrases_of
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES, AttributeKind
+from btq_lang.catalog.language import PHRASES, SIGNS, Phrase, phrases_of
+from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
+from btq_lang.features.describe import in_si, si_symbol
 from btq_lang.near import near
+from btq_lang.quantities import parse_quantity
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import RULES, page
+from btq_lang.syntax import is_name, quote
+from btq_lang.units import Unit, dimension_name, nearest_units, parse_unit, symbols
 
 
 def run(options: Namespace) -> int:
@@ -27,9 +33,9 @@ def run(options: Namespace) -> int:
         pages = [text for found in by_name.values() for text in found]
         unknown = [name for name, found in by_name.items() if not found]
     for name in unknown:
-        likely = near(name, _names())
+        likely = _likely(name)
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all there is"
-        print(f"btq explain: `{name}` is no rule, node, quality or word of the language{meant}", file=sys.stderr)
+        print(f"btq explain: `{name}` is no rule, node, quality, unit or word of the language{meant}", file=sys.stderr)
     bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for number, text in enumerate(pages):
         print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
@@ -48,6 +54,12 @@ def _pages(name: str) -> Iterator[str]:
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
     yield from map(_phrase, phrases_of(name))
+    if name in RESERVED_ATTRIBUTES:
+        yield _attribute(RESERVED_ATTRIBUTES[name])
+    yield from _ports(name)
+    yield from _type(name)
+    yield from _sign(name)
+    yield from _unit(name)
     if name == "io-error":
         yield _IO_ERROR
 
@@ -95,6 +107,67 @@ def _phrase(phrase: Phrase) -> str:
     return f"# {phrase.words} ({phrase.part})\n\n    {phrase.form}\n\n{phrase.sentence}"
 
 
+def _attribute(kind: AttributeKind) -> str:
+    value = "true" if kind.group == "engine" else '"done := true"' if kind.group == "post" else '"…"'
+    form = f"{'SubTree Dock' if kind.group == 'engine' else 'MoveBase'} ({kind.name} = {value})"
+    if kind.group == "pre":
+        form = f'MoveBase ({kind.name} = "distance < 0.1")'
+    whose = ", which the engine does not read" if kind.group == "tool" else ""
+    return f"# {kind.name} (attribute of a node{whose})\n\n    {form}\n\n{kind.doc[0].upper()}{kind.doc[1:]}."
+
+
+def _ports(name: str) -> Iterator[str]:
+    """The ports of this name that nodes of the engine have."""
+    found = [(kind, port) for kind in BUILTINS.values() for port in kind.ports if port.name == name]
+    if found and name not in RESERVED_ATTRIBUTES:
+        lines = [f"{f'{kind.tag}:':<24} {port.type:<13} {port.doc}" for kind, port in found]
+        yield "\n".join((f"# {name} (port)", "", *lines))
+
+
+def _type(name: str) -> Iterator[str]:
+    if name and name[0].isalpha() and is_known_type(plain_type(name)):
+        yield (
+            f"# {name} (type of a port)\n\n    input x : {name if is_name(name.replace('::', '')) else quote(name)}\n\n"
+            f"A type of C++ that the engine reads from a text, so values of such a port are checked."
+        )
+
+
+def _sign(name: str) -> Iterator[str]:
+    """`{pose}` and `{ }` are one sign, and `btq: ignore[unused-tree]` is a sign with its rule."""
+    plain = name.partition("[")[0]
+    if name.startswith("{") and name.endswith("}") and name != "{=}":
+        plain = "{@ }" if name.startswith("{@") else "{ }"
+    for sign, form, meaning in SIGNS:
+        parts = [sign, sign.replace(" ", ""), *sign.split(" ")]
+        if plain in parts:
+            yield f"# {sign} (sign)\n\n    {form}\n\n{meaning[0].upper()}{meaning[1:]}."
+
+
+def _unit(name: str) -> Iterator[str]:
+    quantity = parse_quantity(name)
+    unit = parse_unit(name)
+    if quantity is not None:
+        value = in_si(name)
+        converted = f" It is {value}." if value != name else ""
+        yield f"# {name} (quantity)\n\nMeasures {dimension_name(quantity[1])}.{converted}"
+    elif name in _SORTS:
+        yield f"# {name} (in the place of a unit)\n\n    signal x : {name} from {{x}}\n\n{_SORTS[name]}"
+    elif unit is not None:
+        one = in_si(f"1 {name}")
+        same = "" if unit.symbol == name or si_symbol(unit) == name else f", the same as {unit.symbol}"
+        value = "" if one in (f"1 {name}", "1") else f" 1 {name} is {one}{same}."
+        others = [each.symbol for each in symbols() if each.dimension == unit.dimension and each.symbol != unit.symbol]
+        beside = f"\n\ncompares with: {', '.join(others)}" if others else ""
+        yield f"# {name} (unit)\n\nMeasures {dimension_name(unit)}.{value}{beside}"
+
+
+def _likely(name: str) -> tuple[str, ...]:
+    """What looks like it, or else what it is a part of."""
+    names = _names()
+    parts = [each for each in names if len(name) > 2 and name.casefold() in each.casefold()]
+    return near(name, names) or tuple(sorted(parts, key=lambda each: (len(each), each))[:5]) or nearest_units(name)
+
+
 def _overview() -> Iterator[str]:
     yield "# Rules"
     for rule in RULES.values():
@@ -107,12 +180,30 @@ def _overview() -> Iterator[str]:
         yield f"{quality.id:<58} {quality.name}"
     yield "\n# Words of the language"
     for phrase in PHRASES:
-        yield f"{phrase.words:<18} {phrase.part:<22} {phrase.brief}"
+        yield f"{phrase.words:<20} {phrase.part:<22} {phrase.brief}"
+    yield "\n# Signs"
+    for sign, form, meaning in SIGNS:
+        yield f"{sign:<12} {form:<38} {meaning}"
+    yield "\n# Attributes of nodes"
+    for attribute in RESERVED_ATTRIBUTES.values():
+        yield f"{attribute.name:<20} {attribute.doc}"
+    yield "\n# Units"
+    for measured, units in _by_dimension(symbols()):
+        yield f"{measured:<22} {' '.join(units)}"
+
+
+def _by_dimension(units: tuple[Unit, ...]) -> Iterator[tuple[str, list[str]]]:
+    found: dict[str, list[str]] = {}
+    for unit in units:
+        found.setdefault(dimension_name(unit), []).append(unit.symbol)
+    yield from found.items()
 
 
 def _names() -> list[str]:
     words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
-    return [*RULES, *words, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
+    ports = {port.name for kind in BUILTINS.values() for port in kind.ports}
+    known = [*RULES, *words, *ports, *RESERVED_ATTRIBUTES, *(unit.symbol for unit in symbols())]
+    return [*known, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
 
 
 def _with_bold_headings(text: str) -> str:
@@ -120,6 +211,11 @@ def _with_bold_headings(text: str) -> str:
     return "\n".join(f"\x1b[1m{line}\x1b[0m" if line.startswith("#") else line for line in lines)
 
 
+_SORTS = {
+    "bool": "A signal that is true or false, and a condition by itself: `keeps door_open`.",
+    "text": 'A signal that is a text: `keeps zone == "corridor"`.',
+    "1": "A plain number, which no unit measures: `signal tries_left : 1 from {tries_left}`.",
+}
 _IO_ERROR = """# io-error
 
 A file that cannot be read or written, or that is no UTF-8.

@@ -8,14 +8,13 @@ from collections.abc import Iterable, Iterator
 
 from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
 from btq_lang.project import Project
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.workspace import File, Workspace
 
 STDIN = "-"
 
 
-@record
-class Group:
+class Group(Record):
     """The files of one project.
 
     Attributes:
@@ -103,6 +102,10 @@ class Files:
             problems += found_problems
         return tuple(groups), tuple(problems)
 
+    def know(self, files: Iterable[File]) -> None:
+        """Take files as they are elsewhere, for as long as their texts are the same."""
+        self._known.update({file.path: file for file in files})
+
     def _read_stdin(self, filename: str | None) -> str:
         if self.stdin is None:
             self.stdin = absolute(filename or "<stdin>")
@@ -113,9 +116,7 @@ class Files:
         self, paths: tuple[str, ...], project: Project, project_file: str | None
     ) -> tuple[Group, tuple[LoadProblem, ...]]:
         def includes_of(path: str, text: str) -> Iterator[str]:
-            for include in self._file(path, text).includes:
-                if include.path is not None:
-                    yield include.path.text
+            return (include for include, _ in self._file(path, text).included_paths)
 
         known = {path: self.overlay[path] for path in paths if path in self.overlay}
         loaded = load((path for path in paths if path not in known), project, includes_of, known)

@@ -11,7 +11,7 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.loader import LoadProblem, absolute, find_project, read, shown, write_whole
 from btq_lang.project import include_candidates
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.text import LineIndex
@@ -19,8 +19,7 @@ from btq_lang.text import LineIndex
 _STDIN = "-"
 
 
-@record
-class _Job:
+class _Job(Record):
     """An XML file, what became of it, and where that goes; None: to standard output.
 
     Attributes:

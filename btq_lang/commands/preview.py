@@ -1,7 +1,8 @@
-"""`btq preview`: a mission's trees in a browser, drawn again whenever a file changes."""
+"""`btq preview`: a mission's trees in a browser, drawn again whenever a file changes, or as an editor tells it."""
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import subprocess
@@ -9,12 +10,13 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Sequence
-from threading import Lock
+from threading import Event, Lock, Thread
 
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.graph.picture import picture, places
 from btq_lang.loader import absolute, shown, stamp
 from btq_lang.preview.server import Preview
+from btq_lang.text import Span
 from btq_lang.watch import watch
 from btq_lang.workspace import Workspace
 
@@ -31,22 +33,52 @@ def run(options: Namespace) -> int:
         print(f"btq preview: port {options.port}: {error}", file=sys.stderr)
         return 2
     print(f"{shown(mission.path)} is shown at {preview.url}", flush=True)
-    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+    ended = Event()
+    if options.follow:
+        Thread(target=_follow, args=(mission, preview, ended), daemon=True).start()
+    else:
+        print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
     if options.open:
         import webbrowser
 
         webbrowser.open(preview.url)
+
+    def wait(seconds: float) -> None:
+        if ended.wait(seconds):
+            raise EOFError
+
     try:
-        for _ in watch(mission.watched, stamp, time.sleep, time.monotonic):
+        for _ in watch(mission.watched, stamp, wait, time.monotonic):
             preview.changed()
     except KeyboardInterrupt:
         print(file=sys.stderr)
+    except EOFError:  # the editor has gone
+        pass
     preview.close()
     return 0
 
 
 def _no_file(path: str) -> str | None:
     return None if os.path.isfile(path) else f"{path}: {'a folder' if os.path.isdir(path) else 'no such file'}"
+
+
+def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
+    """What an editor tells on standard input, a JSON object a line: the `line` of its cursor, and its `text`."""
+    try:
+        for told in sys.stdin.buffer:
+            try:
+                said = json.loads(told)
+                text, line = said.get("text"), said.get("line")
+            except (ValueError, AttributeError):
+                print(f"btq preview: no JSON object: {told!r}", file=sys.stderr)
+                continue
+            if isinstance(text, str):
+                mission.typed(text)
+                preview.changed()
+            if isinstance(line, int):
+                preview.here(line)
+    finally:
+        ended.set()
 
 
 class _Mission:
@@ -66,7 +98,9 @@ class _Mission:
         title = os.path.basename(self.path)
         if isinstance(workspace, str):
             return {"title": title, "trouble": workspace}
-        return {"title": title, "svg": picture(workspace, self.path, folded).svg}
+        found = picture(workspace, self.path, folded)
+        lines = {key: self._position(workspace, span)[0] for key, span in found.places.items()}
+        return {"title": title, "svg": found.svg, "lines": lines}
 
     def went(self, key: str) -> dict[str, object]:
         """Say where a node stands, for terminals that make links of it, and hand it to the user's editor."""
@@ -74,9 +108,7 @@ class _Mission:
         span = None if isinstance(workspace, str) else places(workspace, self.path).get(key)
         if span is None or isinstance(workspace, str):
             return {"trouble": "this node is no longer there"}
-        file = workspace.files[self.path]
-        span = file.origin.places.origin(span) if file.origin else span
-        line, column = (number + 1 for number in file.source_lines.position(span.start))
+        line, column = self._position(workspace, span)
         place = f"{shown(self.path)}:{line}:{column}"
         print(place, flush=True)
         values = {"file": self.path, "line": str(line), "column": str(column)}
@@ -87,9 +119,21 @@ class _Mission:
             return {"trouble": f"{self._on_click[0]}: {error.strerror}"}
         return {"said": place}
 
+    def typed(self, text: str) -> None:
+        """This text counts from now on, and not the file on the disk."""
+        with self._lock:
+            self._files.overlay[self.path] = text
+
     def watched(self) -> tuple[str, ...]:
         """All that the picture depends on, as far as it is known."""
         return self._watched
+
+    def _position(self, workspace: Workspace, span: Span) -> tuple[int, int]:
+        """Line and column, counted from 1, in the file as it was written."""
+        file = workspace.files[self.path]
+        span = file.origin.places.origin(span) if file.origin else span
+        position = file.source_lines.position(span.start)
+        return position.line + 1, position.column + 1
 
     def _read(self) -> Workspace | str:
         """The mission with what it includes, or why it cannot be read."""

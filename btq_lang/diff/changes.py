@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.diff.said import Place, Values
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -23,8 +23,7 @@ THINGS: Final = (
 What: TypeAlias = "Literal['added', 'removed', 'moved', 'changed', 'renamed']"
 
 
-@record
-class Detail:
+class Detail(Record):
     """What is said otherwise of something.
 
     Attributes:
@@ -38,8 +37,7 @@ class Detail:
     new: str | None
 
 
-@record
-class Change:
+class Change(Record):
     """A change between two missions.
 
     Attributes:

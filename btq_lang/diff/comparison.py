@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from btq_lang.diff import Change, Place, compare
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Position
 from btq_lang.workspace import Workspace
 
@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Side:
+class Side(Record):
     """One of two missions.
 
     Attributes:
@@ -35,8 +34,7 @@ class Side:
         return self.shown(place.path), lines.position(place.span.start), lines.position(place.span.end)
 
 
-@record
-class Comparison:
+class Comparison(Record):
     """Two missions and what changed between them."""
 
     old: Side

@@ -7,6 +7,7 @@ stands for.  Comments, layout and the order of attributes, ports and clauses are
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.names import legal_name
@@ -15,7 +16,7 @@ from btq_lang.catalog.qualities import EDITIONS, find
 from btq_lang.lexer import tokens
 from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Apply,
@@ -76,16 +77,14 @@ MAIN: Final = "main tree"
 MISSION: Final = "mission"
 
 
-@record
-class Place:
+class Place(Record):
     """Where something stands: a file, and a span of its text as it is on the disk."""
 
     path: str
     span: Span
 
 
-@record
-class Value:
+class Value(Record):
     """What is said of one aspect of something.
 
     Attributes:
@@ -128,8 +127,7 @@ class Part:
         self.children: list[Part] = []
 
 
-@record
-class Item:
+class Item(Record):
     """Something with a name beside the trees: a requirement, a signal, a model.
 
     Attributes:
@@ -144,8 +142,7 @@ class Item:
     place: Place
 
 
-@record
-class Said:
+class Said(Record):
     """What a mission says: its trees, and all else."""
 
     trees: tuple[Part, ...]
@@ -305,7 +302,8 @@ class _Reader:
             yield self._item("quality", item.name, values, item)
         elif isinstance(item, Include):
             values = {pair.key.text: _value(pair.value) for pair in item.attributes}
-            yield self._item("include", item.path, values, item)
+            path = posixpath.normpath(item.path.text) if item.path is not None else ""  # `./lib.btq` is no other file
+            yield Item("include", path, values, self._place(item.start, item.end))
         elif isinstance(item, Root):
             values = {_MISSION_WORDS.get(pair.key.text, pair.key.text): _value(pair.value) for pair in item.attributes}
             if item.name is not None:

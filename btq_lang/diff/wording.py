@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btq_lang.diff.changes import Change, Detail
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -32,8 +32,7 @@ _IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree
 _MOST: Final = 3  # names in a row
 
 
-@record
-class Line:
+class Line(Record):
     """A line below a headline; sign: `+`, `-` or `~`."""
 
     sign: str

@@ -13,6 +13,7 @@ TYPE_CHECKING = False  # type checkers read it as True
 if TYPE_CHECKING:
     from btq_lang.features.actions import code_actions
     from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
+    from btq_lang.features.colours import Colours, colours, delta
     from btq_lang.features.completion import complete
     from btq_lang.features.documentation import documentation as documented
     from btq_lang.features.documentation import include_edits
@@ -27,13 +28,14 @@ if TYPE_CHECKING:
     from btq_lang.features.relations import goto_implementation, goto_type
     from btq_lang.features.rename import Refusal, prepare_rename
     from btq_lang.features.rename import rename as renamed
-    from btq_lang.features.semantic_tokens import delta, encode
+    from btq_lang.features.semantic_tokens import encode
     from btq_lang.features.semantic_tokens import semantic_tokens as coloured
     from btq_lang.features.signature import signature_help
     from btq_lang.features.structure import document_links, folding_ranges, selection_range
 
 __all__ = [
     "Call",
+    "Colours",
     "Refusal",
     "Target",
     "TreeItem",
@@ -42,6 +44,7 @@ __all__ = [
     "code_actions",
     "code_lenses",
     "coloured",
+    "colours",
     "complete",
     "delta",
     "document_links",
@@ -72,6 +75,7 @@ __all__ = [
 _HOMES = {
     "actions": ("code_actions",),
     "calls": ("Call", "TreeItem", "called", "callers", "prepare_calls"),
+    "colours": ("Colours", "colours", "delta"),
     "completion": ("complete",),
     "documentation": ("documented", "include_edits"),
     "hints": ("code_lenses", "inlay_hints"),
@@ -83,7 +87,7 @@ _HOMES = {
     "outline": ("document_symbols", "workspace_symbols"),
     "relations": ("goto_implementation", "goto_type"),
     "rename": ("Refusal", "prepare_rename", "renamed"),
-    "semantic_tokens": ("coloured", "delta", "encode"),
+    "semantic_tokens": ("coloured", "encode"),
     "signature": ("signature_help",),
     "structure": ("document_links", "folding_ranges", "selection_range"),
 }

@@ -9,7 +9,7 @@ from btq_lang.diagnostics import Diagnostic, Fix
 from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
 from btq_lang.fixes import fixed
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Edit, Position, Span
 from btq_lang.tokens import COMMENT
 from btq_lang.workspace import Workspace
@@ -17,8 +17,7 @@ from btq_lang.workspace import Workspace
 QUICK_FIX, REFACTOR, FIX_ALL = "quickfix", "refactor", "source.fixAll"
 
 
-@record
-class Action:
+class Action(Record):
     """Something that can be done.
 
     Attributes:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Entry, Node, Tree
 from btq_lang.text import LINE_END, Edit, Span
 from btq_lang.tokens import COMMENT, STRING
@@ -16,8 +16,7 @@ from btq_lang.workspace import File
 STEP = "    "
 
 
-@record
-class Block:
+class Block(Record):
     """The lines of a node.
 
     Attributes:
@@ -29,8 +28,7 @@ class Block:
     blanks: str
 
 
-@record
-class Standing:
+class Standing(Record):
     """A node and where it stands."""
 
     node: Node

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, home_of, subject
 from btq_lang.mentions import What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Definition, Workspace
 
 
-@record
-class TreeItem:
+class TreeItem(Record):
     """A tree; `name_span` is where to stand."""
 
     name: str
@@ -21,8 +20,7 @@ class TreeItem:
     name_span: Span
 
 
-@record
-class Call:
+class Call(Record):
     """A tree that runs another, or is run by one.  places: the SubTrees, in the caller's file."""
 
     tree: TreeItem

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, HAPPENINGS, METHODS
 from btq_lang.conditions import COMPARISONS
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.tokens import BRACED, CLOSE, NAME, NUMBER, QUANTITY, STRING, Token
 
 
-@record
-class Expected:
+class Expected(Record):
     """What may stand at a place.
 
     Attributes:

@@ -18,14 +18,13 @@ from btq_lang.features.meaning import entry_at
 from btq_lang.features.place import Place, place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.workspace import Workspace
 
 
-@record
-class Completion:
+class Completion(Record):
     """What may stand at a place, best first.  span: what each proposal replaces, where it does not say it itself."""
 
     span: Span
@@ -46,14 +45,12 @@ def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -
         return False
     if name not in workspace.files[path].text[span.start : span.end]:
         return False
-    places = (
-        (other, mention.span.shifted(entry.start))
-        for other, file in workspace.files.items()
-        if name in file.text
-        for entry, mention in file.mentioned.get(name, ())
+    here = [mention.span.shifted(entry.start) for entry, mention in workspace.files[path].mentioned(name)]
+    if not here or any(at.start < span.start or at.end > span.end for at in here):
+        return False
+    return not any(
+        name in file.text and file.mentioned(name) for other, file in workspace.files.items() if other != path
     )
-    found = [other == path and span.start <= at.start and at.end <= span.end for other, at in places]
-    return bool(found) and all(found)
 
 
 def _complete(workspace: Workspace, path: str, offset: int) -> Completion:

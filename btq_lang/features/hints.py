@@ -10,7 +10,7 @@ from btq_lang.features.meaning import Found, Subject, definition, everywhere, ho
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.mentions import What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.requirements import requirements
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Claim, Requirement
@@ -20,8 +20,7 @@ from btq_lang.workspace import Definition, Workspace
 _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 
 
-@record
-class Hint:
+class Hint(Record):
     """A remark behind a word.  tooltip: more about it."""
 
     offset: int
@@ -29,8 +28,7 @@ class Hint:
     tooltip: str
 
 
-@record
-class Lens:
+class Lens(Record):
     """A remark above a line.  places: what it counts, by file."""
 
     span: Span
@@ -108,5 +106,5 @@ def _by_subject(workspace: Workspace, mission: str) -> dict[tuple[str, str], tup
             nodes = held.setdefault((applied.requirement.name, applied.requirement.path), {})
             for source in applied.nodes:
                 word = source.node.head
-                nodes[source.path, word.span.shifted(source.entry.start)] = None
+                nodes[source.path, word.span.shifted(workspace.files[source.path].start_of(source.item))] = None
     return {key: tuple(nodes) for key, nodes in held.items()}

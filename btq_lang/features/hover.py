@@ -10,14 +10,13 @@ from btq_lang.features.navigation import writes
 from btq_lang.features.place import item_tokens
 from btq_lang.features.ports import ports_of
 from btq_lang.mentions import What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.tokens import NAME
 from btq_lang.workspace import File, Workspace
 
 
-@record
-class Hover:
+class Hover(Record):
     """What to show beside a word, in Markdown."""
 
     span: Span

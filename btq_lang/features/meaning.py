@@ -13,7 +13,7 @@ from functools import lru_cache
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.mentions import Mention, What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Model, Node, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.text import Span
@@ -25,8 +25,7 @@ STANDARD = "standard"
 ROOT_BLACKBOARD = "@"
 
 
-@record
-class Subject:
+class Subject(Record):
     """What is named.
 
     Attributes:
@@ -40,8 +39,7 @@ class Subject:
     home: str = ""
 
 
-@record
-class Found:
+class Found(Record):
     """A mention in a file; `entry`: where it stands, None in a comment."""
 
     path: str
@@ -121,15 +119,8 @@ def definition(workspace: Workspace, path: str, wanted: Subject) -> Definition |
 
 
 def defined_elsewhere(workspace: Workspace, kind: Kind, name: str, home: str = "") -> Iterator[Definition]:
-    """The definitions of a name in the whole project; with a home, the one that is there.
-
-    The workspace has an index of them, but it is made of all files at every edit, and one name is asked for here.
-    """
-    for path, file in workspace.files.items():
-        if name in file.text or _ESCAPED.search(name):
-            for one in workspace.defined_in(path):
-                if (one.symbol.kind, one.symbol.name) == (kind, name) and (not home or home_of(one) == home):
-                    yield one
+    """The definitions of a name in the whole project; with a home, the one that is there."""
+    return (one for one in workspace.defined_anywhere(kind, name) if not home or home_of(one) == home)
 
 
 def home_of(found: Definition) -> str:
@@ -148,9 +139,8 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
         file = workspace.files[path]
         if words and not any(word in file.text for word in words):
             continue  # and need not be parsed to know it
-        index = file.mentioned
-        names = words or [name for name in index if _may_name(wanted, name)]
-        found = [Found(path, *one) for name in names for one in index.get(name, ())]
+        names = words or [name for name in file.mentioned_names if _may_name(wanted, name)]
+        found = [Found(path, *one) for name in names for one in file.mentioned(name)]
         if len(names) > 1:
             found.sort(key=lambda one: one.span)
         yield from (one for one in found if subject(workspace, one) == wanted)
@@ -205,11 +195,12 @@ def edition(workspace: Workspace, path: str) -> str:
 
 def quality_match(workspace: Workspace, path: str, name: str) -> QualityMatch:
     """What the standard's names say of a quality."""
-    return _match(name, edition(workspace, path))
+    return match_of(name, edition(workspace, path))
 
 
 @lru_cache(2_000)  # a colouring asks for each quality of a file, and a misspelt one is compared with all names
-def _match(name: str, edition: str) -> QualityMatch:
+def match_of(name: str, edition: str) -> QualityMatch:
+    """As `quality_match`, in an edition."""
     return find(tuple(name.split(".")), EDITIONS[edition])
 
 
@@ -276,7 +267,7 @@ def _place(workspace: Workspace, path: str, name: str) -> Subject:
     label = ""
     for other in workspace.scope(path).paths:
         file = workspace.files[other]
-        for entry, mention in file.mentioned.get(name, ()) if name in file.text else ():
+        for entry, mention in file.mentioned(name) if name in file.text else ():
             if mention.what is What.NODE:
                 return Subject(What.NODE, name)
             if mention.what is What.INSTANCE:

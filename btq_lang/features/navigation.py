@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from btq_lang.features.meaning import Found, at, definition, everywhere, subject
 from btq_lang.mentions import What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Node
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
 
-@record
-class Target:
+class Target(Record):
     """A place to go to.
 
     Attributes:
@@ -26,8 +25,7 @@ class Target:
     origin: Span
 
 
-@record
-class Highlight:
+class Highlight(Record):
     """A mention in the same file; `writes`: it gives the name or the value, and does not only use it."""
 
     span: Span

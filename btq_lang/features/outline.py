@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import Kind, requirements_at
 from btq_lang.syntax import (
     Apply,
@@ -29,8 +29,7 @@ from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
 
-@record
-class Outline:
+class Outline(Record):
     """A thing in the outline of a file.
 
     Attributes:
@@ -48,8 +47,7 @@ class Outline:
     children: tuple[Outline, ...] = ()
 
 
-@record
-class Match:
+class Match(Record):
     """A name in the project."""
 
     name: str

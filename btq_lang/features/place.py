@@ -10,7 +10,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 from btq_lang.lexer import tokens as tokens_of
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import unquote
 from btq_lang.text import Span
 from btq_lang.tokens import (
@@ -33,8 +33,7 @@ from btq_lang.tokens import (
 from btq_lang.workspace import File, Workspace
 
 
-@record
-class LineNode:
+class LineNode(Record):
     """The node of a line, as far as it is written."""
 
     name: str
@@ -46,8 +45,7 @@ class LineNode:
         return self.category == "SubTree"
 
 
-@record
-class Place:
+class Place(Record):
     """Where the cursor is.
 
     Attributes:

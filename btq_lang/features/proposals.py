@@ -17,7 +17,7 @@ from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.mentions import What
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
 from btq_lang.symbols import Kind
@@ -27,8 +27,7 @@ from btq_lang.units import dimension_name, parse_unit, symbols
 from btq_lang.workspace import Definition, Workspace
 
 
-@record
-class Proposal:
+class Proposal(Record):
     """A word that may stand at a place.
 
     Attributes:
@@ -190,7 +189,8 @@ def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Pr
 
 
 def tags(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    for name in sorted({found.mention.name for found in _mentioned(workspace, workspace.files, What.TAG)}):
+    paths = [other for other, file in workspace.files.items() if "tag" in file.text]
+    for name in sorted({found.mention.name for found in _mentioned(workspace, paths, What.TAG)}):
         yield Proposal(name, "tag", "", written(name))
 
 
@@ -425,39 +425,52 @@ def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defi
     for other in sorted(workspace.files):
         if other in scope.paths:
             continue
-        new = [one for one in workspace.defined_in(other) if one.symbol.kind is kind and one.symbol.name not in seen]
+        new = {name for of, name in workspace.files[other].defined_names if of is kind} - seen
         if new and not _clashes(workspace, path, other):
-            seen.update(one.symbol.name for one in new)
-            yield from ((one, other) for one in new)
+            seen |= new
+            found_there = (one for one in workspace.defined_in(other) if one.symbol.kind is kind)
+            yield from ((one, other) for one in found_there if one.symbol.name in new)
 
 
 def _clashes(workspace: Workspace, path: str, other: str) -> bool:
     """Whether a file, or one that it includes, defines anew what is in scope; or includes the one that is looked at."""
     scope = workspace.scope(path)
     brought = workspace.closure(other)
+    known = [workspace.files[each].defined_names for each in scope.paths]
     return path in brought or any(
-        (first := scope.find(one.symbol.kind, one.symbol.name)) is not None
-        and not (isinstance(first.symbol.target, Model) and shape(first.symbol.target) == shape(one.symbol.target))
+        not _is_same_model(workspace, path, file, *name)
         for file in brought
         if file not in scope.paths
-        for one in workspace.defined_in(file)
+        for names in known
+        for name in names & workspace.files[file].defined_names
+    )
+
+
+def _is_same_model(workspace: Workspace, path: str, other: str, kind: Kind, name: str) -> bool:
+    """Whether two files declare a node with the same ports."""
+    first = workspace.scope(path).find(kind, name)
+    return kind is Kind.MODEL and all(
+        first is not None and shape(first.symbol.target) == shape(one.symbol.target)
+        for one in workspace.files[other].definitions(kind, name)
     )
 
 
 def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Found]:
+    """What is mentioned of some kinds, in the order of the text; what an item says twice only once."""
     for path in paths:
         file = workspace.files[path]
         for entry in file.parsed.entries:
-            for mention in file.mentions_of(entry):
-                if mention.what in kinds:
-                    yield Found(path, entry, mention)
+            named = file.named(entry)
+            found = [mention for kind in kinds for mention in named.get(kind, ())]
+            if len(kinds) > 1:
+                found.sort(key=lambda mention: mention.span)
+            yield from [Found(path, entry, mention) for mention in found]
 
 
 def _unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:
     """The custom nodes in use."""
-    found = _mentioned(workspace, paths, What.NODE)
-    uses = (one.mention for one in found if not one.mention.defines)
-    return sorted({one.name for one in uses if lookup(one.name, one.word.quoted) is None and one.name})
+    used = frozenset().union(*[workspace.files[path].kinds for path in paths])
+    return sorted({name for name, quoted in used if name and lookup(name, quoted) is None})
 
 
 def _model(workspace: Workspace, found: Definition, item: Model, include: str) -> Proposal:

@@ -12,7 +12,7 @@ from btq_lang.features.block import STEP, Standing, block_of, moved, node_at, sh
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
 from btq_lang.mentions import Mention, What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import (
     Clause,
@@ -32,8 +32,7 @@ from btq_lang.tokens import BRACED
 from btq_lang.workspace import File, Workspace
 
 
-@record
-class Refactoring:
+class Refactoring(Record):
     """A change that keeps the meaning.  kind: as LSP has it."""
 
     title: str
@@ -98,7 +97,7 @@ def _keys_in(workspace: Workspace, path: str, entry: Entry, top: Node) -> dict[s
 
 def _way(workspace: Workspace, path: str, mention: Mention) -> str:
     if mention.writes:
-        return "output"
+        return "inout" if mention.updates else "output"
     if mention.node is None or mention.pair is None or mention.pair.key.text.startswith("_"):
         return "input"
     way = direction(workspace, path, mention.node, mention.pair.key.text)

@@ -14,29 +14,26 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
 from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
 from btq_lang.mentions import Mention, What
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import is_name, quote
 from btq_lang.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace, is_btq
 
 
-@record
-class Renamable:
+class Renamable(Record):
     """A name that can be changed: where it stands, and what it says now."""
 
     span: Span
     name: str
 
 
-@record
-class Refusal:
+class Refusal(Record):
     """Why something is not renamed, as a sentence."""
 
     reason: str
 
 
-@record
-class Renaming:
+class Renaming(Record):
     """What to change in which file."""
 
     edits: dict[str, tuple[Edit, ...]]

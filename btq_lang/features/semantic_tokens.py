@@ -5,18 +5,22 @@ One invariant: tokens are in the order of the text, none overlaps another, none 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from operator import itemgetter
 
 from btq_lang.catalog.nodes import lookup
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
-from btq_lang.features.meaning import quality_match
+from btq_lang.features.meaning import edition, match_of
+from btq_lang.lexer import tokens as tokens_of
 from btq_lang.mentions import Mention, What
-from btq_lang.record import record
+from btq_lang.parser import Parsed
+from btq_lang.record import Record
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Requirement
+from btq_lang.syntax import Entry, Requirement
 from btq_lang.text import LINE_END, Encoding, Span
 from btq_lang.tokens import (
     BRACED,
@@ -32,11 +36,10 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
-from btq_lang.workspace import Workspace
+from btq_lang.workspace import File, Workspace
 
 
-@record
-class SemanticToken:
+class SemanticToken(Record):
     """A coloured stretch.  type: one of TYPES; modifiers: some of MODIFIERS."""
 
     span: Span
@@ -47,18 +50,79 @@ class SemanticToken:
 def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None) -> tuple[SemanticToken, ...]:
     """The tokens of a file, or those that touch a stretch of it."""
     file = workspace.files[path]
+    known = Known(workspace, path)
+    found: list[SemanticToken] = []
+    for stretch in stretches(file.parsed, len(file.text)):
+        if within is None or (stretch.start <= within.end and stretch.end >= within.start):
+            by = stretch.start
+            found += [
+                SemanticToken(one.span.shifted(by), one.type, one.modifiers)
+                for one in tokens_of_stretch(file, stretch, known)
+            ]
+    if within is not None:
+        found = [one for one in found if one.span.end >= within.start and one.span.start <= within.end]
+    return tuple(found)
+
+
+class Known:
+    """What is asked of the rest of the workspace to colour a file.
+
+    Attributes:
+        world: all that there is to know.
+        asked: the names that were asked for.
+    """
+
+    def __init__(self, workspace: Workspace, path: str) -> None:
+        scope = workspace.scope(path)
+        self.world = (edition(workspace, path), scope.names(Kind.TREE), scope.names(Kind.QUALITY))
+        self.asked: set[str] = set()
+        self._edition = self.world[0]
+        self._trees, self._qualities = map(frozenset, self.world[1:])
+
+    def is_tree(self, name: str) -> bool:
+        self.asked.add(name)
+        return name in self._trees
+
+    def is_standard(self, name: str) -> bool:
+        """Whether a quality is one of the standard, and not one's own."""
+        self.asked.add(name)
+        return name not in self._qualities and match_of(name, self._edition).quality is not None
+
+    def answers(self, names: frozenset[str]) -> tuple[str, frozenset[str], frozenset[str]]:
+        """What changes when an answer about one of these names does."""
+        return self._edition, names & self._trees, names & self._qualities
+
+
+class Stretch(Record):
+    """A part of a file that can be cut into tokens by itself: an item, seldom more, and what stands behind it."""
+
+    start: int
+    end: int
+    entries: tuple[Entry, ...]
+
+
+def stretches(parsed: Parsed, size: int) -> Iterator[Stretch]:
+    """The stretches of a file, joined they are the file; what stands before the first item has none."""
+    entries = parsed.entries
+    begins = [index for index, start in enumerate(parsed.starts) if start is not None or index == 0]
+    if not entries or entries[0].start:
+        yield Stretch(0, entries[0].start if entries else size, ())
+    for begin, end in pairwise((*begins, len(entries))):
+        yield Stretch(entries[begin].start, entries[end].start if end < len(entries) else size, entries[begin:end])
+
+
+def tokens_of_stretch(file: File, stretch: Stretch, known: Known) -> list[SemanticToken]:
+    """The tokens of a stretch, counted from its start."""
+    text = file.text[stretch.start : stretch.end]
     named: list[tuple[Span, Mention]] = []
-    for entry in file.parsed.entries:
-        if within is None or (entry.start <= within.end and entry.start + _end(entry.item) >= within.start):
-            named += [(mention.span.shifted(entry.start), mention) for mention in file.mentions_of(entry)]
-    named.sort(key=lambda one: one[0])
+    for entry in stretch.entries:
+        by = entry.start - stretch.start
+        named += [(mention.span.shifted(by), mention) for mention in file.mentions_of(entry)]
+    named.sort(key=itemgetter(0))
     found: list[SemanticToken] = []
     index = 0
     before = ""
-    for token in file.parsed.tokens:
-        if within is not None and (token.end < within.start or token.start > within.end):
-            before = token.text if token.kind in _WORDS else before
-            continue
+    for token in tokens_of(text):
         while index < len(named) and named[index][0].end <= token.start:
             index += 1
         inside: list[tuple[Span, Mention]] = []
@@ -69,16 +133,11 @@ def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None)
         if index < len(named) and named[index][0].start < token.end and token.kind in (NAME, STRING):
             # A path of a quality or a compound unit: several tokens, one name.
             inside.append((Span(token.start, token.end), named[index][1]))
-        found += _of_token(workspace, path, token, inside, before)
+        for one in _of_token(known, token, inside, before):
+            found += _lines(one, text)
         if token.kind in _WORDS:
             before = token.text
-    return tuple(piece for token in found for piece in _lines(token, file.text))
-
-
-def _end(item: object) -> int:
-    end = getattr(item, "end", 0)
-    block = max((child.block_end for child in getattr(item, "children", ()) if hasattr(child, "block_end")), default=0)
-    return max(end if isinstance(end, int) else 0, block)
+    return found
 
 
 def encode(tokens: Iterable[SemanticToken], text: str, encoding: Encoding) -> list[int]:
@@ -104,34 +163,16 @@ def encode(tokens: Iterable[SemanticToken], text: str, encoding: Encoding) -> li
     return data
 
 
-def delta(before: Sequence[int], after: Sequence[int]) -> tuple[int, int, list[int]] | None:
-    """What to replace in `before` to have `after`: from where, how many integers, and by what; None: nothing."""
-    if list(before) == list(after):
-        return None
-    start = 0
-    shorter = min(len(before), len(after))
-    while start < shorter and before[start] == after[start]:
-        start += 1
-    start -= start % 5
-    end = 0
-    while end < shorter - start and before[-1 - end] == after[-1 - end]:
-        end += 1
-    end -= end % 5
-    return start, len(before) - end - start, list(after[start : len(after) - end])
-
-
 def _width(text: str, encoding: Encoding) -> int:
     if encoding == "utf-8":
         return len(text.encode("utf-8", "surrogatepass"))
     return len(text) + sum(character > "\uffff" for character in text)
 
 
-def _of_token(
-    workspace: Workspace, path: str, token: Token, inside: list[tuple[Span, Mention]], before: str
-) -> list[SemanticToken]:
+def _of_token(known: Known, token: Token, inside: list[tuple[Span, Mention]], before: str) -> list[SemanticToken]:
     span = Span(token.start, token.end)
     if inside and token.kind in (NAME, STRING, SYMBOL) and inside[0][0] == span:
-        named = _of_mention(workspace, path, inside[0][1])
+        named = _of_mention(known, inside[0][1])
         return [SemanticToken(span, *named)] if named else []
     plain = _PLAIN.get(token.kind)
     if token.kind == NAME and token.text in KEYWORDS and before != "=":
@@ -143,7 +184,7 @@ def _of_token(
     found: list[SemanticToken] = []
     at = span.start
     for place, mention in inside:  # keys in braces and scripts
-        named = _of_mention(workspace, path, mention)
+        named = _of_mention(known, mention)
         if named is None or not at <= place.start:
             continue
         if plain is not None and at < place.start:
@@ -155,17 +196,18 @@ def _of_token(
     return found
 
 
-def _of_mention(workspace: Workspace, path: str, mention: Mention) -> tuple[str, tuple[str, ...]] | None:
+def _of_mention(known: Known, mention: Mention) -> tuple[str, tuple[str, ...]] | None:
     what = mention.what
     modifiers: tuple[str, ...] = ("definition",) if mention.defines else ()
     if what is What.NODE:
         if mention.word.kind == SYMBOL:
             return "operator", ("defaultLibrary",)
-        is_builtin = not mention.defines and lookup(mention.name, mention.word.quoted) is not None
-        return ("type", ("defaultLibrary",)) if is_builtin else ("function", modifiers)
+        builtin = None if mention.defines else lookup(mention.name, mention.word.quoted)
+        if builtin is None:
+            return "function", modifiers
+        return "function" if builtin.category in ("Action", "Condition") else "type", ("defaultLibrary",)
     if what is What.QUALITY:
-        known = workspace.scope(path).find(Kind.QUALITY, mention.name) is None
-        is_standard = known and not mention.defines and quality_match(workspace, path, mention.name).quality is not None
+        is_standard = not mention.defines and known.is_standard(mention.name)
         return "enumMember", ("defaultLibrary",) if is_standard else modifiers
     if what is What.VALUE:
         owner = mention.owner
@@ -173,8 +215,7 @@ def _of_mention(workspace: Workspace, path: str, mention: Mention) -> tuple[str,
             return "parameter", ()
         return "variable", ("readonly",)
     if what is What.PLACE:
-        is_tree = workspace.scope(path).find(Kind.TREE, mention.name) is not None
-        return ("class" if is_tree else "function"), ()
+        return ("class" if known.is_tree(mention.name) else "function"), ()
     if what is What.KEY and mention.writes:
         return "variable", ("modification",)
     type_ = _TYPES.get(what)

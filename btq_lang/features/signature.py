@@ -5,20 +5,18 @@ from __future__ import annotations
 from btq_lang.features import describe
 from btq_lang.features.place import place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.workspace import Workspace
 
 
-@record
-class Parameter:
+class Parameter(Record):
     """A port: its label is a part of the signature's."""
 
     label: str
     documentation: str
 
 
-@record
-class Signature:
+class Signature(Record):
     """The ports of a node on one line.  active: which one is being given; None: one that it has not."""
 
     label: str

@@ -5,23 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.features.meaning import at, entry_at
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.syntax import Include, Node, Tree
 from btq_lang.text import Span
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
 from btq_lang.workspace import Workspace
 
 
-@record
-class Fold:
+class Fold(Record):
     """A stretch that can be folded to its first line.  kind: block, brackets, comment or includes."""
 
     span: Span
     kind: str
 
 
-@record
-class Link:
+class Link(Record):
     """A word that leads to a file; no target: the file is not there."""
 
     span: Span

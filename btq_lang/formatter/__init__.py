@@ -40,7 +40,7 @@ from btq_lang.formatter.layout import FormatOptions, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks, marks_of
 from btq_lang.parser import Parsed, parse
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.rules import Severity
 from btq_lang.text import LINE_END, Edit, Span, apply_edits
 
@@ -49,8 +49,7 @@ __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_tex
 DEFAULTS = FormatOptions()
 
 
-@record
-class Formatted:
+class Formatted(Record):
     """A text, formatted.
 
     Attributes:
@@ -106,8 +105,7 @@ def _first_error(parsed: Parsed) -> Diagnostic | None:
 # ---- the whole file -------------------------------------------------------------------------------------------------
 
 
-@record
-class _Stretch:
+class _Stretch(Record):
     """What becomes of the text between two offsets; `is_moved`: one of its lines gets another indentation."""
 
     start: int
@@ -189,8 +187,7 @@ def _part_items(lines: Sequence[Line], items: Container[int]) -> None:
         previous, was_block = line, is_block
 
 
-@record
-class _Row:
+class _Row(Record):
     """A logical line or a comment line, as text; `blank`: a blank line stands above, unless it opens a block."""
 
     level: int

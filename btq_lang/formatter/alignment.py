@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import LineIndex
 
 
-@record
-class Gap:
+class Gap(Record):
     """The blanks between code and the comments behind it.
 
     Attributes:

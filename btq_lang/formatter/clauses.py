@@ -11,13 +11,12 @@ from collections.abc import Iterator, Sequence
 from btq_lang.formatter.layout import FormatOptions, fits
 from btq_lang.formatter.lines import Line
 from btq_lang.formatter.marks import Clauses, Marks
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.tokens import NAME
 
 
-@record
-class Section:
+class Section(Record):
     """Lines that are written together, and the span of the file that they come from."""
 
     span: Span

@@ -14,12 +14,11 @@ from typing import Final
 from btq_lang.formatter.alignment import Gap
 from btq_lang.formatter.lines import Piece
 from btq_lang.formatter.marks import Marks
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
 
 
-@record
-class FormatOptions:
+class FormatOptions(Record):
     """How wide lines may become, and how many blanks a level has (at least one)."""
 
     columns: int = 100

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.parser import Parsed
-from btq_lang.record import fields_of, record
+from btq_lang.record import Record, fields_of
 from btq_lang.syntax import (
     Amount,
     Argument,
@@ -49,8 +49,7 @@ from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 
 
-@record
-class Clauses:
+class Clauses(Record):
     """The clauses of a requirement.
 
     Attributes:

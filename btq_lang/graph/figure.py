@@ -6,7 +6,7 @@ It does not know where anything stands on the paper.
 
 from __future__ import annotations
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     Outline: TypeAlias = Literal["control", "action", "condition", "decorator", "subtree", "unknown"]
 
 
-@record
-class Note:
+class Note(Record):
     """A quality or a requirement at a node.
 
     Attributes:
@@ -40,8 +39,7 @@ class Note:
     link: str = ""
 
 
-@record
-class Box:
+class Box(Record):
     """A node.
 
     Attributes:
@@ -67,8 +65,7 @@ class Box:
     hidden: int = 0
 
 
-@record
-class Figure:
+class Figure(Record):
     """A tree."""
 
     title: str

@@ -14,11 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 
-@record
-class Size:
+class Size(Record):
     """A box: its breadth and depth, and where in its breadth its anchor is."""
 
     breadth: int

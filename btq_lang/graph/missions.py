@@ -11,7 +11,7 @@ from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Claim, SourceNode
-from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices, Tree
+from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -55,7 +55,7 @@ def by_tree(nodes: Iterable[SourceNode]) -> Iterator[tuple[SourceNode, ...]]:
     """Nodes in the order of their text, those of each tree together."""
     found: dict[int, list[SourceNode]] = {}
     for node in nodes:
-        found.setdefault(id(node.entry), []).append(node)
+        found.setdefault(id(node.item), []).append(node)
     return map(tuple, found.values())
 
 
@@ -100,8 +100,8 @@ def concerns(node: SourceNode) -> Iterator[tuple[str, QualityPath]]:
 
 def clauses_of(node: SourceNode) -> tuple[NodeClause, ...]:
     """The clauses of a node; of the one node of a tree those of the tree as well."""
-    tree = node.entry.item
-    if node.parent is None and isinstance(tree, Tree) and sum(isinstance(each, Node) for each in tree.children) == 1:
+    tree = node.item
+    if node.parent is None and sum(isinstance(each, Node) for each in tree.children) == 1:
         return (*tree.clauses, *node.node.clauses)
     return node.node.clauses
 

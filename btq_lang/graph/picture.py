@@ -10,13 +10,12 @@ from collections.abc import Container, Mapping
 from btq_lang.graph import draw
 from btq_lang.graph.folding import foldable
 from btq_lang.graph.missions import figures, keyed
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
 
-@record
-class Picture:
+class Picture(Record):
     """The SVG, and of each node in it the word that says what it is, in the order of the text."""
 
     svg: str
@@ -43,4 +42,7 @@ def places(workspace: Workspace, path: str) -> dict[str, Span]:
     Raises:
         KeyError: there is no such file.
     """
-    return {key: node.node.head.span.shifted(node.entry.start) for key, node in keyed(workspace, path)}
+    return {
+        key: node.node.head.span.shifted(workspace.files[path].start_of(node.item))
+        for key, node in keyed(workspace, path)
+    }

@@ -9,7 +9,7 @@ from __future__ import annotations
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.widths import shortened, width, wrapped
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -23,8 +23,7 @@ MARGIN: Final = 12
 Line: TypeAlias = "tuple[tuple[int, int], ...]"
 
 
-@record
-class Rectangle:
+class Rectangle(Record):
     """Left, top, width and height."""
 
     x: int
@@ -37,8 +36,7 @@ class Rectangle:
         return self.x + self.w // 2, self.y + self.h // 2
 
 
-@record
-class PlacedNote:
+class PlacedNote(Record):
     """A note; lines: its texts as they fit, the title first."""
 
     note: Note
@@ -46,8 +44,7 @@ class PlacedNote:
     lines: tuple[str, ...]
 
 
-@record
-class PlacedBox:
+class PlacedBox(Record):
     """A box, its texts as they fit, and its notes.
 
     Attributes:
@@ -63,8 +60,7 @@ class PlacedBox:
     ties: Line
 
 
-@record
-class Drawing:
+class Drawing(Record):
     """A figure on paper of a width and a height."""
 
     title: str

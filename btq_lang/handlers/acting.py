@@ -6,6 +6,7 @@ from lsprotocol import types
 
 from btq_lang import features
 from btq_lang.editor import Server
+from btq_lang.protocol import Plain
 
 KINDS = [
     types.CodeActionKind.QuickFix,
@@ -21,7 +22,7 @@ def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=KINDS))
-    def actions(params: types.CodeActionParams) -> list[types.CodeAction]:
+    def actions(params: types.CodeActionParams) -> list[Plain]:
         place = server.at(params.text_document)
         if place is None:
             return []

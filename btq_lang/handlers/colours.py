@@ -7,41 +7,44 @@ from lsprotocol import types
 from btq_lang import features
 from btq_lang.editor import Server
 from btq_lang.features.legend import MODIFIERS, TYPES
+from btq_lang.protocol import Json, Plain
 
 
 def register(server: Server) -> None:
     convert = server.convert
 
-    def coloured(document: types.TextDocumentIdentifier, within: types.Range | None = None) -> list[int]:
+    def colours(document: types.TextDocumentIdentifier) -> tuple[str, features.Colours] | None:
         place = server.at(document)
         if place is None:
-            return []
-        span = convert.span(*place, within) if within else None
-        workspace, path = place
-        return features.encode(features.coloured(*place, span), workspace.files[path].text, convert.encoding)
-
-    def remembered(document: types.TextDocumentIdentifier, data: list[int]) -> str:
+            return None
         server.count += 1
-        server.tokens[convert.path(document.uri)] = str(server.count), data
-        return str(server.count)
+        found = server.tokens[place[1]] = str(server.count), features.colours(*place, convert.encoding)
+        return found
+
+    def whole(found: tuple[str, features.Colours] | None) -> Json:
+        return Json(f'{{"resultId": "{found[0]}", "data": {found[1].as_json}}}') if found else Json('{"data": []}')
 
     legend = types.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
-    def full(params: types.SemanticTokensParams) -> types.SemanticTokens:
-        data = coloured(params.text_document)
-        return types.SemanticTokens(data, remembered(params.text_document, data))
+    def full(params: types.SemanticTokensParams) -> Json:
+        return whole(colours(params.text_document))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
-    def delta(params: types.SemanticTokensDeltaParams) -> types.SemanticTokens | types.SemanticTokensDelta:
-        known, before = server.tokens.get(convert.path(params.text_document.uri), (None, []))
-        data = coloured(params.text_document)
-        result = remembered(params.text_document, data)
-        if known != params.previous_result_id:
-            return types.SemanticTokens(data, result)
-        edit = features.delta(before, data)
-        return types.SemanticTokensDelta([types.SemanticTokensEdit(*edit)] if edit else [], result)
+    def delta(params: types.SemanticTokensDeltaParams) -> Json | Plain:
+        before = server.tokens.get(convert.path(params.text_document.uri))
+        found = colours(params.text_document)
+        if found is None or before is None or before[0] != params.previous_result_id:
+            return whole(found)
+        edit = features.delta(before[1], found[1])
+        edits = [{"start": edit[0], "deleteCount": edit[1], "data": edit[2]}] if edit else []
+        return {"resultId": found[0], "edits": edits}
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
-    def part(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
-        return types.SemanticTokens(coloured(params.text_document, params.range))
+    def part(params: types.SemanticTokensRangeParams) -> Plain:
+        place = server.at(params.text_document)
+        if place is None:
+            return {"data": []}
+        workspace, path = place
+        found = features.coloured(workspace, path, convert.span(workspace, path, params.range))
+        return {"data": features.encode(found, workspace.files[path].text, convert.encoding)}

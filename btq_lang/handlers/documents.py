@@ -6,8 +6,9 @@ import asyncio
 
 from lsprotocol import types
 
-from btq_lang.editor import Server
+from btq_lang.editor import A_FEW, Server
 from btq_lang.handlers.progress import checking
+from btq_lang.protocol import Plain
 
 
 def register(server: Server) -> None:
@@ -25,8 +26,7 @@ def register(server: Server) -> None:
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
         server.versions[path] = params.text_document.version
-        for change in params.content_changes:
-            server.check_soon(session.edit(path, change.text))
+        server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
@@ -43,33 +43,32 @@ def _diagnostics(server: Server) -> None:
         types.TEXT_DOCUMENT_DIAGNOSTIC,
         types.DiagnosticOptions(identifier="btq", inter_file_dependencies=True, workspace_diagnostics=True),
     )
-    def document_diagnostic(params: types.DocumentDiagnosticParams) -> types.DocumentDiagnosticReport:
+    def document_diagnostic(params: types.DocumentDiagnosticParams) -> Plain:
         return server.report(convert.path(params.text_document.uri), params.previous_result_id)
 
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
-    async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> types.WorkspaceDiagnosticReport:
+    async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Plain:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
-        items: list[types.WorkspaceDocumentDiagnosticReport] = []
+        # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so.
+        gone = known.keys() - set(paths) - session.open.keys()
+        items: list[Plain] = [{"uri": convert.uri(path), "version": None, **_NOTHING} for path in sorted(gone)]
         async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
             for done, path in enumerate(paths, 1):
-                items.append(report_of(path, known.get(path)))
+                about = {"uri": convert.uri(path), "version": server.versions.get(path)}
+                items.append({**about, **server.report(path, known.get(path))})
+                if done % A_FEW == 0:
+                    session.let_go()
                 if done % A_PART == 0:
                     told(done)
                     if params.partial_result_token is not None:
-                        part = types.WorkspaceDiagnosticReport(items)
-                        server.protocol.notify(types.PROGRESS, types.ProgressParams(params.partial_result_token, part))
+                        part = {"token": params.partial_result_token, "value": {"items": items}}
+                        server.protocol.tell(types.PROGRESS, part)
                         items = []
                 await asyncio.sleep(0)  # the editor may have given up, or changed something
-        return types.WorkspaceDiagnosticReport(items)
-
-    def report_of(path: str, previous: str | None) -> types.WorkspaceDocumentDiagnosticReport:
-        report = server.report(path, previous)
-        uri, version = convert.uri(path), server.versions.get(path)
-        if isinstance(report, types.RelatedUnchangedDocumentDiagnosticReport):
-            return types.WorkspaceUnchangedDocumentDiagnosticReport(uri, report.result_id, version)
-        return types.WorkspaceFullDocumentDiagnosticReport(uri, report.items, version, result_id=report.result_id)
+        return {"items": items}
 
 
 A_PART = 20  # of the files, told together
+_NOTHING: Plain = {"kind": "full", "items": []}

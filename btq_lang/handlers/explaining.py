@@ -7,6 +7,7 @@ from lsprotocol import types
 from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
+from btq_lang.protocol import Plain
 
 
 def register(server: Server) -> None:
@@ -31,7 +32,7 @@ def register(server: Server) -> None:
         types.TEXT_DOCUMENT_COMPLETION,
         types.CompletionOptions(trigger_characters=list('({=.<"@:/,['), resolve_provider=True),
     )
-    def completion(params: types.CompletionParams) -> types.CompletionList | None:
+    def completion(params: types.CompletionParams) -> Plain | None:
         asked = server.ask(params.text_document, params.position, features.complete)
         return convert.completion(*asked, snippets=server.takes_snippets) if asked else None
 

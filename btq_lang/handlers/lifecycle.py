@@ -27,6 +27,7 @@ def register(server: Server) -> None:
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         session.folders = tuple(map(convert.path, folders))
         capabilities = server.client_capabilities.workspace
+        keep_what_is_there()
         try:
             await _register_watchers(server)
             if capabilities is not None and capabilities.configuration:

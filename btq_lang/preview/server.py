@@ -1,4 +1,5 @@
-"""The server of `btq preview`: the page, pictures when it asks for them, and a word when they have changed.
+"""The server of `btq preview`: the page, pictures when it asks for them, and a word when they have changed or the
+cursor of an editor has moved.
 
 One invariant: only pages that it served itself are answered.  It listens on the loopback interface alone, but every
 page in a browser on this machine can send requests there: a foreign one has another Origin, and one that was led here
@@ -41,7 +42,7 @@ class Preview:
         go: Callable[[str], dict[str, object]],
     ) -> None:
         self._changed = Condition()
-        self._version = 0
+        self._now = (0, 0)  # how often something has changed, and the line that the cursor is in; 0: none is known
         handler = type("Handler", (_Handler,), {"preview": self, "draw_": staticmethod(draw), "go_": staticmethod(go)})
         self._server = ThreadingHTTPServer((ADDRESS, port), handler)
         self._server.daemon_threads = True
@@ -55,14 +56,20 @@ class Preview:
     def changed(self) -> None:
         """Every page asks for its picture again."""
         with self._changed:
-            self._version += 1
+            self._now = (self._now[0] + 1, self._now[1])
             self._changed.notify_all()
 
-    def wait(self, seen: int) -> int:
-        """The number of changes so far, when it is another than was seen, or after a while."""
+    def here(self, line: int) -> None:
+        """Every page marks the node that the line, counted from 1, belongs to."""
         with self._changed:
-            self._changed.wait_for(lambda: self._version != seen, _ALIVE)
-            return self._version
+            self._now = (self._now[0], line)
+            self._changed.notify_all()
+
+    def wait(self, seen: tuple[int, int]) -> tuple[int, int]:
+        """The number of changes so far and the cursor's line, when they are others than were seen, or after a while."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._now != seen, _ALIVE)
+            return self._now
 
     def close(self) -> None:
         self._server.shutdown()
@@ -124,13 +131,15 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
-        seen = -1
+        changes, line = -1, 0
         try:
             while True:
-                now = self.preview.wait(seen)
-                self.wfile.write(b": still here\n\n" if now == seen else b"data: changed\n\n")
+                now = self.preview.wait((changes, line))
+                said = b"data: changed\n\n" if now[0] != changes else b""
+                said += b"event: here\ndata: %d\n\n" % now[1] if now[1] != line else b""
+                self.wfile.write(said or b": still here\n\n")
                 self.wfile.flush()
-                seen = now
+                changes, line = now
         except OSError:
             return
 

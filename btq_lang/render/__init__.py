@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
 
 
-@record
-class Finding:
+class Finding(Record):
     """A diagnostic on its way out: its spans count from the start of `text`, its places have no anchors."""
 
     path: str
@@ -24,8 +23,7 @@ class Finding:
     diagnostic: Diagnostic
 
 
-@record
-class Trouble:
+class Trouble(Record):
     """A file that could not be read or written, or not well, so that what is found in it is not all there is.
 
     Attributes:
@@ -42,8 +40,7 @@ class Trouble:
         return f"{self.path}{place}: {self.message}"
 
 
-@record
-class Report:
+class Report(Record):
     """What one run found.
 
     Attributes:

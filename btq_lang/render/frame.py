@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.render.cells import cut, laid_out
 from btq_lang.render.location import clamped, line_index
 from btq_lang.text import LineIndex, Position, Span
@@ -18,8 +18,7 @@ _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its 
 _MARGIN = "  "  # where the line along a span over several lines is drawn
 
 
-@record
-class Row:
+class Row(Record):
     """One line of a block: number, bar and body of `12 | body`.
 
     Attributes:
@@ -54,8 +53,7 @@ def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str],
     return [*_context(view, above, margin), *marked, *_context(view, below, margin)]
 
 
-@record
-class _View:
+class _View(Record):
     """The part of the lines that is shown: `room` cells from `left` on, the same for all lines of a frame."""
 
     lines: LineIndex

@@ -8,13 +8,12 @@ from __future__ import annotations
 from functools import lru_cache
 
 from btq_lang.diagnostics import Place
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.render import Finding, Report
 from btq_lang.text import LineIndex, Span
 
 
-@record
-class Location:
+class Location(Record):
     """A range of a file; lines and columns from 1, columns in code points, the end exclusive."""
 
     path: str

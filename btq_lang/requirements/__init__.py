@@ -5,7 +5,10 @@ the engine can enforce, nor what a run of the robot was like.
 
     requirements(workspace, path)   all of a file and what it includes
     model.py     what a requirement says once its words are resolved
+    names.py     by which names a written node is found
+    trees.py     the nodes of one tree
     nodes.py     which written nodes a path, a kind or a tag means
+    memory.py    what is kept from one edit to the next
     paths.py     the one node that a path names
     reader.py    values and conditions: names, units, what compares with what
     clauses.py   what each verb asks for
@@ -17,30 +20,34 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from btq_lang.record import record
-from btq_lang.requirements.attach import attach
+from collections.abc import Callable, Iterable, Iterator
+from operator import is_
+
+from btq_lang.record import Record
+from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.classic import with_constraints
 from btq_lang.requirements.clauses import read_signal, resolve
-from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace
+from btq_lang.requirements.memory import Memory, Table
+from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace, Use
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
-from btq_lang.symbols import Kind
-from btq_lang.syntax import Context, Operand, Quality, Satisfices, Tree, walk
+from btq_lang.requirements.trees import TreeNodes
+from btq_lang.symbols import Kind, Symbol
+from btq_lang.syntax import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.tokens import NAME
-from btq_lang.workspace import Definition, Scope, Workspace
+from btq_lang.workspace import File, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from typing import Any, Final
 
-__all__ = ["Problem", "Requirements", "requirements"]
+__all__ = ["Memory", "Problem", "Requirements", "requirements"]
 
 
-@record
-class Requirements:
+class Requirements(Record):
     """All requirements that a file sees.
 
     Attributes:
@@ -53,6 +60,7 @@ class Requirements:
         problems: everything that was not understood.
         nodes: the written nodes.
         mission: the main tree's root; None where nobody can say which tree runs.
+        by_tree: what is applied to nodes, by the tree that they stand in; a span, too, by the node that it begins at.
     """
 
     signals: dict[str, Signal]
@@ -64,6 +72,11 @@ class Requirements:
     problems: tuple[Problem, ...]
     nodes: Nodes
     mission: SourceNode | None
+    by_tree: dict[int, tuple[Applied, ...]]
+
+    def in_tree(self, tree: TreeNodes) -> tuple[Applied, ...]:
+        """What holds for nodes of a tree, in the order of the requirements."""
+        return self.by_tree.get(id(tree.item), ())
 
     def of(self, node: SourceNode) -> tuple[Applied, ...]:
         """What holds for a node."""
@@ -84,53 +97,175 @@ class Requirements:
         )
 
 
-def requirements(workspace: Workspace, path: str) -> Requirements:
+def requirements(workspace: Workspace, path: str, memory: Memory | None = None) -> Requirements:
     """The requirements of a file and what it includes, resolved.
+
+    Args:
+        memory: what was resolved for the same file before some edits: only what these touch is resolved again.
 
     Raises:
         KeyError: there is no such file.
     """
+    memory = memory or Memory()
+    memory.begin()
     scope = workspace.scope(path)
-    nodes = Nodes(workspace, scope)
+    nodes = memory.nodes = Nodes(workspace, scope, memory.nodes)
     reader = Reader(workspace, path, scope, nodes)
-    for definition in _definitions(scope, Kind.SIGNAL):
-        if isinstance(signal := definition.symbol.target, WrittenSignal):
-            reader.signals[definition.symbol.name] = read_signal(reader, definition, signal)
-    _read_contexts(reader, scope)
-    qualities = _enclosing_qualities(workspace, scope, nodes)
-    found: dict[str, Requirement] = {}
-    for definition in _definitions(scope, Kind.REQUIREMENT):
-        if isinstance(written := definition.symbol.target, WrittenRequirement):
-            quality = qualities.get(id(written))
-            resolved = resolve(reader, definition, written, quality)
-            found[definition.symbol.name] = with_constraints(reader, resolved, written)
-    applied, traces, attached = attach(reader, found)
-    problems = tuple(reader.problems.values())
+    files = [workspace.files[each] for each in scope.paths]
+    problems: list[Problem] = []
+    for file, symbol in _counting(files, Kind.SIGNAL):
+        table = memory.table(f"signal {symbol.name}", reader)
+        known = table.take(symbol) or _make(table, symbol, None, _read_signal, reader, file, symbol)
+        reader.signals[symbol.name] = known[0]
+        problems += known[1]
+    for file, symbol, mistake in _ordered_contexts(reader, files):
+        table = memory.table(f"context {symbol.name}", reader)
+        known = table.take(symbol, mistake) or _make(
+            table, symbol, mistake, _read_context, reader, file, symbol, mistake
+        )
+        reader.contexts[symbol.name] = known[0]
+        problems += known[1]
+    qualities = {key: quality for tree in nodes.trees if tree.qualities for key, quality in tree.qualities.items()}
+    table = memory.table("requirements", reader)
+    for file, symbol in _counting(files, Kind.REQUIREMENT):
+        quality = qualities.get(id(symbol.target))
+        known = table.take(symbol, quality) or _make(
+            table, symbol, quality, _read_requirement, reader, file, symbol, quality
+        )
+        reader.requirements[symbol.name] = known[0]
+        problems += known[1]
+    table = memory.table("uses", reader)
+    found: list[Uses] = []
+    for file in files:
+        for entry in file.parsed.entries:
+            item = entry.item
+            if isinstance(item, Tree | Apply):
+                within = nodes.within(item) if isinstance(item, Tree) else None
+                known = table.take(item, within) or _make(table, item, within, uses_in, reader, file.path, entry)
+                found.append(known[0])
+                problems += known[1]
+    uses = _by_requirement(found, memory)
+    table = memory.table("held", reader)
+    applied: list[Applied] = []
+    by_tree: dict[int, list[Applied]] = {}
+    traces: list[Trace] = []
+    for name, requirement in reader.requirements.items():
+        of_it = uses.get(name, ())
+        known = table.take(requirement, of_it) or _make(
+            table, requirement, of_it, held_by, reader, requirement, of_it, table.before(requirement)
+        )
+        held: Held = known[0]
+        problems += known[1]
+        applied += held.applied
+        traces += held.traces
+        for tree, each in held.by_tree:
+            by_tree.setdefault(tree, []).append(each)
     return Requirements(
-        reader.signals, reader.contexts, found, applied, traces, attached, problems, nodes, reader.mission
+        reader.signals,
+        reader.contexts,
+        reader.requirements,
+        tuple(applied),
+        tuple(traces),
+        frozenset().union(*(each.mentioned for each in found)),
+        tuple(problems),
+        nodes,
+        reader.mission,
+        _as_before(by_tree, memory),
     )
 
 
-def _definitions(scope: Scope, kind: Kind) -> list[Definition]:
-    """The definitions that count."""
-    found = (scope.find(kind, name) for name in scope.names(kind))
-    return [definition for definition in found if definition is not None]
+def _make(
+    table: Table, owner: object, made_of: object, make: Callable[..., object], reader: Reader, *about: object
+) -> tuple[Any, tuple[Problem, ...]]:
+    """What is made for an owner, with the problems that are found meanwhile; it is kept."""
+    reader.problems = {}
+    made = make(reader, *about)
+    return table.put(owner, made_of, (made, tuple(reader.problems.values())))
 
 
-def _read_contexts(reader: Reader, scope: Scope) -> None:
-    """Those that a context speaks of come before it; one that speaks of itself means nothing."""
-    written = {definition.symbol.name: definition for definition in _definitions(scope, Kind.CONTEXT)}
+def _read_signal(reader: Reader, file: File, symbol: Symbol) -> Signal:
+    (definition, *_others) = file.definitions(Kind.SIGNAL, symbol.name)
+    assert isinstance(symbol.target, WrittenSignal), "its kind says so"
+    return read_signal(reader, definition, symbol.target)
+
+
+def _read_context(reader: Reader, file: File, symbol: Symbol, mistake: tuple[str, str] | None) -> Condition | None:
+    """mistake: a rule, and what it tells of the context instead of what that says."""
+    (definition, *_others) = file.definitions(Kind.CONTEXT, symbol.name)
+    assert isinstance(symbol.target, Context), "its kind says so"
+    reader.begin(definition.path, definition.entry)
+    if mistake is None:
+        return reader.condition(symbol.target.condition)
+    reader.complain(mistake[0], symbol.span, mistake[1])
+    return None
+
+
+def _read_requirement(reader: Reader, file: File, symbol: Symbol, quality: str | None) -> Requirement:
+    """quality: the one that encloses it."""
+    (definition, *_others) = file.definitions(Kind.REQUIREMENT, symbol.name)
+    written = symbol.target
+    assert isinstance(written, WrittenRequirement), "its kind says so"
+    return with_constraints(reader, resolve(reader, definition, written, quality), written)
+
+
+def _by_requirement(found: list[Uses], memory: Memory) -> dict[str, tuple[Use, ...]]:
+    """What entries attach, by the requirement: the same objects as before where they are of the same."""
+    entries, known = memory.uses
+    if len(found) == len(entries):
+        pairs = [(one, other) for one, other in zip(found, entries, strict=True) if one is not other]
+        others = {name for pair in pairs for each in pair for name in each.mentioned}
+        uses = {name: each for name, each in known.items() if name not in others} if others else known
+    else:
+        others, uses = None, {}
+    if others is None or others:
+        lists: dict[str, list[Use]] = {}
+        for each in found:
+            if each.found and (others is None or not others.isdisjoint(each.mentioned)):
+                for use in each.found:
+                    if others is None or use.requirement in others:
+                        lists.setdefault(use.requirement, []).append(use)
+        uses.update({name: tuple(each) for name, each in lists.items()})
+    memory.uses = found, uses
+    return uses
+
+
+def _as_before(by_tree: dict[int, list[Applied]], memory: Memory) -> dict[int, tuple[Applied, ...]]:
+    """What holds for nodes of each tree: the same objects as before where it is the same."""
+    known = memory.by_tree
+    memory.by_tree = {
+        tree: old
+        if (old := known.get(tree)) is not None and len(old) == len(each) and all(map(is_, old, each))
+        else tuple(each)
+        for tree, each in by_tree.items()
+    }
+    return memory.by_tree
+
+
+def _counting(files: Iterable[File], kind: Kind) -> Iterator[tuple[File, Symbol]]:
+    """The definitions that count, of names of a kind: the first one of each."""
+    seen: set[str] = set()
+    for file in files:
+        for name in file.names.by_kind[kind]:
+            if name not in seen:
+                seen.add(name)
+                yield file, file.names.found[kind, name][0][1]
+
+
+def _ordered_contexts(reader: Reader, files: Iterable[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:
+    """Those that a context speaks of come before it; one that speaks of itself means nothing, and comes with what is
+    told of it."""
+    written = {symbol.name: (file, symbol) for file, symbol in _counting(files, Kind.CONTEXT)}
     depth: dict[str, int] = {}
     open_: list[str] = []
     waiting = list(reversed(written))
     reader.contexts.update(dict.fromkeys(written))
     while waiting:
         name = waiting[-1]
-        context = written[name].symbol.target
-        if name in depth or not isinstance(context, Context):
+        file, symbol = written[name]
+        if name in depth or not isinstance(symbol.target, Context):
             waiting.pop()
             continue
-        needed = [word for word in _names_in(context) if word in written]
+        needed = [word for word in _names_in(symbol.target) if word in written]
         missing = [word for word in needed if word not in depth and word not in open_]
         if missing and name not in open_:
             open_.append(name)
@@ -140,39 +275,17 @@ def _read_contexts(reader: Reader, scope: Scope) -> None:
         if name in open_:
             open_.remove(name)
         depth[name] = 1 + max((depth[word] for word in needed if word in depth), default=0)
-        definition = written[name]
-        reader.begin(definition.path, definition.entry)
+        mistake = None
         if any(word not in depth or word == name for word in needed):
-            reader.complain("cyclic-context", definition.symbol.span, f"the context `{name}` speaks of itself")
+            mistake = "cyclic-context", f"the context `{name}` speaks of itself"
         elif depth[name] > _DEEPEST:
-            message = f"more than {_DEEPEST} contexts that speak of each other"
-            reader.complain("nested-too-deep", definition.symbol.span, message)
-        else:
-            reader.contexts[name] = reader.condition(context.condition)
+            mistake = "nested-too-deep", f"more than {_DEEPEST} contexts that speak of each other"
+        yield file, symbol, mistake
 
 
 def _names_in(context: Context) -> list[str]:
     operands = (part.word for part in walk(context.condition) if isinstance(part, Operand))
     return [word.text for word in operands if word.kind == NAME]
-
-
-def _enclosing_qualities(workspace: Workspace, scope: Scope, nodes: Nodes) -> dict[int, str]:
-    """The quality that encloses a requirement in `Quality = performance (QualityReq …)`."""
-    found: dict[int, str] = {}
-    for path in scope.paths:
-        for entry in workspace.files[path].parsed.entries:
-            if not isinstance(entry.item, Tree):
-                continue
-            clauses = [*entry.item.clauses, *(clause for node in nodes.within(entry) for clause in node.node.clauses)]
-            for clause in clauses:
-                for quality in clause.qualities if isinstance(clause, Satisfices) else ():
-                    _note(quality, found)
-    return found
-
-
-def _note(quality: Quality, found: dict[int, str]) -> None:
-    for requirement in quality.requirements:
-        found[id(requirement)] = ".".join(name.text for name in quality.path.names)
 
 
 _DEEPEST: Final = 50  # contexts in contexts: a condition is a tree, and every reader walks it

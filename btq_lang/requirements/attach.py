@@ -6,82 +6,148 @@ where two are equally specific and differ, a problem says so and neither counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from btq_lang.diagnostics import Place, Related, replace_fix
+from btq_lang.diagnostics import Diagnostic, Related, replace_fix
 from btq_lang.near import near
-from btq_lang.record import fields_of, record, replace
+from btq_lang.record import Record, fields_of, replace
+from btq_lang.requirements.memory import is_same
 from btq_lang.requirements.model import (
     Applied,
     Argument,
     Bounded,
     Claim,
     Every,
+    Mission,
     Parameter,
     Requirement,
     SourceNode,
+    Span,
     Subject,
     Target,
     Trace,
+    Use,
 )
+from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
 from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax import Argument as WrittenArgument
 from btq_lang.syntax import Requirement as WrittenRequirement
-from btq_lang.text import Span
+from btq_lang.text import Span as TextSpan
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal
+    from typing import Final
 
 
-@record
-class _Use:
-    """An attachment of a requirement to a node, before it is decided which of several counts.
+class Uses(Record):
+    """What a tree or an `apply` attaches.
 
     Attributes:
-        rank: how specific it is.
+        mentioned: the requirements, be it only where not all could be understood.
     """
 
-    target: Target
-    arguments: tuple[Argument, ...]
-    rank: int
-    place: Place
-    path: str
-    entry: Entry
-    how: Literal["satisfies", "apply"]
+    found: tuple[Use, ...]
+    mentioned: frozenset[str]
 
 
-def attach(
-    reader: Reader, requirements: dict[str, Requirement]
-) -> tuple[tuple[Applied, ...], tuple[Trace, ...], frozenset[str]]:
-    """What holds for what, in the order of the definitions; the trace links; and the requirements that something
-    attaches, be it only what could not be understood."""
-    uses: dict[str, list[_Use]] = {name: [] for name in requirements}
+class Held(Record):
+    """What a requirement holds for.
+
+    Attributes:
+        traces: `satisfies` at nodes, where all claims name their subjects themselves.
+        by_tree: the same as `applied` with the `id` of the tree that it stands in, if it does in one.
+        filled: the requirement with arguments, by these, or with some of its claims, by their `id`s.
+    """
+
+    applied: tuple[Applied, ...]
+    traces: tuple[Trace, ...]
+    by_tree: tuple[tuple[int, Applied], ...]
+    filled: dict[object, Requirement]
+
+
+NO_USES: Final = Uses((), frozenset())
+
+
+def uses_in(reader: Reader, path: str, entry: Entry) -> Uses:
+    """What an entry attaches to which nodes."""
+    uses: list[Use] = []
     mentioned: set[str] = set()
-    for path, entry in _entries(reader):
-        if isinstance(entry.item, Tree):
-            _at_nodes(reader, requirements, path, entry, entry.item, uses, mentioned)
-        elif isinstance(entry.item, Apply):
-            _applies(reader, requirements, path, entry, entry.item, uses, mentioned)
-    applied: list[Applied] = []
-    traces: list[Trace] = []
-    for requirement in requirements.values():
-        applied += _by_subject(requirement)
-        attached = [claim for claim in requirement.claims if claim.subject is None]
-        counting = _most_specific(reader, requirement, uses[requirement.name])
-        if requirement.claims and not attached:
-            traces += (Trace(requirement.name, use.target.node) for use in counting)
-            continue
-        alone = replace(requirement, claims=tuple(attached)) if len(attached) < len(requirement.claims) else requirement
-        filled: dict[tuple[Argument, ...], Requirement] = {}  # most nodes get the same arguments, or none
-        for use in counting:
-            if use.arguments not in filled:
-                filled[use.arguments] = fill(alone, use.arguments)
-            applied.append(Applied(filled[use.arguments], use.target, use.arguments, use.place, use.how))
-    return tuple(applied), tuple(traces), frozenset(mentioned)
+    reader.begin(path, entry)
+    if isinstance(entry.item, Tree):
+        _at_nodes(reader, entry.item, uses, mentioned)
+    elif isinstance(entry.item, Apply):
+        _applies(reader, entry.item, uses, mentioned)
+    return Uses(tuple(uses), frozenset(mentioned)) if mentioned else NO_USES
+
+
+def held_by(
+    reader: Reader, requirement: Requirement, uses: tuple[Use, ...], before: tuple[Held, object] | None
+) -> Held:
+    """What a requirement holds for.
+
+    Args:
+        uses: its attachments, all of them.
+        before: what it held for when there were others, to share with; and what was wrong with that.
+    """
+    known = before[0] if before is not None else None
+    filled = _Filled(known.filled if known is not None else {})
+    applied = [*_by_subject(reader, requirement, filled)]
+    attached = [claim for claim in requirement.claims if claim.subject is None]
+    counting = _most_specific(reader, requirement, uses) if uses else []
+    if requirement.claims and not attached:
+        traces = tuple([Trace(requirement.name, use.target.node) for use in counting])
+        return _held(_shared(applied, known), traces, filled)
+    is_whole = len(attached) == len(requirement.claims)
+    for use in counting:
+        claims = requirement.claims if is_whole else tuple(attached)
+        made = filled.get(use.arguments, requirement, claims, use.arguments)
+        applied.append(Applied(made, use.target, use.arguments, use.place, use.how))
+    return _held(_shared(applied, known), (), filled)
+
+
+class _Filled:
+    """A requirement with some of its claims and arguments: most nodes get the same ones, as they did before."""
+
+    def __init__(self, before: dict[object, Requirement]) -> None:
+        self.made: dict[object, Requirement] = {}
+        self._before = before
+
+    def get(
+        self, key: object, requirement: Requirement, claims: tuple[Claim, ...], arguments: tuple[Argument, ...]
+    ) -> Requirement:
+        made = self.made.get(key) or self._before.get(key)
+        if made is None:
+            made = requirement if claims is requirement.claims else replace(requirement, claims=claims)
+            made = fill(made, arguments)
+        self.made[key] = made
+        return made
+
+
+def _held(applied: tuple[Applied, ...], traces: tuple[Trace, ...], filled: _Filled) -> Held:
+    placed = [(_home(each), each) for each in applied]
+    return Held(applied, traces, tuple([(id(home), each) for home, each in placed if home is not None]), filled.made)
+
+
+def _home(applied: Applied) -> Tree | None:
+    subject = applied.subject.first.subject if isinstance(applied.subject, Span) else applied.subject
+    node = subject.node if isinstance(subject, Target | Mission) else None
+    return node.item if node is not None else None
+
+
+def _shared(applied: list[Applied], before: Held | None) -> tuple[Applied, ...]:
+    """The same, but what was so before is the same object: what rests on it need not be found out again."""
+    if before is None:
+        return tuple(applied)
+    known = {_node_of(each): each for each in before.applied}
+    return tuple([old if (old := known.get(_node_of(each))) and is_same(each, old) else each for each in applied])
+
+
+def _node_of(applied: Applied) -> object:
+    subject = applied.subject
+    return (id(subject.node), subject.through) if isinstance(subject, Target) else None
 
 
 def fill(requirement: Requirement, arguments: tuple[Argument, ...]) -> Requirement:
@@ -113,7 +179,7 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(requirement: Requirement) -> Iterator[Applied]:
+def _by_subject(reader: Reader, requirement: Requirement, filled: _Filled) -> Iterator[Applied]:
     """A claim's own subject wins over whatever the requirement is attached to."""
     arguments = tuple(Argument(each.name, each.default) for each in requirement.parameters if each.default is not None)
     if len(arguments) < len(requirement.parameters):
@@ -122,73 +188,49 @@ def _by_subject(requirement: Requirement) -> Iterator[Applied]:
     for claim in requirement.claims:
         subject = claim.subject
         if isinstance(subject, Every):
-            for node in subject.nodes:
+            for node in reader.every(subject.name):
                 groups.setdefault(id(node), (Target(node), []))[1].append(claim)
         elif isinstance(subject, Target) and not subject.through:
             groups.setdefault(id(subject.node), (subject, []))[1].append(claim)
         elif subject is not None:
             groups.setdefault(subject, (subject, []))[1].append(claim)
     for subject, claims in groups.values():
-        filled = fill(replace(requirement, claims=tuple(claims)), arguments)
-        yield Applied(filled, subject, arguments, claims[0].place, "subject")  # type: ignore[arg-type]  # no Every is left
+        made = filled.get(tuple(map(id, claims)), requirement, tuple(claims), arguments)
+        yield Applied(made, subject, arguments, claims[0].place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
-def _entries(reader: Reader) -> Iterator[tuple[str, Entry]]:
-    for path in reader.scope.paths:
-        for entry in reader.workspace.files[path].parsed.entries:
-            yield path, entry
-
-
-def _at_nodes(
-    reader: Reader,
-    requirements: dict[str, Requirement],
-    path: str,
-    entry: Entry,
-    tree: Tree,
-    uses: dict[str, list[_Use]],
-    mentioned: set[str],
-) -> None:
-    places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(reader.nodes.root_of(entry), tree.clauses)]
-    places += [(node, node.node.clauses) for node in reader.nodes.within(entry) if node.node.clauses]
+def _at_nodes(reader: Reader, tree: Tree, uses: list[Use], mentioned: set[str]) -> None:
+    nodes = reader.nodes.within(tree)
+    places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(nodes.root, tree.clauses)]
+    places += [(node, node.node.clauses) for node in nodes.all if node.node.clauses]
     for node, clauses in places:
         for written in requirements_at(clauses):
             word = written.name
-            requirement = requirements.get(word.text) if word is not None else None
+            requirement = reader.requirement(word.text) if word is not None else None
             if word is None or requirement is None:
                 continue
             mentioned.add(requirement.name)
-            reader.begin(path, entry)
             arguments = _arguments(reader, requirement, written, word.span)
             if arguments is not None and node is not None:
-                place = reader.place(word.span)
-                use = _Use(Target(node), arguments, _AT_NODE, place, path, entry, "satisfies")
-                uses[requirement.name].append(use)
+                of = Target(node)
+                uses.append(Use(requirement.name, of, arguments, _AT_NODE, "satisfies", reader.path, tree, word.span))
 
 
-def _applies(
-    reader: Reader,
-    requirements: dict[str, Requirement],
-    path: str,
-    entry: Entry,
-    apply: Apply,
-    uses: dict[str, list[_Use]],
-    mentioned: set[str],
-) -> None:
-    reader.begin(path, entry)
+def _applies(reader: Reader, apply: Apply, uses: list[Use], mentioned: set[str]) -> None:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
-        requirement = requirements.get(reference.name.text)
+        requirement = reader.requirement(reference.name.text)
         if requirement is None:
             continue
         mentioned.add(requirement.name)
         arguments = _arguments(reader, requirement, reference, reference.name.span)
         if arguments is None:
             continue
-        place = reader.place(reference.name.span)
+        span = reference.name.span
         for target, rank in targets:
             if id(target.node) not in excepted:
-                uses[requirement.name].append(_Use(target, arguments, rank, place, path, entry, "apply"))
+                uses.append(Use(requirement.name, target, arguments, rank, "apply", reader.path, apply, span))
 
 
 def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
@@ -198,7 +240,7 @@ def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
         nodes = {id(target.node) for target, _ in _selected(reader, selector)}
         if nodes and applied_to and nodes.isdisjoint(applied_to) and reader.knows_all_nodes:
             message = "nothing of what this excepts is among what is applied to"
-            span = Span(selector.start, selector.end)
+            span = TextSpan(selector.start, selector.end)
             reader.complain("unmatched-path", span, message, severity=Severity.WARNING)
         excepted |= nodes
     return excepted
@@ -207,18 +249,18 @@ def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
 def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]]:
     """The nodes that a selector means, and how specific it is."""
     if selector.tag is not None:
-        nodes = reader.nodes.tagged(selector.tag.text)
+        nodes = reader.ask("tagged", selector.tag.text)
         if not nodes:
             reader.no_tag(selector.tag)
         yield from ((Target(node), _EVERY) for node in nodes)
     elif selector.every is not None:
-        nodes = reader.nodes.every(selector.every.text)
+        nodes = reader.every(selector.every.text)
         if not nodes:
             reader.none_of(selector.every)
         rank = _EVERY
         if selector.path is not None:
             top = reader.target(selector.path)
-            below = reader.nodes.under(nodes, top) if top is not None else ()
+            below = reader.ask("under", (selector.every.text, top)) if top is not None else ()
             if nodes and top is not None and not below and reader.knows_all_nodes:
                 shown = "/".join(name.text for name in selector.path.names)
                 message = f"no `{selector.every.text}` stands below `{shown}`"
@@ -232,7 +274,7 @@ def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]
 
 
 def _arguments(
-    reader: Reader, requirement: Requirement, written: WrittenRequirement | ReqRef, span: Span
+    reader: Reader, requirement: Requirement, written: WrittenRequirement | ReqRef, span: TextSpan
 ) -> tuple[Argument, ...] | None:
     """What the parameters stand for; None: something is missing or wrong, and told."""
     given: dict[str, Bounded] = {}
@@ -284,10 +326,10 @@ def _no_parameter(reader: Reader, requirement: Requirement, argument: WrittenArg
     )
 
 
-def _most_specific(reader: Reader, requirement: Requirement, uses: Iterable[_Use]) -> list[_Use]:
+def _most_specific(reader: Reader, requirement: Requirement, uses: tuple[Use, ...]) -> list[Use]:
     """One use for each node, or for each way that a path leads to it."""
-    found: list[_Use] = []
-    of_node: dict[tuple[int, tuple[str, ...]], list[_Use]] = {}
+    found: list[Use] = []
+    of_node: dict[tuple[int, tuple[str, ...]], list[Use]] = {}
     for use in uses:
         of_node.setdefault((id(use.target.node), use.target.through), []).append(use)
     for same in of_node.values():
@@ -297,26 +339,26 @@ def _most_specific(reader: Reader, requirement: Requirement, uses: Iterable[_Use
         if other is None:
             found.append(best[0])
             continue
-        reader.begin(other.path, other.entry)
         node = best[0].target.node
-        reader.complain(
+        diagnostic = Diagnostic(
             "ambiguous-application",
-            other.place.span,
+            other.span,
             f"{node.shown} gets two values from `{requirement.name}`: {_said(best[0])} and {_said(other)}",
             related=(Related(best[0].place, "the other one"), Related(node.place, "the node")),
             notes=(
                 "a path counts before `every … under`, that before `every`, and what stands at the node before all",
             ),
         )
+        reader.note(Problem(other.path, other.item, diagnostic))
     return found
 
 
-def _values(use: _Use) -> tuple[object, ...]:
+def _values(use: Use) -> tuple[object, ...]:
     """Arguments that say the same are equal, however they are typed."""
     return tuple(getattr(argument.value, "si", argument.value) for argument in use.arguments)
 
 
-def _said(use: _Use) -> str:
+def _said(use: Use) -> str:
     return ", ".join(f"{argument.name} = {argument.value.text}" for argument in use.arguments)
 
 

@@ -7,25 +7,16 @@ holds for some activations only (a scope, some instances) is none here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Callable
 from math import inf
 
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements
-from btq_lang.requirements.composition import Budget, Gap, compose, port_count, port_seconds, unknown
+from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
-from btq_lang.requirements.model import (
-    Applied,
-    Bounded,
-    Claim,
-    Limit,
-    SourceNode,
-    Table,
-    Target,
-    Value,
-)
-from btq_lang.syntax import Node
+from btq_lang.requirements.memory import Memory, is_same
+from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
+from btq_lang.requirements.trees import TreeNodes
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -34,8 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
 
 
-@record
-class Success:
+class Success(Record):
     """A node succeeds within so many seconds, at least so likely.
 
     Attributes:
@@ -47,155 +37,202 @@ class Success:
     parts: tuple[tuple[SourceNode, float], ...] = ()
 
 
+class Gap(Record):
+    """Why no bound can be said: the node, and the reason in words to stand behind its name."""
+
+    node: SourceNode
+    reason: str
+
+
+class _TreeBudgets:
+    """The budgets of one tree's nodes, as far as anybody has asked for them.
+
+    Attributes:
+        applied: what holds for its nodes.
+        claims: the claims that count, by the node.
+        composed, held, successes: by the node; of a SubTree node they say nothing of what they are made of, for that
+            is in another tree.
+        asked: what was asked of other trees, by their names, with the answers.
+    """
+
+    __slots__ = ("applied", "asked", "claims", "composed", "held", "successes", "tree")
+
+    def __init__(self, tree: TreeNodes, applied: tuple[Applied, ...]) -> None:
+        self.tree = tree
+        self.applied = applied
+        self.claims: dict[int, list[tuple[Applied, Claim]]] = {}
+        for each in applied:
+            if isinstance(each.subject, Target) and not each.subject.through and not each.requirement.scopes:
+                for claim in each.requirement.claims:
+                    self.claims.setdefault(id(each.subject.node), []).append((each, claim))
+        self.composed: dict[int, Budget] = {}
+        self.held: dict[int, Budget] = {}
+        self.successes: dict[int, Success | None] = {}
+        self.asked: dict[str, object] = {}
+
+
 class Budgets:
     """The budgets of all nodes that a file sees."""
 
-    def __init__(self, found: Requirements) -> None:
+    def __init__(self, found: Requirements, memory: Memory | None = None) -> None:
+        """memory: that of the requirements; budgets that come out as before are taken from it."""
+        self._found = found
         self._nodes = found.nodes
-        self._claims: dict[int, list[tuple[Applied, Claim]]] = {}
-        for applied in found.applied:
-            if isinstance(applied.subject, Target) and not applied.subject.through and not applied.requirement.scopes:
-                for claim in applied.requirement.claims:
-                    self._claims.setdefault(id(applied.subject.node), []).append((applied, claim))
-        self._composed: dict[int, Budget] = {}
-        self._held: dict[int, Budget] = {}
-        self._successes: dict[int, Success | None] = {}
+        self._trees: dict[int, _TreeBudgets] = {}
+        if memory is not None:
+            self._take_over(memory.budgets)
+            memory.budgets = self._trees
 
     def of(self, node: SourceNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
-        self._work_out(node)
-        return self._held[id(node)]
+        return self._work_out(node).held[id(node)]
 
     def composed(self, node: SourceNode) -> Budget:
         """How long a node takes, if all below it are as demanded: what its own bounds are held against."""
-        self._work_out(node)
-        return self._composed[id(node)]
+        found = self._work_out(node)
+        root = self._run_before(node)
+        return found.composed[id(node)] if root is None else _as_part(root, self.of(root))
 
     def success(self, node: SourceNode) -> Success | None:
         """How likely a node succeeds, and within which time, if all below it are as demanded; None: nobody says."""
-        for root in self._run_by(node):
-            self._work_out(root)
-            return self._part(root)
-        self._work_out(node)
-        return self._composed_success(node)
+        root = self._nodes.run_by(node)
+        if root is not None:
+            return _success_as_part(root, self._work_out(root).successes[id(root)])
+        return self._composed_success(self._work_out(node), node)
 
-    def _work_out(self, top: SourceNode) -> None:
+    def gaps(self, node: SourceNode) -> tuple[Gap, ...]:
+        """Why no bound can be said of a node, if all below it are as demanded; the first reasons, if there are many."""
+        found: dict[Gap, None] = {}
+        waiting = [node]
+        while waiting and len(found) < _MOST_GAPS:
+            at = waiting.pop()
+            composed = self.composed(at)
+            if composed.is_bounded:
+                continue
+            if composed.reason:
+                found[Gap(at, composed.reason)] = None
+            root = self._run_before(at)
+            below = at.children if root is None else [root]
+            waiting += [child for child in reversed(below) if not self.of(child).is_bounded]
+        return tuple(found)
+
+    def in_tree(self, tree: TreeNodes) -> object:
+        """What all answers about the nodes of a tree are taken from: the same object as long as they stay the same."""
+        return self._in(tree)
+
+    def _take_over(self, before: dict[int, _TreeBudgets]) -> None:
+        """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
+        others: set[str | None] = set()  # the trees whose budgets are to be made, and may come out otherwise
+        by_tree, is_ordered_as_before = self._found.by_tree, self._nodes.is_ordered_as_before
+        for tree in self._nodes.in_order if before else ():
+            known = before.get(id(tree.item))
+            if (
+                known is not None
+                and known.tree is tree
+                and is_same(by_tree.get(id(tree.item), ()), known.applied)
+                and (
+                    (is_ordered_as_before and others.isdisjoint(known.asked))
+                    or all(self._outcome(tree, name) == outcome for name, outcome in known.asked.items())
+                )
+            ):
+                self._trees[id(tree.item)] = known
+            else:
+                others.add(tree.name)
+
+    def _in(self, tree: TreeNodes) -> _TreeBudgets:
+        found = self._trees.get(id(tree.item))
+        if found is None:
+            found = self._trees[id(tree.item)] = _TreeBudgets(tree, self._found.in_tree(tree))
+        return found
+
+    def _work_out(self, top: SourceNode) -> _TreeBudgets:
         """Compose a node, and before it what it rests on: most nodes of a file nobody asks for."""
-        waiting = [top] if id(top) not in self._held else []
+        found = self._in(self._nodes.within(top.item))
+        waiting = [top] if id(top) not in found.held else []
         while waiting:
             node = waiting[-1]
-            missing = [child for child in (*node.children, *self._run_before(node)) if id(child) not in self._held]
+            at = self._in(self._nodes.within(node.item))
+            missing = [child for child in node.children if id(child) not in at.held]
+            root = self._run_before(node)
+            if root is not None and id(root) not in self._in(self._nodes.within(root.item)).held:
+                missing.append(root)
             if missing:
                 waiting += missing
                 continue
             waiting.pop()
-            if id(node) not in self._held:
-                self._composed[id(node)] = composed = self._compose(node)
-                self._held[id(node)] = _with_attributes(node, self._with_claims(node, composed))
-                self._successes[id(node)] = self._succeeding(node)
+            if id(node) not in at.held:
+                composed = at.composed[id(node)] = self._compose(at, node)
+                claims = at.claims.get(id(node), [])
+                held = _with_claims(composed, claims) if claims or composed.probability < 1.0 else composed
+                at.held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
+                at.successes[id(node)] = self._succeeding(at, node)
+        return found
 
-    def _run_before(self, node: SourceNode) -> Iterator[SourceNode]:
+    def _run_before(self, node: SourceNode) -> SourceNode | None:
         """The root that a SubTree node runs, unless that would be running in a circle."""
-        for root in self._run_by(node):
-            if self._positions[id(root)] < self._positions[id(node)]:
-                yield root
+        root = self._nodes.run_by(node) if node.category == "SubTree" else None
+        if root is None:
+            return None
+        return root if self._nodes.position(root.item) < self._nodes.position(node.item) else None
 
-    @cached_property
-    def _positions(self) -> dict[int, int]:
-        """Of all nodes, so that a circle is cut at the same place, whichever of its nodes is asked for first."""
-        return {id(node): position for position, node in enumerate(self._in_order())}
+    def _outcome(self, tree: TreeNodes, name: str) -> object:
+        """What a tree learns of one that it runs: all but what that is made of."""
+        root = self._nodes.root(name)
+        if root is None or self._nodes.position(root.item) >= self._nodes.position(tree.item):
+            return root is None
+        budgets = self._work_out(root)
+        success = budgets.successes[id(root)]
+        return _without_terms(budgets.held[id(root)]), success and (success.seconds, success.probability)
 
-    def _in_order(self) -> Iterator[SourceNode]:
-        """Children before their parents, and trees before the SubTree nodes that run them, where there is no circle."""
-        done: set[int] = set()
-        begun: set[int] = set()
-        for start in self._nodes.all:
-            waiting = [start] if id(start) not in begun else []
-            while waiting:
-                node = waiting[-1]
-                if id(node) in begun:
-                    waiting.pop()
-                    if id(node) not in done:
-                        done.add(id(node))
-                        yield node
-                    continue
-                begun.add(id(node))
-                below = [*node.children, *self._run_by(node)]
-                waiting += [child for child in reversed(below) if id(child) not in begun]
-
-    def _run_by(self, node: SourceNode) -> tuple[SourceNode, ...]:
-        name = node.node.id
-        root = self._nodes.root(name.text) if node.category == "SubTree" and name is not None else None
-        return (root,) if root is not None else ()
-
-    def _compose(self, node: SourceNode) -> Budget:
+    def _compose(self, at: _TreeBudgets, node: SourceNode) -> Budget:
         if node.category == "SubTree":
-            for root in self._run_before(node):
-                return _as_part(root, self._held[id(root)])
-            return unknown(node, "is a tree that runs itself" if self._run_by(node) else "is a tree that nobody knows")
+            root = self._run_before(node)
+            if node.node.id is not None:
+                name = node.node.id.text
+                at.asked[name] = self._outcome(at.tree, name)
+            if root is not None:
+                return _without_terms(self._in(self._nodes.within(root.item)).held[id(root)])
+            is_known = self._nodes.run_by(node) is not None
+            return unknown("is a tree that runs itself" if is_known else "is a tree that nobody knows")
         if node.kind is None and not node.node.children:
-            if node.category == "Condition":
-                return Budget(ZERO, ZERO, None, False)
-            return Budget(ANY, ANY, None, gaps=(Gap(node, "has no `takes` clause"),))
+            return _CONDITION if node.category == "Condition" else _NO_CLAUSE
         if node.kind is None:
-            return unknown(node, "is a node of which nobody knows how it runs its children")
-        parts = {id(child.node): _as_part(child, self._held[id(child)]) for child in node.children}
-        xml = unknown(node, "has a child in XML")
-        return compose(
-            node, [parts.get(id(child), xml) if isinstance(child, Node) else xml for child in node.node.children]
-        )
-
-    def _with_claims(self, node: SourceNode, composed: Budget) -> Budget:
-        """What a node is held to; of bounds that may be missed now and then the likeliest, and only where no sure one
-        says how long it may take."""
-        claims = self._claims.get(id(node), ())
-        sure = [claim for applied, claim in claims if applied.requirement.odds is None]
-        held = _all_narrowed(composed if composed.probability == 1.0 else _opened(composed), sure)
-        if held.is_bounded:
-            return replace(held, gaps=())
-        choices = [_all_narrowed(composed, sure)] if composed.probability < 1.0 else []
-        for applied, claim in claims:
-            odds = applied.requirement.odds
-            if odds is not None and claim.verb == "takes":
-                choices.append(replace(_narrowed(held, claim), probability=odds.probability))
-        choices = [replace(each, gaps=()) for each in choices if each.is_bounded]
-        return max(choices, key=lambda each: each.probability, default=held)
+            return unknown("is a node of which nobody knows how it runs its children")
+        if not node.node.children:
+            return compose(node, ())
+        parts = {id(child.node): _as_part(child, at.held[id(child)]) for child in node.children}
+        return compose(node, [parts.get(id(child), _XML) for child in node.node.children])
 
     # ---- the likelihood of success ----
 
-    def _succeeding(self, node: SourceNode) -> Success | None:
+    def _succeeding(self, at: _TreeBudgets, node: SourceNode) -> Success | None:
         """What a node's own claims say of its success, else what its children's do."""
         found: list[Success] = []
-        for applied, claim in self._claims.get(id(node), ()):
+        for applied, claim in at.claims.get(id(node), ()):
             if claim.verb == "succeeds":
                 odds = applied.requirement.odds
                 high = _range(claim.limit).high if claim.limit is not None else inf
                 found.append(Success(high, odds.probability if odds is not None else 1.0))
         if found:
             return max(found, key=lambda each: (each.probability, -each.seconds))
-        return self._composed_success(node)
+        return self._composed_success(at, node)
 
-    def _composed_success(self, node: SourceNode) -> Success | None:
+    def _composed_success(self, at: _TreeBudgets, node: SourceNode) -> Success | None:
         if node.category == "SubTree":
-            return next(map(self._part, self._run_before(node)), None)
-        budget = self._composed[id(node)]
+            root = self._run_before(node)
+            found = self._in(self._nodes.within(root.item)).successes[id(root)] if root is not None else None
+            return Success(found.seconds, found.probability) if found is not None else None
+        budget = at.composed[id(node)]
         if not node.children:
             sure = budget.success is not None and budget.failure is None and budget.success.high < inf
             return Success(budget.success.high, 1.0) if sure and budget.success is not None else None
         if any(pair.key.text in _CHANGING for child in node.children for pair in child.node.attributes):
             return None
-        parts = [self._part(child) for child in node.children]
+        parts = [_success_as_part(child, at.successes[id(child)]) for child in node.children]
         known = [part for part in parts if part is not None]
         if len(known) < len(node.node.children):
             return None
         return _success_of(node, known)
-
-    def _part(self, node: SourceNode) -> Success | None:
-        """A child's success, as a part of its parent's."""
-        found = self._successes.get(id(node))
-        if found is None:
-            return None
-        return Success(found.seconds, found.probability, ((node, 1.0 - found.probability),))
 
 
 def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
@@ -217,15 +254,46 @@ def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
     return None
 
 
+def _success_as_part(node: SourceNode, found: Success | None) -> Success | None:
+    """A child's success, as a part of its parent's."""
+    return Success(found.seconds, found.probability, ((node, 1.0 - found.probability),)) if found is not None else None
+
+
 def _as_part(node: SourceNode, budget: Budget) -> Budget:
     """A child's budget as its parent sees it: each outcome is one term."""
 
     def part(each: Range | None) -> Range | None:
-        if each is None:
-            return None
+        if each is None or (each.high == 0.0 and not each.terms):
+            return each
         return Range(each.low, each.high, (Term(node, 1, each.high),) if each.high > 0.0 else ())
 
-    return replace(budget, success=part(budget.success), failure=part(budget.failure), skip=part(budget.skip))
+    return _with_ranges(budget, part)
+
+
+def _without_terms(budget: Budget) -> Budget:
+    """A budget as another tree sees it: where it comes from is not said."""
+    return _with_ranges(budget, lambda each: Range(each.low, each.high) if each is not None and each.terms else each)
+
+
+def _with_ranges(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
+    success, failure, skip = change(budget.success), change(budget.failure), change(budget.skip)
+    return Budget(success, failure, skip, budget.waits, budget.probability, "", budget.endless)
+
+
+def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budget:
+    """What a node is held to; of bounds that may be missed now and then the likeliest, and only where no sure one
+    says how long it may take."""
+    sure = [claim for applied, claim in claims if applied.requirement.odds is None]
+    held = _all_narrowed(composed if composed.probability == 1.0 else _opened(composed), sure)
+    if held.is_bounded:
+        return held
+    choices = [_all_narrowed(composed, sure)] if composed.probability < 1.0 else []
+    for applied, claim in claims:
+        odds = applied.requirement.odds
+        if odds is not None and claim.verb == "takes":
+            choices.append(replace(_narrowed(held, claim), probability=odds.probability))
+    choices = [each for each in choices if each.is_bounded]
+    return max(choices, key=lambda each: each.probability, default=held)
 
 
 def _with_attributes(node: SourceNode, budget: Budget) -> Budget:
@@ -247,7 +315,7 @@ def _opened(budget: Budget) -> Budget:
     success, failure, skip = (
         ANY if each is not None else None for each in (budget.success, budget.failure, budget.skip)
     )
-    return Budget(success, failure, skip, budget.waits, 1.0, budget.gaps, budget.endless)
+    return Budget(success, failure, skip, budget.waits, 1.0, budget.reason, budget.endless)
 
 
 def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:
@@ -296,4 +364,8 @@ def _extreme(bounded: Bounded, *, highest: bool) -> float:
     return max(0.0, max(numbers)) if highest else min(numbers)
 
 
+_MOST_GAPS: Final = 5
+_CONDITION: Final = Budget(ZERO, ZERO, None, False)
+_NO_CLAUSE: Final = Budget(ANY, ANY, None, reason="has no `takes` clause")
+_XML: Final = unknown("has a child in XML")
 _CHANGING: Final = frozenset(("_failureIf", "_successIf", "_skipIf", "_while"))

@@ -26,8 +26,9 @@ def with_constraints(reader: Reader, requirement: Requirement, written: WrittenR
     """A requirement with what its description demands; one that has clauses says it there."""
     if written.clauses or written.text is None:
         return requirement
-    names = frozenset(reader.nodes.names())
-    for constraint in constraints(written.text):
+    found = constraints(written.text)
+    names = frozenset(reader.ask("nodes")) if found else frozenset()
+    for constraint in found:
         if can_be_checked(constraint.text, names):
             requirement = _with(reader, requirement, constraint, written.text.span)
     if not requirement.claims:
@@ -48,7 +49,7 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
     if constraint.violates and not all(isinstance(clause, WrittenClaim) for clause in item.clauses):
         return requirement
     before = dict(reader.problems)
-    reader.begin(requirement.path, requirement.entry, source=(text, span))
+    reader.begin(requirement.path, reader.entry, source=(text, span))
     claims_before = len(requirement.claims)
     resolved = with_clauses(reader, requirement, item.clauses)
     understood = len(reader.problems) == len(before)

@@ -72,7 +72,7 @@ def resolve(reader: Reader, definition: Definition, written: WrittenRequirement,
     found = Requirement(
         definition.symbol.name,
         definition.path,
-        definition.entry,
+        definition.entry.item,
         reader.place(definition.symbol.span),
         quality,
         written.text.text if written.text is not None else None,
@@ -175,9 +175,9 @@ def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted 
     """The signal that is used up, and what its difference over an activation is."""
     if word is None:
         return None, None
-    signal = reader.signals.get(word.text)
+    signal = reader.signal(word.text)
     if signal is None:
-        reader.unknown(word, tuple(reader.signals))
+        reader.unknown(word, ("signals",))
         return None, None
     if signal.sort != "number":
         reader.complain("unit-mismatch", word.span, f"what is used is a number, `{signal.name}` is {signal.sort}")
@@ -222,11 +222,10 @@ def _subject(reader: Reader, written: WrittenSubject) -> Subject | None:
     if isinstance(written, WrittenMission):
         return Mission(reader.mission)
     if isinstance(written, WrittenEvery):
-        nodes = reader.nodes.every(written.name.text)
-        if not nodes:
+        if not reader.ask("any", written.name.text):
             reader.none_of(written.name)
             return None
-        return Every(written.name.text, nodes)
+        return Every(written.name.text)
     if isinstance(written, Between):
         first, last = _event(reader, written.first), _event(reader, written.last)
         return Span(first, last) if first is not None and last is not None else None

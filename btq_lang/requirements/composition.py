@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from math import inf
 
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements.durations import (
     ANY,
     ZERO,
@@ -33,16 +33,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Gap:
-    """Why no bound can be said: the node, and the reason in words to stand behind its name."""
-
-    node: SourceNode
-    reason: str
-
-
-@record
-class Budget:
+class Budget(Record):
     """How long a node takes.
 
     Attributes:
@@ -50,7 +41,8 @@ class Budget:
         skip: until it is skipped.
         waits: it may return RUNNING, so it can be interrupted.
         probability: at least that likely all holds that the ranges rest on (by the union bound).
-        gaps: why there is no upper bound, where there is none.
+        reason: why the node itself has no upper bound, in words to stand behind its name; empty where that is for its
+            children.
         endless: it may run for ever, and then has no outcome at all.
     """
 
@@ -59,7 +51,7 @@ class Budget:
     skip: Range | None = None
     waits: bool = True
     probability: float = 1.0
-    gaps: tuple[Gap, ...] = ()
+    reason: str = ""
     endless: bool = False
 
     @property
@@ -98,20 +90,18 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
         return _sleep(node)
     rule = _RULES.get("Switch" if node.tag.startswith("Switch") else node.tag)
     if rule is None or not children or (node.category == "Decorator" and len(children) != 1):
-        return unknown(node, "is a node of which nobody knows how long it takes")
+        return unknown("is a node of which nobody knows how long it takes")
     found = rule(node, children)
     if found is None:
-        return unknown(node, "has children that do not fit it")
-    waits = found.waits or (node.kind is not None and node.kind.execution == "asynchronous")
-    if found.is_bounded:
-        return replace(found, waits=waits, gaps=())
-    inner = tuple(gap for child in children for gap in child.gaps)
-    return replace(found, waits=waits, gaps=tuple(dict.fromkeys((*found.gaps, *inner)))[:_MOST_GAPS])
+        return unknown("has children that do not fit it")
+    if found.waits or node.kind is None or node.kind.execution != "asynchronous":
+        return found
+    return replace(found, waits=True)
 
 
-def unknown(node: SourceNode, reason: str) -> Budget:
+def unknown(reason: str) -> Budget:
     """It can do anything, and take any time."""
-    return Budget(ANY, ANY, ANY, gaps=(Gap(node, reason),), endless=True)
+    return Budget(ANY, ANY, ANY, reason=reason, endless=True)
 
 
 def port_seconds(node: SourceNode, port: str) -> float | None:
@@ -187,14 +177,14 @@ def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends:
     """A child in front of the one that runs is asked at every tick, and may end the whole."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
-        gap = Gap(node, "has several children that take time, and each of them may be started again and again")
+        reason = "has several children that take time, and each of them may be started again and again"
         return replace(
             found,
             success=ANY if found.success is not None else None,
             failure=ANY if found.failure is not None else None,
             skip=ANY if found.skip is not None else None,
             probability=0.0 if found.probability < 1.0 else 1.0,
-            gaps=(gap,),
+            reason=reason,
             endless=True,
         )
     before = children[: waiting[0]] if waiting else ()
@@ -243,9 +233,9 @@ def _with_skips(node: SourceNode, children: Sequence[Budget], asks_again: bool) 
     if not skips:
         return None
     if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
-        gap = Gap(node, "asks a child that was skipped again and again")
+        reason = "asks a child that was skipped again and again"
         likely = _likely([child.probability for child in children], None)
-        return Budget(ANY, ANY, ANY, probability=likely, gaps=(gap,), endless=True)
+        return Budget(ANY, ANY, ANY, probability=likely, reason=reason, endless=True)
     longest = total(child.running for child in children)
     return _made(children, longest, longest, longest)
 
@@ -303,8 +293,10 @@ def _while_do_else(node: SourceNode, children: Sequence[Budget]) -> Budget | Non
     if condition.waits or (len(branches) == 2 and all(branch.waits for branch in branches)):
         changes = condition.success is not None and condition.failure is not None
         if condition.waits or changes:
-            gap = Gap(node, "asks its condition at every tick, so its branches may be started again and again")
-            return Budget(ANY, ANY, ANY, gaps=(gap,), probability=0.0 if found.probability < 1.0 else 1.0, endless=True)
+            reason = "asks its condition at every tick, so its branches may be started again and again"
+            return Budget(
+                ANY, ANY, ANY, reason=reason, probability=0.0 if found.probability < 1.0 else 1.0, endless=True
+            )
         return found
     running = total(branch.running if branch.waits else ZERO for branch in branches)
     if condition.failure is None or condition.success is None:
@@ -359,18 +351,18 @@ def _force_failure(node: SourceNode, children: Sequence[Budget]) -> Budget:
 def _retry(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "num_attempts")
-    go, end, skip, gaps = _again(node, child.failure, child.success, child.skip, count)
+    go, end, skip, reason = _again(child.failure, child.success, child.skip, count)
     return Budget(
-        end, go, skip, True, _likely([child.probability], count), gaps, _has_no_end(child, child.failure, count)
+        end, go, skip, True, _likely([child.probability], count), reason, _has_no_end(child, child.failure, count)
     )
 
 
 def _repeat(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     count = port_count(node, "num_cycles")
-    go, end, skip, gaps = _again(node, child.success, child.failure, child.skip, count)
+    go, end, skip, reason = _again(child.success, child.failure, child.skip, count)
     return Budget(
-        go, end, skip, True, _likely([child.probability], count), gaps, _has_no_end(child, child.success, count)
+        go, end, skip, True, _likely([child.probability], count), reason, _has_no_end(child, child.success, count)
     )
 
 
@@ -379,22 +371,21 @@ def _has_no_end(child: Budget, go: Range | None, count: int | None) -> bool:
 
 
 def _again(
-    node: SourceNode, go: Range | None, end: Range | None, skip: Range | None, count: int | None
-) -> tuple[Range | None, Range | None, Range | None, tuple[Gap, ...]]:
+    go: Range | None, end: Range | None, skip: Range | None, count: int | None
+) -> tuple[Range | None, Range | None, Range | None, str]:
     """Again and again while it goes on, `count` times at most: the outcome of having gone on so often, of ending
     before, and of being skipped; a skip keeps the count, so that the next activation has fewer to go."""
     if count == 0 or (count is not None and count < -1):
-        return ZERO, None, ZERO, ()
+        return ZERO, None, ZERO, ""
     if count is None or count == -1:
         reason = "has no end" if count == -1 else "is told by the blackboard how often it runs its child"
-        gaps = (Gap(node, reason),)
         if count == -1:
-            return None, _before(go, end, inf), _before(go, skip, inf), gaps
-        return without_end(hull(go, ZERO)), _before(go, end, inf), hull(_before(go, skip, inf), ZERO), gaps
+            return None, _before(go, end, inf), _before(go, skip, inf), reason
+        return without_end(hull(go, ZERO)), _before(go, end, inf), hull(_before(go, skip, inf), ZERO), reason
     all_of_it = times(count, go)
     if skip is not None and all_of_it is not None and go is not None:
         all_of_it = replace(all_of_it, low=go.low)
-    return all_of_it, _before(go, end, count - 1), _before(go, skip, count - 1), ()
+    return all_of_it, _before(go, end, count - 1), _before(go, skip, count - 1), ""
 
 
 def _before(go: Range | None, end: Range | None, count: float) -> Range | None:
@@ -429,14 +420,14 @@ def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     seconds = port_seconds(node, "delay_msec")
     wait = ANY if seconds is None else Range(seconds, seconds)
-    gaps = () if seconds is not None else (Gap(node, "is told by the blackboard how long it waits"),)
+    reason = "" if seconds is not None else "is told by the blackboard how long it waits"
     return replace(
         child,
         success=plus(wait, child.success),
         failure=plus(wait, child.failure),
         skip=plus(wait, child.skip),
         waits=True,
-        gaps=gaps,
+        reason=reason,
     )
 
 
@@ -445,8 +436,8 @@ def _keep_running(node: SourceNode, children: Sequence[Budget]) -> Budget:
     again = child.success is not None or child.skip is not None
     failure = without_end(child.failure) if again else child.failure
     likely = child.probability if child.probability == 1.0 or not again else 0.0
-    gaps = (Gap(node, "repeats its child until it fails"),) if again else ()
-    return Budget(None, failure, None, True, likely, gaps, child.endless or again)
+    reason = "repeats its child until it fails" if again else ""
+    return Budget(None, failure, None, True, likely, reason, child.endless or again)
 
 
 def _run_once(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -476,8 +467,8 @@ def _loop(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
-    gap = Gap(node, "runs its child for each item of a queue, and nobody knows how many there are")
-    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, (gap,), True)
+    reason = "runs its child for each item of a queue, and nobody knows how many there are"
+    return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
 
 
 def _skip_unless_updated(node: SourceNode, children: Sequence[Budget]) -> Budget:
@@ -493,7 +484,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
         failure=without_end(child.failure),
         skip=without_end(child.skip),
         waits=True,
-        gaps=(Gap(node, "waits for somebody to write an entry"),),
+        reason="waits for somebody to write an entry",
         endless=True,
     )
 
@@ -501,7 +492,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
 def _sleep(node: SourceNode) -> Budget:
     seconds = port_seconds(node, "msec")
     if seconds is None:
-        return Budget(ANY, None, gaps=(Gap(node, "is told by the blackboard how long it waits"),))
+        return Budget(ANY, None, reason="is told by the blackboard how long it waits")
     return Budget(Range(seconds, seconds), None)
 
 
@@ -520,7 +511,6 @@ def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
     return max(0.0, 1.0 - count * sum(1.0 - probability for probability in probabilities))
 
 
-_MOST_GAPS: Final = 5
 _ANSWERS: Final = Budget(ZERO, ZERO, None, False)
 _SUCCEEDS: Final = Budget(ZERO, None, None, False)
 _LEAVES: Final = {

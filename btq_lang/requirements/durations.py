@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
-from btq_lang.record import record, replace
+from btq_lang.record import Record, replace
 from btq_lang.requirements.model import SourceNode
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-@record
-class Term:
+class Term(Record):
     """A node's share of a duration: `times` runs of at most `seconds` each."""
 
     node: SourceNode
@@ -26,8 +25,7 @@ class Term:
     seconds: float
 
 
-@record
-class Range:
+class Range(Record):
     """From `low` to `high` seconds.
 
     Attributes:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.diagnostics import Place
-from btq_lang.record import record
-from btq_lang.syntax import Entry, Node
+from btq_lang.record import Record
+from btq_lang.requirements.names import names_of
+from btq_lang.syntax import Item, Node, Tree
+from btq_lang.text import Span as TextSpan
 from btq_lang.units import Dimension, Unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -35,39 +37,44 @@ class SourceNode:
     """A node as it is written, with what is around it.  Equal to nothing but itself: its place is what it is.
 
     Attributes:
-        path, entry: where it stands; its offsets count from the entry.
+        path, item: where it stands; its offsets count from the item.
         tree: the name of its tree; None where that is missing.
         parent: None for a node at the top of its tree.
         index: which child of its parent it is, verbatim XML counted.
         kind: the built-in that it is, if it is one.
         category: as written, or as the built-in or the model has it; None where nobody says.
-        names: every name that a path can call it by: its ID, all spellings of its kind, its label.
     """
 
-    __slots__ = ("category", "children", "entry", "index", "kind", "names", "node", "parent", "path", "tree")
+    __slots__ = ("_names", "category", "children", "index", "item", "kind", "node", "parent", "path", "tree")
 
     def __init__(
         self,
         node: Node,
         path: str,
-        entry: Entry,
+        item: Tree,
         tree: str | None,
         parent: SourceNode | None,
         index: int,
         kind: NodeKind | None,
         category: str | None,
-        names: frozenset[str],
     ) -> None:
         self.node: Final = node
         self.path: Final = path
-        self.entry: Final = entry
+        self.item: Final = item
         self.tree: Final = tree
         self.parent: Final = parent
         self.index: Final = index
         self.kind: Final = kind
         self.category: Final = category
-        self.names: Final = names
         self.children: list[SourceNode] = []  # filled while the tree is read
+        self._names: frozenset[str] | None = None
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Every name that a path can call it by: its ID, all spellings of its kind, its label."""
+        if self._names is None:
+            self._names = names_of(self.node, self.kind, self.category)
+        return self._names
 
     @property
     def shown(self) -> str:
@@ -79,7 +86,7 @@ class SourceNode:
     @property
     def place(self) -> Place:
         """Where its head stands."""
-        return Place(self.node.head.span, self.path, self.entry.item)
+        return Place(self.node.head.span, self.path, self.item)
 
     @property
     def tag(self) -> str:
@@ -90,8 +97,7 @@ class SourceNode:
         return f"<{self.shown} in {self.tree}>"
 
 
-@record
-class Target:
+class Target(Record):
     """A node that a path names.
 
     Attributes:
@@ -103,8 +109,7 @@ class Target:
     through: tuple[str, ...] = ()
 
 
-@record
-class Mission:
+class Mission(Record):
     """The whole run: the main tree's written root, None where nobody can say which tree runs."""
 
     node: SourceNode | None
@@ -113,8 +118,7 @@ class Mission:
 # ---- Values ---------------------------------------------------------------------------------------------------------
 
 
-@record
-class Value:
+class Value(Record):
     """A quantity or a bare number.
 
     Attributes:
@@ -128,8 +132,7 @@ class Value:
     unit: Unit
 
 
-@record
-class Flag:
+class Flag(Record):
     """`true` or `false`."""
 
     value: bool
@@ -139,8 +142,7 @@ class Flag:
         return "true" if self.value else "false"
 
 
-@record
-class Text:
+class Text(Record):
     """A string that a signal of text is compared with."""
 
     value: str
@@ -150,8 +152,7 @@ class Text:
         return f'"{self.value}"'
 
 
-@record
-class Signal:
+class Signal(Record):
     """What can be measured.
 
     Attributes:
@@ -172,8 +173,7 @@ class Signal:
     place: Place
 
 
-@record
-class Read:
+class Read(Record):
     """The last sample of a signal; of a bool signal, a condition as well."""
 
     signal: Signal
@@ -183,8 +183,7 @@ class Read:
         return self.signal.name
 
 
-@record
-class Parameter:
+class Parameter(Record):
     """A parameter in the definition of a requirement; in what is applied an argument stands in its place."""
 
     name: str
@@ -197,23 +196,20 @@ class Parameter:
         return self.name
 
 
-@record
-class Aggregate:
+class Aggregate(Record):
     """`p95(track_error)`: over the samples of an activation."""
 
     function: str
     signal: Signal
 
 
-@record
-class Minus:
+class Minus(Record):
     """`-x`."""
 
     operand: Number
 
 
-@record
-class Arithmetic:
+class Arithmetic(Record):
     """`a + b`; operator: `+`, `-`, `*`, `/`."""
 
     operator: str
@@ -221,16 +217,14 @@ class Arithmetic:
     right: Number
 
 
-@record
-class Case:
+class Case(Record):
     """A value and when it holds; no condition: otherwise."""
 
     value: Simple
     condition: Condition | None
 
 
-@record
-class Table:
+class Table(Record):
     """A value for each situation: of the first case whose condition holds."""
 
     cases: tuple[Case, ...]
@@ -249,52 +243,45 @@ Number: TypeAlias = Bounded | Aggregate | Minus | Arithmetic
 # ---- Conditions -----------------------------------------------------------------------------------------------------
 
 
-@record
-class Compare:
+class Compare(Record):
     """`a < b`, `a < b < c`: one more operand than operators; all in SI."""
 
     operators: tuple[str, ...]
     operands: tuple[Number, ...]
 
 
-@record
-class All:
+class All(Record):
     """`φ and ψ`."""
 
     conditions: tuple[Condition, ...]
 
 
-@record
-class Any:
+class Any(Record):
     """`φ or ψ`."""
 
     conditions: tuple[Condition, ...]
 
 
-@record
-class Not:
+class Not(Record):
     """`not φ`."""
 
     condition: Condition
 
 
-@record
-class InContext:
+class InContext(Record):
     """A context by its name, and what it stands for."""
 
     name: str
     condition: Condition
 
 
-@record
-class Running:
+class Running(Record):
     """`node Path`: while that node runs."""
 
     target: Target
 
 
-@record
-class Script:
+class Script(Record):
     """A script of the engine behind SuccessIf or FailureIf in a classic description."""
 
     code: str
@@ -306,8 +293,7 @@ Condition: TypeAlias = Compare | All | Any | Not | InContext | Running | Script 
 # ---- Claims ---------------------------------------------------------------------------------------------------------
 
 
-@record
-class Limit:
+class Limit(Record):
     """A bound in SI: `value`, or from `value` to `upper` where the relation is `between`."""
 
     relation: Relation
@@ -315,8 +301,7 @@ class Limit:
     upper: Bounded | None = None
 
 
-@record
-class Event:
+class Event(Record):
     """Something that happens to a node, or to the mission; `when`: a condition becomes true."""
 
     happening: Happening
@@ -324,34 +309,29 @@ class Event:
     condition: Condition | None = None
 
 
-@record
-class Span:
+class Span(Record):
     """The time from each `first` to the next `last`."""
 
     first: Event
     last: Event
 
 
-@record
-class Total:
+class Total(Record):
     """The durations of several nodes in one run, added up."""
 
     targets: tuple[Target, ...]
 
 
-@record
-class Every:
-    """Each of these nodes for itself."""
+class Every(Record):
+    """Each node of an ID or kind for itself."""
 
     name: str
-    nodes: tuple[SourceNode, ...]
 
 
 Subject: TypeAlias = Target | Mission | Every | Span | Total
 
 
-@record
-class Claim:
+class Claim(Record):
     """What is demanded.
 
     Attributes:
@@ -377,8 +357,7 @@ class Claim:
     every: bool = False
 
 
-@record
-class Scope:
+class Scope(Record):
     """`while φ`: only time (or activations) with φ; `when φ`: only activations with φ at their start."""
 
     word: Literal["while", "when"]
@@ -386,8 +365,7 @@ class Scope:
     text: str
 
 
-@record
-class Odds:
+class Odds(Record):
     """`in at least 98 % of activations`.  relation: `>=` or `>`; probability: a fraction of one."""
 
     relation: str
@@ -397,8 +375,7 @@ class Odds:
     place: Place
 
 
-@record
-class Window:
+class Window(Record):
     """What counts: the last `count` experiments, or the last `seconds`."""
 
     count: int | None
@@ -408,12 +385,11 @@ class Window:
     place: Place
 
 
-@record
-class Requirement:
+class Requirement(Record):
     """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal hold for all claims.
 
     Attributes:
-        path, entry, place: where it is defined; place: its name.
+        path, item, place: where it is defined; place: its name.
         quality: as written, names joined by points; of a classic one the quality that encloses it.
         title: its title, or the classic description.
         classic: its claims were read from SuccessIf and FailureIf in its description.
@@ -422,7 +398,7 @@ class Requirement:
 
     name: str
     path: str
-    entry: Entry
+    item: Item
     place: Place
     quality: str | None
     title: str | None
@@ -439,16 +415,36 @@ class Requirement:
     method: Method | None = None
 
 
-@record
-class Argument:
+class Argument(Record):
     """What a parameter stands for: as given, or its default."""
 
     name: str
     value: Bounded
 
 
-@record
-class Applied:
+class Use(Record):
+    """An attachment of a requirement to a node, before it is decided which of several counts.
+
+    Attributes:
+        rank: how specific it is.
+        path, item, span: where it stands.
+    """
+
+    requirement: str
+    target: Target
+    arguments: tuple[Argument, ...]
+    rank: int
+    how: Literal["satisfies", "apply"]
+    path: str
+    item: Item
+    span: TextSpan
+
+    @property
+    def place(self) -> Place:
+        return Place(self.span, self.path, self.item)
+
+
+class Applied(Record):
     """A requirement and what it holds for.
 
     Attributes:
@@ -499,8 +495,7 @@ class Applied:
         return tuple(part.node for part in parts if part is not None and part.node is not None)
 
 
-@record
-class Trace:
+class Trace(Record):
     """A node that satisfies a requirement whose claims name their subjects themselves: a link, no verdict."""
 
     requirement: str

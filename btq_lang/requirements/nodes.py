@@ -6,14 +6,14 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import cached_property
 
-from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup, spellings
-from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import SourceNode, Target
+from btq_lang.requirements.names import kinds_of
+from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Node, Tags, Tree
+from btq_lang.syntax import Item, Model, Node, Tree
 from btq_lang.workspace import Scope, Workspace
 
 
@@ -21,40 +21,68 @@ class Nodes:
     """The written nodes of a file and what it includes.
 
     Attributes:
-        all: in the order of the files and of their text.
+        trees: those they stand in, in the order of the files and of their text.
+        is_ordered_as_before: which tree runs which is as it was; the order of the trees is the same.
     """
 
-    def __init__(self, workspace: Workspace, scope: Scope) -> None:
-        found: list[SourceNode] = []
-        self._roots: dict[str, SourceNode] = {}
-        self._of_entry: dict[int, list[SourceNode]] = {}
-        self._of_node: dict[int, SourceNode] = {}
-        self._by_name: dict[str, list[SourceNode]] = {}
-        self._callers: dict[str, list[SourceNode]] = {}
-        for path in scope.paths:
-            for entry in workspace.files[path].parsed.entries:
-                if isinstance(entry.item, Tree):
-                    found += self._read(scope, path, entry, entry.item)
-        self.all = tuple(found)
-        for node in found:
-            self._of_node[id(node.node)] = node
-            for name in node.names:
-                self._by_name.setdefault(name, []).append(node)
-            if node.category == "SubTree" and node.node.id is not None:
-                self._callers.setdefault(node.node.id.text, []).append(node)
+    def __init__(self, workspace: Workspace, scope: Scope, before: Nodes | None = None) -> None:
+        """before: those of an earlier workspace, to take over the trees that are the same."""
+        files = [workspace.files[path] for path in scope.paths]
+        counting: dict[str, Item] = {}  # the trees that count, where several have one name
+        self._categories: dict[str, str] = {}
+        for file in files:
+            names = file.names
+            for name in names.by_kind[Kind.TREE]:
+                counting.setdefault(name, names.found[Kind.TREE, name][0][0])
+            for name in names.by_kind[Kind.MODEL]:
+                if isinstance(model := names.found[Kind.MODEL, name][0][1].target, Model):
+                    self._categories.setdefault(name, model.category.raw)
+        self._of_item: dict[int, TreeNodes] = {}
+        known = before._of_item if before is not None else {}
+        has_same = before is not None and before._categories == self._categories
+        for file in files:
+            for entry in file.parsed.entries:
+                item = entry.item
+                if isinstance(item, Tree):
+                    tree = known.get(id(item))
+                    if tree is None or tree.item is not item or not (has_same or tree.fits(self._categories)):
+                        tree = TreeNodes(file.path, item, self._categories)
+                    self._of_item[id(item)] = tree
+        self.trees = tuple(self._of_item.values())
+        self._roots = {
+            tree.name: tree.root
+            for tree in self.trees
+            if tree.root is not None and tree.name is not None and counting[tree.name] is tree.item
+        }
+        # Which tree runs which.
+        self._shape = [(tree.name, tree.called, tree.root is not None) for tree in self.trees]
+        self.is_ordered_as_before = before is not None and before._shape == self._shape
+        if before is not None and self.is_ordered_as_before:
+            self._order = before._order
+        self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
+        self._found: dict[tuple[str, ...], tuple[Target, ...]] = {}
+
+    @cached_property
+    def all(self) -> tuple[SourceNode, ...]:
+        """In the order of the files and of their text."""
+        return tuple([node for tree in self.trees for node in tree.all])
+
+    @cached_property
+    def are_known(self) -> bool:
+        """Whether there are any."""
+        return any(tree.all for tree in self.trees)
 
     def root(self, tree: str) -> SourceNode | None:
         """The written root of a tree; None where the tree has none, or nobody knows it."""
         return self._roots.get(tree)
 
-    def root_of(self, entry: Entry) -> SourceNode | None:
-        """The written root of the tree that stands in an entry; None where it has none, or several."""
-        tops = [node for node in self._of_entry.get(id(entry), ()) if node.parent is None]
-        return tops[0] if len(tops) == 1 else None
+    def within(self, item: Tree) -> TreeNodes:
+        """The nodes of one of the trees.
 
-    def within(self, entry: Entry) -> Sequence[SourceNode]:
-        """The nodes of the tree that stands in an entry, in the order of its text."""
-        return self._of_entry.get(id(entry), ())
+        Raises:
+            KeyError: it is none of them.
+        """
+        return self._of_item[id(item)]
 
     def of(self, node: Node) -> SourceNode | None:
         """A node of the syntax as one of these."""
@@ -64,11 +92,105 @@ class Nodes:
         """The SubTree nodes that run a tree."""
         return tuple(self._callers.get(tree, ())) if tree is not None else ()
 
+    def run_by(self, node: SourceNode) -> SourceNode | None:
+        """The root of the tree that a SubTree node runs."""
+        name = node.node.id
+        return self._roots.get(name.text) if node.category == "SubTree" and name is not None else None
+
+    @cached_property
+    def in_order(self) -> tuple[TreeNodes, ...]:
+        """The trees, each behind those that it runs, where there is no circle; that is cut at the same place, whichever
+        of its trees is asked for first."""
+        return tuple([self.trees[index] for index in self._order])
+
+    def position(self, item: Tree) -> int:
+        """Where a tree stands in that order."""
+        return self._positions[id(item)]
+
+    @cached_property
+    def _order(self) -> tuple[int, ...]:
+        indices = {id(tree.item): index for index, tree in enumerate(self.trees)}
+        of_name = {name: indices[id(root.item)] for name, root in self._roots.items()}
+        found: dict[int, None] = {}
+        begun: set[int] = set()
+        for start in range(len(self.trees)):
+            waiting = [start]
+            while waiting:
+                index = waiting[-1]
+                if index in begun:
+                    waiting.pop()
+                    found[index] = None
+                    continue
+                begun.add(index)
+                below = [of_name[name] for name in reversed(self.trees[index].called) if name in of_name]
+                waiting += [each for each in below if each not in begun]
+        return tuple(found)
+
+    @cached_property
+    def _positions(self) -> dict[int, int]:
+        return {id(tree.item): position for position, tree in enumerate(self.in_order)}
+
     def find(self, names: Sequence[str]) -> tuple[Target, ...]:
         """The nodes that a path names: the last name's, below nodes or trees of the other names in their order, with
         any others between them.  A SubTree node and the root of its tree are one: the root where the path holds for
         every instance of the tree, else the SubTree node."""
-        last, above = names[-1], tuple(names[:-1])
+        path = tuple(names)
+        if path not in self._found:
+            self._found[path] = self._find(path[-1], path[:-1])
+        return self._found[path]
+
+    def every(self, name: str) -> tuple[SourceNode, ...]:
+        """The nodes of an ID or kind; a tree's name, where no SubTree runs it, is its root."""
+        found = [node for node in self._by_name.get(name, ()) if name in _kinds(node)]
+        if not found and (root := self._roots.get(name)) is not None:
+            return (root,)
+        return tuple(found)
+
+    def tagged(self, tag: str) -> tuple[SourceNode, ...]:
+        """The nodes with a tag; a tag of a tree is one of its root."""
+        trees = [tree for tree in self.trees if tag in tree.by_tag]
+        return tuple([node for tree in trees for node in tree.all if node in tree.by_tag[tag]])
+
+    def tags(self) -> frozenset[str]:
+        """Every tag that a node has."""
+        return frozenset().union(*(tree.by_tag for tree in self.trees))
+
+    def kinds(self) -> frozenset[str]:
+        """Every ID and kind that a node has."""
+        return frozenset().union(*map(_kinds, self.all))
+
+    def under(self, nodes: Sequence[SourceNode], top: Target) -> tuple[SourceNode, ...]:
+        """Those of the nodes that stand below a node, or in a tree that runs below it."""
+        below = self._below(top.node)
+        return tuple(node for node in nodes if id(node) in below)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Every name that a path can have in it."""
+        names = (*self._by_name, *self._roots)
+        return self._names_before if names == self._names_before else names
+
+    @cached_property
+    def _by_name(self) -> dict[str, list[SourceNode]]:
+        found: dict[str, list[SourceNode]] = {}
+        for tree in self.trees:
+            for name, nodes in tree.by_name.items():
+                found.setdefault(name, []).extend(nodes)
+        return found
+
+    @cached_property
+    def _callers(self) -> dict[str, list[SourceNode]]:
+        found: dict[str, list[SourceNode]] = {}
+        for tree in self.trees:
+            for name, node in tree.calls:
+                found.setdefault(name, []).append(node)
+        return found
+
+    @cached_property
+    def _of_node(self) -> dict[int, SourceNode]:
+        return {id(node.node): node for node in self.all}
+
+    def _find(self, last: str, above: tuple[str, ...]) -> tuple[Target, ...]:
         root = self._roots.get(last)
         matching = (self._target(node, above, False) for node in self._by_name.get(last, ()) if node is not root)
         found = [target for target in matching if target is not None]
@@ -79,53 +201,6 @@ class Nodes:
         if not of_tree.through or len(others) == len(found):
             return (of_tree, *others)
         return tuple(found)
-
-    def every(self, name: str) -> tuple[SourceNode, ...]:
-        """The nodes of an ID or kind; a tree's name, where no SubTree runs it, is its root."""
-        found = [node for node in self._by_name.get(name, ()) if name in kinds(node)]
-        if not found and (root := self._roots.get(name)) is not None:
-            return (root,)
-        return tuple(found)
-
-    def tagged(self, tag: str) -> tuple[SourceNode, ...]:
-        """The nodes with a tag; a tag of a tree is one of its root."""
-        return tuple(node for node in self.all if tag in _tags(node))
-
-    def tags(self) -> frozenset[str]:
-        """Every tag that a node has."""
-        return frozenset(tag for node in self.all for tag in _tags(node))
-
-    def under(self, nodes: Sequence[SourceNode], top: Target) -> tuple[SourceNode, ...]:
-        """Those of the nodes that stand below a node, or in a tree that runs below it."""
-        below = self._below(top.node)
-        return tuple(node for node in nodes if id(node) in below)
-
-    def names(self) -> tuple[str, ...]:
-        """Every name that a path can have in it."""
-        return (*self._by_name, *self._roots)
-
-    def _read(self, scope: Scope, path: str, entry: Entry, tree: Tree) -> Iterator[SourceNode]:
-        name = tree.name.text if tree.name is not None else None
-        mine = self._of_entry.setdefault(id(entry), [])
-        waiting: list[tuple[Node, SourceNode | None, int]] = []
-        waiting += [(child, None, at) for at, child in enumerate(tree.children) if isinstance(child, Node)]
-        waiting.reverse()
-        while waiting:
-            node, parent, index = waiting.pop()
-            kind, category = _kind(scope, node)
-            found = SourceNode(node, path, entry, name, parent, index, kind, category, _names(node, kind, category))
-            if parent is not None:
-                parent.children.append(found)
-            mine.append(found)
-            yield found
-            if node.children:
-                children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
-                waiting += reversed(children)
-        definition = scope.find(Kind.TREE, name) if name is not None else None
-        if name is not None and definition is not None and definition.entry is entry:
-            root = self.root_of(entry)
-            if root is not None:
-                self._roots[name] = root
 
     def _target(self, node: SourceNode, above: tuple[str, ...], is_tree: bool) -> Target | None:
         """The node as a target of a path with these other names, if they are found above it.
@@ -179,17 +254,12 @@ class Nodes:
         waiting = [top]
         while waiting:
             node = waiting.pop()
-            for child in (*node.children, *self._inside(node)):
+            root = self.run_by(node)
+            for child in node.children if root is None else (*node.children, root):
                 if id(child) not in found:
                     found.add(id(child))
                     waiting.append(child)
         return found
-
-    def _inside(self, node: SourceNode) -> Iterator[SourceNode]:
-        """The root of the tree that a SubTree node runs."""
-        name = node.node.id
-        if node.category == "SubTree" and name is not None and (root := self._roots.get(name.text)) is not None:
-            yield root
 
 
 def _runs(node: SourceNode, tree: str) -> bool:
@@ -197,52 +267,5 @@ def _runs(node: SourceNode, tree: str) -> bool:
     return node.category == "SubTree" and node.node.id is not None and node.node.id.text == tree
 
 
-def _kind(scope: Scope, node: Node) -> tuple[NodeKind | None, str | None]:
-    """The built-in that a node is, and its category."""
-    category: str | None = node.category.raw if node.category is not None else None
-    name = node.id
-    if name is None or category == "SubTree":
-        return None, category
-    if is_placeholder(node):
-        return None, PLACEHOLDERS[name.raw]
-    kind = lookup(name.text, name.quoted, len(node.nodes))
-    if kind is not None:
-        return kind, category or kind.category
-    if category is None:
-        definition = scope.find(Kind.MODEL, name.text)
-        if definition is not None and isinstance(model := definition.symbol.target, Model):
-            category = model.category.raw
-        elif not name.quoted and name.text in KNOWN_WORDS:
-            category = KNOWN_WORDS[name.text].category
-    return None, category
-
-
-def _names(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:
-    name, label = node.id, node.name
-    found = {name.text} if name is not None else set()
-    if kind is not None:
-        found.update(spellings(kind))
-    if category == "SubTree":
-        found.add("SubTree")
-    if label is not None:
-        found.add(label.text)
-        if is_placeholder(node):
-            found.add(legal_name(label.text))
-    return frozenset(found)
-
-
-def kinds(node: SourceNode) -> frozenset[str]:
-    """The names of a node that say what it is, and not which one; a placeholder's name says both."""
-    if is_placeholder(node.node):
-        return node.names
-    found = {node.node.id.text} if node.node.id is not None else set()
-    found.update(spellings(node.kind) if node.kind is not None else ())
-    return frozenset(found | {"SubTree"} if node.category == "SubTree" else found)
-
-
-def _tags(node: SourceNode) -> Iterator[str]:
-    tree = node.entry.item
-    clauses = tree.clauses if isinstance(tree, Tree) and node.parent is None else ()
-    for clause in (*node.node.clauses, *clauses):
-        if isinstance(clause, Tags):
-            yield from (name.text for name in clause.names)
+def _kinds(node: SourceNode) -> frozenset[str]:
+    return kinds_of(node.node, node.kind, node.category)

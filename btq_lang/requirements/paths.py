@@ -6,59 +6,134 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Hashable, Iterable, Iterator
 
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
-from btq_lang.record import record
-from btq_lang.requirements.model import Condition, Parameter, Signal, Target
-from btq_lang.requirements.nodes import Nodes, kinds
+from btq_lang.record import Record
+from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
+from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import Severity
-from btq_lang.syntax import Entry, Path, Word, is_name, quote
+from btq_lang.syntax import Entry, Item, Path, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from typing import Any, Final
+
+    from btq_lang.requirements.memory import Question
 
 
-@record
-class Problem:
-    """Something wrong with a requirement, and the entry that the places of the diagnostic count from."""
+class Problem(Record):
+    """Something wrong with a requirement, and the item that the places of the diagnostic count from."""
 
     path: str
-    entry: Entry
+    item: Item
     diagnostic: Diagnostic
 
 
 class PathReader:
-    """Reads paths of one scope; `begin` says where the next ones stand.
+    """Reads paths of one scope; `begin` says where the next ones stand.  Whatever it looks up elsewhere it notes.
 
     Attributes:
-        signals, contexts: by name; a context that could not be read is None.
+        requirements, signals, contexts: by name; a context that could not be read is None.
         parameters: of the requirement at hand.
-        mission: the main tree's root; None where nobody can say which tree runs.
-        problems: all found so far, each once.
+        problems: found since that was emptied, each once.
+        noted: what was looked up since that was emptied.
     """
 
     def __init__(self, workspace: Workspace, path: str, scope: Scope, nodes: Nodes) -> None:
         self.workspace = workspace
-        self.scope = scope
         self.nodes = nodes
+        self.requirements: dict[str, Requirement] = {}
         self.signals: dict[str, Signal] = {}
         self.contexts: dict[str, Condition | None] = {}
         self.parameters: dict[str, Parameter] = {}
+        self.problems: dict[tuple[str, Span, str], Problem] = {}
+        self.noted: dict[Question, object] = {}
         main = workspace.main_tree(path)
-        self.mission = nodes.root_of(main.entry) if main is not None else None
-        self.problems: dict[tuple[int, Diagnostic], Problem] = {}
+        mission = nodes.within(main.entry.item).root if main is not None and isinstance(main.entry.item, Tree) else None
         # A library's nodes may be in the files that include it, and a robot's in XML that nobody has read.
-        self.knows_all_nodes = (
-            bool(nodes.all)
+        knows_all_nodes = (
+            nodes.are_known
             and scope.complete
             and path not in workspace.included_files
-            and not any(file.parsed.diagnostics for file in map(workspace.files.__getitem__, scope.paths))
+            and not any(entry.diagnostics for each in scope.paths for entry in workspace.files[each].parsed.entries)
         )
+        self._answers: dict[str, Callable[[Any], object]] = {
+            "find": nodes.find,
+            "every": nodes.every,
+            "any": lambda name: bool(nodes.every(name)),
+            "tagged": nodes.tagged,
+            "under": lambda about: nodes.under(nodes.every(about[0]), about[1]),
+            "nodes": lambda _: nodes.names,
+            "kinds": lambda _: nodes.kinds(),
+            "tags": lambda _: nodes.tags(),
+            "mission": lambda _: mission,
+            "knows all nodes": lambda _: knows_all_nodes,
+            "knows all names": lambda _: scope.complete,
+            "requirement": self.requirements.get,
+            "signal": self.signals.get,
+            "signals": lambda _: tuple(self.signals),
+            "context": lambda name: self.contexts.get(name, _NOTHING),
+            "contexts": lambda _: tuple(self.contexts),
+        }
+
+    # ---- what is looked up ----
+
+    def answer(self, question: Question) -> object:
+        """What is found now."""
+        what, about = question
+        return self._answers[what](about)
+
+    def ask(self, what: str, about: Hashable = None) -> Any:
+        """What is found, which is noted."""
+        answer = self.noted[what, about] = self._answers[what](about)
+        return answer
+
+    def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
+        """As `Nodes.find`."""
+        found: tuple[Target, ...] = self.ask("find", names)
+        return found
+
+    def every(self, name: str) -> tuple[SourceNode, ...]:
+        """As `Nodes.every`."""
+        found: tuple[SourceNode, ...] = self.ask("every", name)
+        return found
+
+    def requirement(self, name: str) -> Requirement | None:
+        """The requirement of a name, with its parameters in it."""
+        found: Requirement | None = self.ask("requirement", name)
+        return found
+
+    def signal(self, name: str) -> Signal | None:
+        """The signal of a name."""
+        found: Signal | None = self.ask("signal", name)
+        return found
+
+    def is_context(self, name: str) -> bool:
+        """Whether there is a context of a name, understood or not."""
+        return self.ask("context", name) is not _NOTHING
+
+    def names(self, *kinds: str) -> Iterator[str]:
+        """The names of these kinds: parameters, signals, contexts, nodes."""
+        for kind in kinds:
+            yield from self.parameters if kind == "parameters" else self.ask(kind)
+
+    @property
+    def mission(self) -> SourceNode | None:
+        """The main tree's root; None where nobody can say which tree runs."""
+        found: SourceNode | None = self.ask("mission")
+        return found
+
+    @property
+    def knows_all_nodes(self) -> bool:
+        """Whether a node that is not among these is nowhere."""
+        found: bool = self.ask("knows all nodes")
+        return found
+
+    # ---- where it reads ----
 
     def begin(
         self,
@@ -90,7 +165,12 @@ class PathReader:
         severity: Severity | None = None,
     ) -> None:
         diagnostic = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
-        self.problems.setdefault((id(self.entry), diagnostic), Problem(self.path, self.entry, diagnostic))
+        self.note(Problem(self.path, self.entry.item, diagnostic))
+
+    def note(self, problem: Problem) -> None:
+        """Add a problem, unless it is known."""
+        found = problem.diagnostic
+        self.problems.setdefault((found.rule, found.span, found.message), problem)
 
     def place(self, span: Span) -> Place:
         return Place(span if self._source is None else self._source[1], self.path, self.entry.item)
@@ -107,7 +187,7 @@ class PathReader:
     def target(self, path: Path) -> Target | None:
         """The one node that a path names."""
         names = tuple(name.text for name in path.names)
-        found = self.nodes.find(names)
+        found = self.find(names)
         if len(found) == 1:
             return found[0]
         shown = "/".join(name.raw for name in path.names)
@@ -121,9 +201,9 @@ class PathReader:
         """Complain of `every X` where nothing is an X."""
         if not self.knows_all_nodes:
             return
-        known = {name for node in self.nodes.all for name in kinds(node)}
+        known = self.ask("kinds")
         notes: tuple[str, ...] = ()
-        if self.nodes.find((name.text,)):
+        if self.find((name.text,)):
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
         fixes = _replaced(name, known)
         self.complain("unmatched-path", name.span, f"no node is a `{name.text}`", notes=notes, fixes=fixes)
@@ -131,7 +211,7 @@ class PathReader:
     def no_tag(self, tag: Word) -> None:
         """Complain of `tagged x` where nothing has that tag."""
         if self.knows_all_nodes:
-            fixes = _replaced(tag, self.nodes.tags())
+            fixes = _replaced(tag, self.ask("tags"))
             self.complain("unmatched-path", tag.span, f"no node has the tag `{tag.text}`", fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
@@ -148,18 +228,18 @@ class PathReader:
         )
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:
-        if len(names) > 1 and self.nodes.find(names[-1:]):
+        if len(names) > 1 and self.find(names[-1:]):
             return f"no node `{names[-1]}` stands below `{'/'.join(names[:-1])}`"
         return f"nothing is called `{shown}`" if len(names) == 1 else f"no node is named by `{shown}`"
 
     def _meant(self, path: Path) -> tuple[Fix, ...]:
-        known = self.nodes.names()
+        known = self.ask("nodes")
         fixes = []
         for index, word in enumerate(path.names):
             for name in near(word.text, known) if word.text not in known else ():
                 names = [other.text for other in path.names]
                 names[index] = name
-                if len(self.nodes.find(names)) == 1:
+                if len(self.find(tuple(names))) == 1:
                     fixes.append(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)))
         return tuple(fixes)
 
@@ -171,7 +251,7 @@ class PathReader:
         above += [node.tree] if node.tree is not None else []
         choices = [*([head] for head in heads), *([name, head] for head in heads for name in above)]
         for names in choices:
-            found = self.nodes.find(names)
+            found = self.find(tuple(names))
             if len(found) == 1 and found[0].node is node:
                 return "/".join(map(_written, names))
         return None
@@ -189,3 +269,4 @@ def _written(name: str) -> str:
 
 
 _SHOWN: Final = 5  # places and fixes of one diagnostic
+_NOTHING: Final = object()

@@ -11,7 +11,7 @@ from math import isfinite
 from btq_lang.diagnostics import Fix, replace_fix
 from btq_lang.near import near
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Aggregate,
@@ -65,8 +65,7 @@ if TYPE_CHECKING:
     Level: TypeAlias = Literal["level", "difference", "either"]
 
 
-@record
-class Wanted:
+class Wanted(Record):
     """What a verb asks for in a place.
 
     Attributes:
@@ -82,8 +81,7 @@ class Wanted:
     level: Level = "either"
 
 
-@record
-class Term:
+class Term(Record):
     """A value in an expression, with what must be known to compare it.
 
     Attributes:
@@ -191,34 +189,42 @@ class Reader(PathReader):
             return Term(Flag(name == "true"), "bool", None, None, word.span)
         if name in self.parameters:
             return _term(self.parameters[name], word)
-        if name in self.signals:
-            return _term(Read(self.signals[name]), word)
-        if name in self.contexts:
+        if (signal := self.signal(name)) is not None:
+            return _term(Read(signal), word)
+        if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
             return None
-        self.unknown(word, (*self.parameters, *self.signals), _unit_of(beside))
+        self.unknown(word, ("parameters", "signals"), _unit_of(beside))
         return None
 
-    def unknown(self, word: Word, names: tuple[str, ...], unit: str = "m") -> None:
+    def unknown(self, word: Word, kinds: tuple[str, ...], unit: str = "m") -> None:
         """A name that nothing declares.
 
         Args:
-            names: what may have been meant.
+            kinds: of what the names may have been meant.
             unit: what a signal of that name would be declared in.
         """
-        if not self.scope.complete:
+        if not self.ask("knows all names"):
             return
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
             return  # told as a subtraction without blanks
-        meant = near(word.text, names)
+        meant = near(word.text, self.names(*kinds))
         fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in meant)
+        if word.text[-1] in "²³":
+            power = "^2" if word.text[-1] == "²" else "^3"
+            last = Span(word.end - 1, word.end)
+            fix = replace_fix(f"Write `{power}`", last, power)
+            self.complain(
+                "unknown-unit", word.span, f"`{word.text}` is no unit: powers are written `{power}`", fixes=(fix,)
+            )
+            return
         note = f"declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
         if meant:
             note = f"did you mean `{meant[0]}`? or {note}"
         self.complain("unknown-signal", word.span, f"no signal `{word.text}` is declared", notes=(note,), fixes=fixes)
 
     def _is_subtraction(self, name: str) -> bool:
-        known = {*self.parameters, *self.signals, *self.contexts}
+        known = frozenset(self.names("parameters", "signals", "contexts"))
         return any(c == "-" and name[:at] in known and name[at + 1 :] in known for at, c in enumerate(name))
 
     def _fits(self, term: Term, wanted: Wanted) -> bool:
@@ -313,26 +319,27 @@ class Reader(PathReader):
                 self._no_condition(term)
             return None
         if word.kind == NAME:
-            if name in self.contexts and name not in self.parameters and name not in self.signals:
+            is_value = self._is_value(name)
+            if not is_value and self.is_context(name):
                 condition = self.contexts[name]
                 return InContext(name, condition) if condition is not None else None
             if name in ("true", "false"):
                 return Flag(name == "true")
-            if name in self.parameters or name in self.signals:
+            if is_value:
                 term = self._named(word)
                 if term is not None and term.sort == "bool" and isinstance(term.value, Read | Parameter):
                     return term.value
                 if term is not None:
                     self._no_condition(term)
                 return None
-        if self.nodes.find((name,)):
+        if self.find((name,)):
             target = self.target(Path((word,)))
             return Running(target) if target is not None else None
         if word.kind == STRING:
             if self.knows_all_nodes:
                 self.target(Path((word,)))
             return None
-        self.unknown(word, (*self.parameters, *self.signals, *self.contexts, *self.nodes.names()))
+        self.unknown(word, ("parameters", "signals", "contexts", "nodes"))
         return None
 
     def _no_condition(self, term: Term) -> None:
@@ -351,8 +358,7 @@ class Reader(PathReader):
         if not isinstance(at, Operand):
             return None
         words.append(at.word)
-        known = (self.parameters, self.signals)
-        if all(word.kind in (NAME, STRING) and not any(word.text in names for names in known) for word in words):
+        if all(word.kind in (NAME, STRING) and not self._is_value(word.text) for word in words):
             return Path(tuple(reversed(words)))
         return None
 
@@ -377,9 +383,11 @@ class Reader(PathReader):
         if not isinstance(written, Operand) or written.word.kind != NAME:
             return False
         name = written.word.text
-        return name not in ("true", "false") and not any(
-            name in known for known in (self.parameters, self.signals, self.contexts)
-        )
+        return name not in ("true", "false") and not self._is_value(name) and not self.is_context(name)
+
+    def _is_value(self, name: str) -> bool:
+        """Whether it is the name of a parameter or of a signal."""
+        return name in self.parameters or self.signal(name) is not None
 
     def _comparable(self, left: Term, right: Term, operator: str) -> bool:
         if left.sort != right.sort:
@@ -445,9 +453,9 @@ class Reader(PathReader):
         word = written.signal
         if word is None:
             return None
-        signal = self.signals.get(word.text)
+        signal = self.signal(word.text)
         if signal is None:
-            self.unknown(word, tuple(self.signals))
+            self.unknown(word, ("signals",))
             return None
         span = Span(written.start, written.end)
         function = written.function.text

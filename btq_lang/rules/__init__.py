@@ -8,7 +8,7 @@ from __future__ import annotations
 import os.path
 from enum import Enum
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 
 class Severity(Enum):
@@ -20,8 +20,7 @@ class Severity(Enum):
     HINT = "hint"
 
 
-@record
-class Rule:
+class Rule(Record):
     """A rule's name, its severity where nobody configured another, and what it finds in one line."""
 
     name: str
@@ -118,6 +117,8 @@ _TABLE = (
     Rule("unknown-requirement", _E, "a requirement that is defined nowhere"),
     Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
     Rule("unused-requirement", _W, "a requirement that nothing refers to"),
+    Rule("named-twice", _H, "a requirement, a quality or a tag that one node has twice"),
+    Rule("empty-text", _W, "a name that is empty"),
     Rule("unused-parameter", _W, "a parameter that no clause of its requirement names"),
     Rule("requirement-without-text", _W, "a requirement that says nothing, or nothing that could be violated"),
     Rule("duplicate-clause", _E, "a second clause of a kind that can be said once only"),
@@ -137,6 +138,8 @@ _TABLE = (
     Rule("wrong-argument", _E, "an argument that the requirement does not take, or one that is missing"),
     Rule("ambiguous-application", _E, "two values of one requirement for one node, and none more specific"),
     Rule("impossible-odds", _E, "a probability or a number of experiments that is none"),
+    Rule("impossible-bound", _W, "a bound that nothing can keep, or nothing can break"),
+    Rule("uses-of-gauge", _W, "`uses` of a signal that is neither a counter nor a level"),
     Rule("requirement-without-subject", _W, "a claim that is about no node"),
     Rule("limit-too-small", _E, "a limit that the engine takes for none"),
     Rule("limit-on-synchronous-node", _W, "a limit on a node that nothing can interrupt"),
@@ -150,6 +153,8 @@ _TABLE = (
     Rule("window-too-small", _W, "odds that no such window can show"),
     Rule("swallowed-failure", _W, "`on violation fail` where a parent goes on after the failure"),
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
+    Rule("unused-signal", _H, "a signal that nothing asks for"),
+    Rule("unused-context", _H, "a context that no condition names"),
     Rule("signal-may-be-unset", _W, "a guard on a signal without a first value"),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
 
-@record
-class Script:
+class Script(Record):
     """A script that was read.
 
     Attributes:
@@ -34,8 +33,7 @@ class Script:
     complete: bool = True
 
 
-@record
-class Number:
+class Number(Record):
     """`30`, `0x1F`, `2.5e-3`; `raw` is how it is written.  A sign is a `Unary` around it."""
 
     raw: str
@@ -51,8 +49,7 @@ class Number:
         return int(self.raw) if self.raw.isdecimal() and len(self.raw) < 400 else float(self.raw)
 
 
-@record
-class Text:
+class Text(Record):
     """`'charger'`; `value` is what stands between the quotes, for there are no escapes."""
 
     value: str
@@ -60,8 +57,7 @@ class Text:
     end: int = 0
 
 
-@record
-class Bool:
+class Bool(Record):
     """`true` or `false`."""
 
     value: bool
@@ -69,8 +65,7 @@ class Bool:
     end: int = 0
 
 
-@record
-class Name:
+class Name(Record):
     """`battery`, or `@battery` for an entry of the root blackboard; an enumeration's names look alike."""
 
     name: str
@@ -78,8 +73,7 @@ class Name:
     end: int = 0
 
 
-@record
-class Group:
+class Group(Record):
     """`( inner )`: kept, because older engines need more brackets than the newest one."""
 
     inner: Expression
@@ -87,8 +81,7 @@ class Group:
     end: int = 0
 
 
-@record
-class Unary:
+class Unary(Record):
     """`-x`, `~x`, `!x`."""
 
     operator: str
@@ -97,8 +90,7 @@ class Unary:
     end: int = 0
 
 
-@record
-class Binary:
+class Binary(Record):
     """`a + b`, and `-`, `*`, `/`, `..`, `&`, `|`, `^`, `&&`, `||`."""
 
     operator: str
@@ -108,8 +100,7 @@ class Binary:
     end: int = 0
 
 
-@record
-class Comparison:
+class Comparison(Record):
     """`a < b <= c`: one more operand than operators, and true where every neighbouring pair is."""
 
     operators: tuple[str, ...]
@@ -118,8 +109,7 @@ class Comparison:
     end: int = 0
 
 
-@record
-class Ternary:
+class Ternary(Record):
     """`condition ? then : otherwise`."""
 
     condition: Expression
@@ -129,8 +119,7 @@ class Ternary:
     end: int = 0
 
 
-@record
-class Assign:
+class Assign(Record):
     """`target := value`, and `=`, `+=`, `-=`, `*=`, `/=`.  A target that is no `Name` is a problem of the script."""
 
     operator: str
@@ -165,8 +154,7 @@ UNARY: Final = 20
 ATOM: Final = 22
 
 
-@record
-class Variable:
+class Variable(Record):
     """A name in a script, where it stands and what happens to it there.
 
     Attributes:

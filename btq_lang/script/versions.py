@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
-from btq_lang.record import record
+from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.script.tree import (
     RANK,
@@ -52,8 +52,7 @@ def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic
     return found
 
 
-@record
-class _Targets:
+class _Targets(Record):
     """The versions to hold for, by the grammar they have."""
 
     early: tuple[str, ...]  # before 4.7

@@ -10,13 +10,12 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from btq_lang.record import record
+from btq_lang.record import Record
 
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
-@record
-class Option:
+class Option(Record):
     """An option of a command.
 
     Attributes:
@@ -32,8 +31,7 @@ class Option:
     choices: tuple[str, ...]
 
 
-@record
-class Command:
+class Command(Record):
     """The program itself, or a command of it.
 
     Attributes:

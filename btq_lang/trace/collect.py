@@ -16,7 +16,7 @@ from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
-from btq_lang.syntax import QualityDecl, Tree
+from btq_lang.syntax import QualityDecl
 from btq_lang.text import Span as TextSpan
 from btq_lang.trace.meanings import Meaning, Meanings
 from btq_lang.trace.overview import (
@@ -73,7 +73,7 @@ class _Collector:
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
-        self._requirements: dict[tuple[str, int], _Requirement] = {}
+        self._requirements: dict[tuple[int, int], _Requirement] = {}
         self._qualities: dict[str, _Quality] = {}
 
     def add(self, workspace: Workspace, path: str) -> None:
@@ -124,7 +124,7 @@ class _Collector:
     def _concerns(self, found: Requirements, meanings: Meanings, place: Callable[[Place], At]) -> None:
         for source in found.nodes.all:
             for name, written in concerns(source):
-                at = place(Place(written.span, source.path, source.entry.item))
+                at = place(Place(written.span, source.path, source.item))
                 node = self._nodes[id(source.node)]
                 quality = self._quality(name, meanings, at)
                 quality.concerns[node.key] = None
@@ -299,14 +299,13 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
     return at
 
 
-def _place_of(requirement: Requirement) -> tuple[str, int]:
+def _place_of(requirement: Requirement) -> tuple[int, int]:
     """Where a requirement is defined: the same for all missions that see it."""
-    return requirement.path, requirement.entry.start + requirement.place.span.start
+    return id(requirement.item), requirement.place.span.start
 
 
 def _tree_place(source: SourceNode) -> Place:
-    tree = source.entry.item
-    assert isinstance(tree, Tree), "nodes stand in trees"
+    tree = source.item
     name = tree.name.span if tree.name is not None else TextSpan(tree.start, tree.start)
     return Place(name, source.path, tree)
 
@@ -386,7 +385,7 @@ def _totals(
     edition: Edition,
     rows: Sequence[RequirementRow],
     quality_rows: Sequence[QualityRow],
-    found: dict[tuple[str, int], _Requirement],
+    found: dict[tuple[int, int], _Requirement],
 ) -> tuple[TotalRow, ...]:
     """One for each characteristic of the product, those in use that are named, and the rest."""
     characteristics = [each.id for each in qualities(edition) if each.parent is None and each.kind == "product"]

@@ -7,7 +7,7 @@ the same missions.  Lines and columns count from 1.
 from __future__ import annotations
 
 from btq_lang.graph.figure import Figure
-from btq_lang.record import record
+from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 WAYS: Final[tuple[Way, ...]] = ("enforced", "monitored", "reviewed")
 
 
-@record
-class At:
+class At(Record):
     """A place in a source file."""
 
     path: str
@@ -33,8 +32,7 @@ class At:
         return f"{self.path}:{self.line}"
 
 
-@record
-class Clause:
+class Clause(Record):
     """A clause as it holds for a subject.
 
     Attributes:
@@ -48,8 +46,7 @@ class Clause:
     asked: bool = False
 
 
-@record
-class Use:
+class Use(Record):
     """A requirement at what it holds for.
 
     Attributes:
@@ -68,8 +65,7 @@ class Use:
     clauses: tuple[Clause, ...]
 
 
-@record
-class RequirementRow:
+class RequirementRow(Record):
     """A requirement.
 
     Attributes:
@@ -112,8 +108,7 @@ class RequirementRow:
         return tuple(dict.fromkeys(key for use in self.uses for key in use.nodes))
 
 
-@record
-class QualityRow:
+class QualityRow(Record):
     """A quality that the missions name.
 
     Attributes:
@@ -134,8 +129,7 @@ class QualityRow:
     requirements: tuple[str, ...]
 
 
-@record
-class NodeRow:
+class NodeRow(Record):
     """A node as it is written.
 
     Attributes:
@@ -152,8 +146,7 @@ class NodeRow:
     at: At
 
 
-@record
-class TreeRow:
+class TreeRow(Record):
     """A tree; nodes: the keys of its nodes; figure: how it is drawn."""
 
     name: str
@@ -163,8 +156,7 @@ class TreeRow:
     figure: Figure
 
 
-@record
-class Total:
+class Total(Record):
     """What is said about one characteristic; `name` of the last one: what belongs to none.
 
     Attributes:
@@ -181,8 +173,7 @@ class Total:
     reviewed: int
 
 
-@record
-class Overview:
+class Overview(Record):
     """All of it.
 
     Attributes:

@@ -51,7 +51,7 @@ code { font: .88em ui-monospace, "SF Mono", Menlo, Consolas, monospace; }
 small { color: var(--soft); }
 .at { white-space: nowrap; }
 .chip { display: inline-block; margin-top: .3rem; padding: 0 .5rem; border: 1px dashed var(--line);
-  border-radius: 99px; font-size: .85rem; }
+  border-radius: .9rem; font-size: .85rem; }
 .way { font-weight: 600; white-space: nowrap; }
 .way::before { content: "\\25CB\\00A0"; }
 .way.enforced { color: var(--enforced); } .way.enforced::before { content: "\\25CF\\00A0"; }

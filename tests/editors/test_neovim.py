@@ -336,6 +336,50 @@ def colours(neovim: Neovim, text: str, places: list[str]) -> list[str]:
     return found
 
 
+def test_what_the_server_says_has_the_colours_of_the_plugin(neovim: Neovim) -> None:
+    """Words of the server are laid over those of the syntax file: with its colours, or with none."""
+    script = """
+    btq.wait(btq.client, 'the server')
+    if not vim.inspect_pos then return { 'older' } end
+    local found = {}
+    for _, place in ipairs({ 'QualityReq', 'rq1', 'security', 'Retry', 'AlwaysSuccess', 'Dock', 'msec' }) do
+      btq.to(place)
+      local row, column = vim.fn.line('.') - 1, vim.fn.col('.') - 1
+      local tokens
+      btq.wait(function()
+        vim.cmd('redraw')
+        tokens = vim.inspect_pos(0, row, column).semantic_tokens
+        return #tokens > 0
+      end, 'the word for ' .. place)
+      local above, group = 0, nil
+      for _, token in ipairs(tokens) do
+        local link = vim.api.nvim_get_hl(0, { name = token.opts.hl_group }).link
+        if link and token.opts.priority > above then
+          above, group = token.opts.priority, link
+        end
+      end
+      table.insert(found, place .. ': ' .. group)
+    end
+    return found
+    """
+    text = (
+        "QualityReq rq1 : security 'x'\n    on violation warn\n"
+        "BehaviorTree Main\n    Retry\n        Dock (msec = 3) satisfies rq1\n        AlwaysSuccess\n"
+    )
+    assert neovim.run({"main.btq": text}, script) in (
+        ["older"],
+        [
+            "QualityReq: btqAsAbove",
+            "rq1: btqRequirement",
+            "security: btqQuality",
+            "Retry: btqControl",
+            "AlwaysSuccess: btqBuiltin",
+            "Dock: btqNode",
+            "msec: btqKey",
+        ],
+    )
+
+
 LOOK = """
 vim.o.termguicolors = true
 pcall(vim.cmd, 'packadd nvim.tohtml')  -- from 0.12 on an optional package

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
 import pytest
+from installed import ROOT, STORE, there
 
 FILES_OF_THE_EXTENSION = {
     "LICENSE.txt",
@@ -57,6 +61,15 @@ def test_there_is_what_belongs_there_and_no_more(unpacked: Path) -> None:
     assert {name.split("/")[2] for name in python if "dist-info" not in name} >= {"pygls", "lsprotocol", "cattrs"}
 
 
+def test_every_setting_and_every_command_is_tested() -> None:
+    """In the workbench: a setting is written, a command is chosen by its title or by a button that runs it."""
+    contributes = json.loads((ROOT / "editors/vscode/package.json").read_text(encoding="utf-8"))["contributes"]
+    tests = Path(__file__).with_name("test_vscode.py").read_text(encoding="utf-8")
+    settings = contributes["configuration"]["properties"]
+    assert [name for name in settings if f'"{name}"' not in tests] == []
+    assert [each["title"] for each in contributes["commands"] if each["title"] not in tests] == []
+
+
 def test_every_library_is_pure_python(unpacked: Path) -> None:
     wheels = sorted(unpacked.glob("python/libs/*.dist-info/WHEEL"))
     assert len(wheels) == 7
@@ -84,3 +97,53 @@ def test_the_bundled_commands_run(unpacked: Path, tmp_path: Path) -> None:
     assert run(unpacked, "init", "robot", cwd=tmp_path).returncode == 0
     checked = run(unpacked, "check", "robot", cwd=tmp_path)
     assert (checked.returncode, checked.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize("page", ["docs/editors.md", "README.md"])
+def test_the_commands_of_the_pages_pack_and_install(page: str, node: Path, unpacked: Path, tmp_path: Path) -> None:
+    """In a copy of this checkout, with npm, vsce and the command line of VS Code.
+
+    Only what would be downloaded is taken from where install.sh has put it: `npm ci` links the modules that it has
+    installed with the same command, and `pip install` copies the libraries of the package that it made.
+    """
+    modules = there(ROOT / "editors/vscode/node_modules", "the extension's modules", "package")
+    server = there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code", "vscode")
+    for name in ("editors/vscode", "btq_lang"):
+        shutil.copytree(ROOT / name, tmp_path / "btq" / name, ignore=IGNORED)
+    shutil.copy(ROOT / "LICENSE", tmp_path / "btq")
+    programs = {
+        "code": f'exec "{node}" "{server}" --user-data-dir ~/user --extensions-dir ~/installed "$@"',
+        "python": f"""
+            case "$*" in
+                *" install "*) cp -r "{unpacked}/python/libs" python/libs ;;
+                *) exec "{sys.executable}" "$@" ;;
+            esac""",
+    }
+    for name, does in programs.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{does}\n")
+        (tmp_path / name).chmod(0o755)
+    (command,) = re.findall(r"^.*\bnpm ci .*--install-extension .*$", (ROOT / page).read_text("utf-8"), re.MULTILINE)
+    installs = f"""
+        npm() {{
+            case " $* " in
+                *" ci "*) ln -s "{modules}" "{tmp_path}/btq/editors/vscode/node_modules" ;;
+                *) command npm "$@" ;;
+            esac
+        }}
+    """
+    path = f"{tmp_path}{os.pathsep}{node.parent}{os.pathsep}{os.environ['PATH']}"
+    subprocess.run(
+        ["bash", "-euc", installs + command],
+        cwd=tmp_path / "btq",
+        env={**os.environ, "HOME": str(tmp_path), "PATH": path, "PYTHON": str(tmp_path / "python")},
+        check=True,
+        capture_output=True,
+        timeout=300,
+    )
+    (manifest,) = (tmp_path / "installed").glob("btq.btq-*/package.json")
+    assert json.loads(manifest.read_text("utf-8"))["name"] == "btq"
+    contents = {path.name for path in manifest.parent.rglob("*") if path.is_file()}
+    assert {"extension.js", "run_btq.py", "server.py"} <= contents
+
+
+IGNORED = shutil.ignore_patterns("node_modules", "libs", "dist", "__pycache__", "*.vsix")

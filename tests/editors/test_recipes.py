@@ -49,7 +49,7 @@ def test_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
           (while (null (flymake-diagnostics)) (accept-process-output nil 0.05)))
         (eglot-format-buffer)
         (princ (format "%s\\n" (mapcar #'flymake-diagnostic-text (flymake-diagnostics))))
-        (princ (buffer-string))
+        (princ (buffer-substring-no-properties (point-min) (point-max)))
         """
     )
     if "eglot" not in run(
@@ -59,6 +59,38 @@ def test_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
     said = run(["emacs", "-q", "--batch", "-l", "test.el"], tmp_path, environment)
     assert "unknown node `Sequnce`" in said
     assert said.endswith(TIDY)
+
+
+def test_the_colours_of_emacs(tmp_path: Path, environment: dict[str, str]) -> None:
+    there(shutil.which("emacs"), "Emacs", "more_from_apt")
+    (tmp_path / "main.btq").write_text(
+        'QualityReq rq1 : security "It\'s safe"  # said\nBehaviorTree Main\n    Action Dock (n = 1) satisfies rq1\n'
+    )
+    # Without what needs Eglot, which has no part in it.
+    (tmp_path / "recipe.el").write_text(recipe("elisp").partition("(with-eval-after-load")[0])
+    (tmp_path / "test.el").write_text(
+        """
+        (load (expand-file-name "recipe.el"))
+        (find-file "main.btq")
+        (font-lock-ensure)
+        (dolist (word '("QualityReq" "rq1" "It's" "said" "BehaviorTree" "Main" "Action" "Dock" "n =" "satisfies"))
+          (goto-char (point-min))
+          (search-forward word)
+          (princ (format "%s: %s\n" word (get-text-property (match-beginning 0) 'face))))
+        """
+    )
+    assert run(["emacs", "-q", "--batch", "-l", "test.el"], tmp_path, environment).splitlines() == [
+        "QualityReq: font-lock-keyword-face",
+        "rq1: font-lock-function-name-face",
+        "It's: font-lock-string-face",
+        "said: font-lock-comment-face",
+        "BehaviorTree: font-lock-keyword-face",
+        "Main: font-lock-function-name-face",
+        "Action: font-lock-keyword-face",
+        "Dock: font-lock-function-name-face",
+        "n =: font-lock-variable-name-face",
+        "satisfies: font-lock-keyword-face",
+    ]
 
 
 def test_vim_with_ale(tmp_path: Path, environment: dict[str, str]) -> None:

@@ -60,10 +60,10 @@ class Workbench:
         box = self._quick_input()
         box.fill(str(self.folder / name))
         # The list of recent files is there first, and has the name perhaps in another row.
-        self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(Path(name).name)})")
+        self.see(f".quick-input-list .monaco-list-row.focused:has-text({_quoted(Path(name).name)})")
         self.keys("Enter")
         self.gone(".quick-input-widget")
-        self.see(f".tab.active:has-text({json.dumps(Path(name).name)})")
+        self.see(f".tab.active:has-text({_quoted(Path(name).name)})")
         self.focus()
 
     def close_all(self) -> None:
@@ -83,14 +83,19 @@ class Workbench:
         """Run a command of the palette."""
         self.keys("F1")
         self._quick_input().fill(f">{title}")
-        self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(title)})")
+        self.see(f".quick-input-list .monaco-list-row.focused:has-text({_quoted(title)})")
         self.keys("Enter")
 
     def choose(self, label: str) -> None:
         """Take an entry of the list that is open."""
         self._quick_input().fill(label)
-        self.see(f".quick-input-list .monaco-list-row.focused:has-text({json.dumps(label)})")
+        self.see(f".quick-input-list .monaco-list-row.focused:has-text({_quoted(label)})")
         self.keys("Enter")
+
+    def log_level(self, channel: str, level: str) -> None:
+        self.command("Developer: Set Log Level...")
+        self.choose(channel)
+        self.choose(level)
 
     def choose_empty(self, folder: Path) -> None:
         """Answer the dialog that asks for a folder with one that is empty."""
@@ -141,8 +146,12 @@ class Workbench:
         found.wait_for(state="attached", timeout=_WAIT)
         return found
 
+    def no_more(self, selector: str) -> None:
+        """Wait until it is not there."""
+        self.page.locator(selector).first.wait_for(state="detached", timeout=_WAIT)
+
     def gone(self, selector: str) -> None:
-        """Wait until none is seen."""
+        """Wait until none is seen; of selectors as style sheets have them."""
         self.page.wait_for_function(
             "selector => ![...document.querySelectorAll(selector)].some(each => each.offsetParent !== null)",
             arg=selector,
@@ -166,7 +175,7 @@ class Workbench:
     def problems_of(self, name: str, count: int) -> list[str]:
         """Wait until the Problems view has so many findings in a file, open or not; their rows."""
         self.command("Problems: Focus on Problems View")
-        self.see(f".markers-panel .monaco-list-row:has-text({json.dumps(name)}):has-text('{count}')")
+        self.see(f".markers-panel .monaco-list-row:has-text({_quoted(name)}):has-text('{count}')")
         rows = self.page.locator(".markers-panel .monaco-list-row:has(.marker-icon)").all_inner_texts()
         return [re.sub(r"\s+", " ", row) for row in rows]
 
@@ -222,6 +231,11 @@ class Workbench:
         box = self.page.locator(".quick-input-widget input:visible").first
         box.wait_for(timeout=_WAIT)
         return box
+
+
+def _quoted(text: str) -> str:
+    """As a selector has it."""
+    return json.dumps(text, ensure_ascii=False)
 
 
 @contextmanager

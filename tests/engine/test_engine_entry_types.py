@@ -16,3 +16,17 @@ def test_the_engine_refuses_what_the_rule_tells(engine: Engine) -> None:
         answer = engine.run_one(write(done.document))
         assert ("was initially created with type" in answer.error) == meet, (name, answer.error)
         assert (answer.stage == "done") != meet, (name, answer.error)
+
+
+def test_a_switch_chooses_by_a_number_that_a_script_copied(engine: Engine) -> None:
+    text = """Root Main
+BehaviorTree Main
+    ->
+        Script (code = "k := 1; choice := k")
+        Switch (variable = {choice} case_1 = "1" case_2 = "2")
+            AlwaysSuccess
+            AlwaysFailure
+            AlwaysFailure
+"""
+    done = export(Workspace.of({"main.btq": text}), "main.btq")
+    assert engine.run_one(write(done.document), ticks=1).status == "SUCCESS"

@@ -6,6 +6,7 @@ functions call a feature; each knows which markers it reads and refuses a fixtur
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
@@ -15,6 +16,7 @@ from check_asserts import split_files
 
 from btq_lang.features.actions import Action, code_actions
 from btq_lang.features.calls import called, callers, prepare_calls
+from btq_lang.features.colours import colours, difference
 from btq_lang.features.completion import Completion, complete
 from btq_lang.features.documentation import documentation, include_edits
 from btq_lang.features.hints import code_lenses, inlay_hints
@@ -27,9 +29,10 @@ from btq_lang.features.outline import Outline, document_symbols, workspace_symbo
 from btq_lang.features.proposals import Proposal
 from btq_lang.features.relations import goto_implementation, goto_type
 from btq_lang.features.rename import Refusal, prepare_rename, rename
-from btq_lang.features.semantic_tokens import TYPES, delta, encode, semantic_tokens
+from btq_lang.features.semantic_tokens import TYPES, encode, semantic_tokens, stretches
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
+from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.text import LineIndex, Span, apply_edits
@@ -235,11 +238,13 @@ def check_tokens(text: str, *expected: str) -> None:
             assert (line, column) == lines.position(one.span.start, encoding)
             assert (line, column + length) == lines.position(one.span.end, encoding)
             assert TYPES[kind] == one.type
+        made = colours(fixture.workspace, path, encoding)
+        assert made.data == json.loads(made.as_json) == data
 
 
 def check_delta(before: list[int], after: list[int], expected: tuple[int, int, list[int]] | None) -> None:
     """This is what makes the second list of integers of the first."""
-    made = delta(before, after)
+    made = difference(before, after)
     if made is not None:
         start, count, data = made
         assert [*before[:start], *data, *before[start + count :]] == after
@@ -452,7 +457,11 @@ def answer_everything(text: str, offset: int) -> None:
         assert _lies_in(link.span, whole)
     for outline in document_symbols(workspace, "main.btq"):
         assert _lies_in(outline.span, whole)
-    encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
+    parts = [text[part.start : part.end] for part in stretches(parse(text), len(text))]
+    assert "".join(parts) == text
+    assert [word for part in parts for word in words_of(part)] == words_of(text)
+    tokens = encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
+    assert tokens == colours(workspace, "main.btq", "utf-16").data
     for action in code_actions(workspace, "main.btq", Span(offset, offset)):
         for changed in action.edits.values():
             apply_edits(text, changed)
@@ -465,6 +474,11 @@ def answer_everything(text: str, offset: int) -> None:
     for typed in ("\n", ")"):
         apply_edits(text, on_type(*at, typed))
     assert all(_lies_in(span, whole) for span in linked_ranges(*at))
+
+
+def words_of(text: str) -> list[tuple[str, str]]:
+    """The tokens of a text but for blanks."""
+    return [(token.kind, token.text) for token in tokens_of(text) if token.text.strip()]
 
 
 def _lies_in(span: Span, whole: Span) -> bool:

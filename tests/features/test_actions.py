@@ -82,6 +82,33 @@ def test_extract() -> None:
     )
 
 
+def test_extract_of_what_a_script_reads_and_writes() -> None:
+    check_action(
+        """
+        BehaviorTree Main
+            ->
+                -> Count$0
+                    Script (code = "tries += 1; last := now; seen = 1")
+                Done
+        """,
+        "Extract into the tree `Count`",
+        """
+        BehaviorTree Main
+            ->
+                SubTree Count (tries = {=} last = {=} now = {=} seen = {=})
+                Done
+
+        BehaviorTree Count
+            inout tries
+            output last
+            input now
+            output seen
+            -> Count
+                Script (code = "tries += 1; last := now; seen = 1")
+        """,
+    )
+
+
 def test_extract_gives_a_free_name() -> None:
     check_action(
         "BehaviorTree Main\n    ->\n        Pi$0ck\nBehaviorTree Extracted\n    Place\n",

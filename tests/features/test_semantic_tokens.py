@@ -41,6 +41,18 @@ def test_a_tree() -> None:
     )
 
 
+def test_built_in_actions_and_conditions_are_functions_as_those_of_the_robot_are() -> None:
+    check_tokens(
+        "BehaviorTree Main\n    Sequence\n        AlwaysSuccess\n        ScriptCondition\n        Pick\n",
+        "keyword BehaviorTree",
+        "class.definition Main",
+        "type.defaultLibrary Sequence",
+        "function.defaultLibrary AlwaysSuccess",
+        "function.defaultLibrary ScriptCondition",
+        "function Pick",
+    )
+
+
 def test_a_requirement() -> None:
     check_tokens(
         "QualityReq slow(limit : m/s) : performance <time-behavior> 'Slow\n'\n    keeps speed <= limit and fast\n",

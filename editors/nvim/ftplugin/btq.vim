@@ -18,5 +18,10 @@ if executable('btq')
   setlocal errorformat=%f:%l:%c:\ %trror[%m,%f:%l:%c:\ %tarning[%m,%f:%l:%c:\ %tnfo[%m,%f:%l:%c:\ %tint[%m,%-G%.%#
 endif
 
+if has('nvim')
+  command! -buffer -bang BtqPreview lua require('btq.preview').run('<bang>' == '!')
+endif
+
 let b:undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' iskeyword< suffixesadd< include< makeprg< errorformat<'
+      \ . (has('nvim') ? ' | delcommand -buffer BtqPreview' : '')

@@ -69,29 +69,47 @@ highlight default link btqNode Function
 highlight default link btqLabel Label
 highlight default link btqBuiltin Function
 highlight default link btqControl Conditional
-highlight default link btqCategory StorageClass
-highlight default link btqPort StorageClass
+highlight default link btqCategory Keyword
+highlight default link btqPort Keyword
 highlight default link btqPortName Identifier
 highlight default link btqType Type
 highlight default link btqKey Identifier
 highlight default link btqOperator Operator
 highlight default link btqNumber Number
-highlight default link btqUnit Special
-highlight default link btqUnitType Special
+highlight default link btqUnit Number
+highlight default link btqUnitType Type
 highlight default link btqBoolean Boolean
 highlight default link btqClauseWord Statement
 highlight default link btqLogic Operator
 highlight default link btqFunction Function
 highlight default link btqOutcome Constant
 highlight default link btqAttach Statement
-highlight default link btqRequirement Structure
-highlight default link btqRequirementName Structure
-highlight default link btqQuality Type
+highlight default link btqRequirement Identifier
+highlight default link btqRequirementName Identifier
+highlight default link btqQuality Special
 highlight default link btqString String
 highlight default link btqEscape SpecialChar
 highlight default link btqBraced PreProc
 highlight default link btqComment Comment
 highlight default link btqTodo Todo
+
+" What the server says of a word is laid over these: the same colours, and none where the words above tell more apart.
+if has('nvim-0.9')
+  highlight default link @lsp.type.class.btq btqName
+  highlight default link @lsp.type.decorator.btq btqRequirement
+  highlight default link @lsp.type.enumMember.btq btqQuality
+  highlight default link @lsp.type.function.btq btqNode
+  highlight default link @lsp.type.interface.btq btqRequirement
+  highlight default link @lsp.type.label.btq btqLabel
+  highlight default link @lsp.type.parameter.btq btqPortName
+  highlight default link @lsp.type.property.btq btqKey
+  highlight default link @lsp.type.type.btq btqType
+  highlight default link @lsp.typemod.type.defaultLibrary.btq btqControl
+  highlight default link @lsp.typemod.function.defaultLibrary.btq btqBuiltin
+  for s:type in ['comment', 'keyword', 'number', 'operator', 'string', 'variable']
+    execute 'highlight default link @lsp.type.' . s:type . '.btq btqAsAbove'
+  endfor
+endif
 
 let b:current_syntax = 'btq'
 let &cpoptions = s:cpo

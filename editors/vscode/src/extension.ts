@@ -4,6 +4,7 @@ import { execFile } from "node:child_process";
 import * as vscode from "vscode";
 import { ExecuteCommandRequest, LanguageClient, type Location, type Position, State, TransportKind } from "vscode-languageclient/node";
 
+import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
 import { runTask, Tasks } from "./tasks";
@@ -24,11 +25,13 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
 
   const line = (): Promise<string[]> => commandLine(context);
   const ask: Ask = async (command, ...parameters) => {
-    if (!client?.isRunning()) throw new Error("the server of btq does not run");
+    await turn; // who asks while it starts gets an answer
+    if (!client?.isRunning()) throw new Error("The btq server does not run.");
     return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters });
   };
   const xml = new XmlView(context, ask);
   const tree = new TreeView(context, ask);
+  const overview = new OverviewView(context, ask);
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
   const restart = (): Promise<void> => {
@@ -43,12 +46,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.showLog", () => log.show()),
     vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
     vscode.commands.registerCommand("btq.newProject", () => newProject(context)),
-    vscode.commands.registerCommand("btq.check", async () => {
-      // The walkthrough waits for it to become true, and does not see what was true before.
-      await vscode.commands.executeCommand("setContext", "btq.checkedClean", false);
-      const found = await runTask("check", await line());
-      await vscode.commands.executeCommand("setContext", "btq.checkedClean", found === 0);
-    }),
+    vscode.commands.registerCommand("btq.check", async () => runTask("check", await line())),
     // What the server's code lenses run: positions come as the protocol has them.
     vscode.commands.registerCommand("btq.showReferences", async (uri: string, at: Position, places: Location[]) => {
       const converter = client?.protocol2CodeConverter;
@@ -59,21 +57,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     }),
     vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
-    vscode.commands.registerCommand("btq.saveTree", () => tree.save()),
+    vscode.commands.registerCommand("btq.saveTree", orSay(() => tree.save())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
-    vscode.commands.registerCommand("btq.copyNodePath", async () => {
-      const editor = vscode.window.activeTextEditor;
-      if (editor?.document.languageId !== "btq") return;
-      const { line, character } = editor.selection.active;
-      const textDocument = { uri: editor.document.uri.toString() };
-      const path = await ask("btq.server.nodePath", { textDocument, position: { line, character } });
-      if (typeof path !== "string") {
-        void vscode.window.showInformationMessage("No node stands here.");
-        return;
-      }
-      await vscode.env.clipboard.writeText(path);
-      vscode.window.setStatusBarMessage(`$(clippy) ${path}`, 4000);
-    }),
+    vscode.commands.registerCommand("btq.openOverview", orSay(() => overview.show())),
+    vscode.commands.registerCommand("btq.copyNodePath", orSay(() => copyNodePath(ask))),
     vscode.tasks.registerTaskProvider("btq", new Tasks(line)),
     vscode.workspace.onDidSaveTextDocument(async (document) => {
       if (document.languageId === "btq" && vscode.workspace.getConfiguration("btq", document).get("buildOnSave")) {
@@ -124,8 +111,10 @@ async function start(
         outputChannel: log,
         synchronize: { configurationSection: "btq" },
         diagnosticCollectionName: "btq",
-        // A setting that asks for another server is nothing to tell the one that is about to stop.
+        // A setting that asks for another server is nothing to tell the one that is about to stop, nor is a file that is
+        // opened meanwhile: the next one hears of all that are open.
         middleware: {
+          didOpen: async (document, next) => (waiting ? undefined : next(document)),
           workspace: { didChangeConfiguration: async (sections, next) => (waiting ? undefined : next(sections)) },
         },
       },
@@ -156,6 +145,23 @@ async function start(
   }
 }
 
+/** The command, which says what the server refuses, and offers what helps where there is none. */
+function orSay(command: () => Promise<void>): () => Promise<void> {
+  const show = "Show Log";
+  const restart = "Restart Server";
+  return async () => {
+    try {
+      await command();
+    } catch (error) {
+      const buttons = client?.isRunning() ? [] : [restart, show];
+      const text = error instanceof Error ? error.message : String(error);
+      const answer = await vscode.window.showErrorMessage(text, ...buttons);
+      if (answer === restart) await vscode.commands.executeCommand("btq.restartServer");
+      if (answer === show) await vscode.commands.executeCommand("btq.showLog");
+    }
+  };
+}
+
 /** Says why there is no server, and offers what helps. */
 async function explain(error: unknown): Promise<void> {
   const choose = "Choose Python…";
@@ -180,6 +186,20 @@ async function chooseInterpreter(): Promise<void> {
       .getConfiguration("btq")
       .update("interpreter", chosen[0].fsPath, vscode.ConfigurationTarget.Global);
   }
+}
+
+async function copyNodePath(ask: Ask): Promise<void> {
+  const editor = vscode.window.activeTextEditor;
+  if (editor?.document.languageId !== "btq") return;
+  const { line, character } = editor.selection.active;
+  const textDocument = { uri: editor.document.uri.toString() };
+  const path = await ask("btq.server.nodePath", { textDocument, position: { line, character } });
+  if (typeof path !== "string") {
+    void vscode.window.showInformationMessage("No node stands here.");
+    return;
+  }
+  await vscode.env.clipboard.writeText(path);
+  vscode.window.setStatusBarMessage(`$(clippy) ${path}`, 4000);
 }
 
 /** `btq init` in a folder that the user chooses; then its mission is opened. */

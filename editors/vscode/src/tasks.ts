@@ -27,24 +27,10 @@ export class Tasks implements vscode.TaskProvider {
   }
 }
 
-/** Run a command on the whole folder and wait for its end; its exit code, undefined where it could not run. */
-export async function runTask(command: Command, commandLine: string[]): Promise<number | undefined> {
+/** Run a command on the whole folder, in a terminal. */
+export async function runTask(command: Command, commandLine: string[]): Promise<void> {
   const task = taskOf({ type: "btq", command }, commandLine);
-  if (!task) return undefined;
-  return new Promise((resolve, reject) => {
-    // Listening begins before the start, and looks for the task and not for its execution: a short command may be over
-    // before it is said to run, and is then told of with another object.
-    const listener = vscode.tasks.onDidEndTaskProcess(({ execution, exitCode }) => {
-      const ended = execution.task.definition;
-      if (ended.type !== "btq" || ended.command !== command) return;
-      listener.dispose();
-      resolve(exitCode);
-    });
-    vscode.tasks.executeTask(task).then(undefined, (error: unknown) => {
-      listener.dispose();
-      reject(error instanceof Error ? error : new Error(String(error)));
-    });
-  });
+  if (task) await vscode.tasks.executeTask(task);
 }
 
 function taskOf(

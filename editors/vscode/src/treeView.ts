@@ -16,6 +16,12 @@ interface Picture {
 /** The names of the nodes that are folded; the key of a node; a picture. */
 type FromPage = { readonly draw: string[] } | { readonly go: string } | { readonly save: string };
 
+/** What stands on the tab of a page beside a mission: the mission's own icon. */
+export function iconPath({ extensionUri }: vscode.ExtensionContext): { light: vscode.Uri; dark: vscode.Uri } {
+  const icon = (theme: string): vscode.Uri => vscode.Uri.joinPath(extensionUri, "images", `file-${theme}.svg`);
+  return { light: icon("light"), dark: icon("dark") };
+}
+
 export class TreeView {
   private panel: vscode.WebviewPanel | undefined;
   private document: vscode.TextDocument | undefined;
@@ -57,6 +63,7 @@ export class TreeView {
         retainContextWhenHidden: true,
         localResourceRoots: [],
       });
+      this.panel.iconPath = iconPath(this.context);
       const page = await readFile(path.join(this.context.extensionPath, "python/btq_lang/preview/page.html"), "utf8");
       this.panel.webview.onDidReceiveMessage((message: FromPage) => this.asks(message));
       this.panel.webview.html = page.replaceAll("NONCE", randomBytes(16).toString("hex"));

@@ -20,6 +20,15 @@ function M.command()
   return { 'btq-lsp' }
 end
 
+--- The command line of btq's other commands: `vim.g.btq_program`, else `btq` beside the server, else that of the PATH.
+function M.program()
+  if vim.g.btq_program then
+    return vim.deepcopy(vim.g.btq_program)
+  end
+  local beside, is_ours = M.command()[1]:gsub('btq%-lsp(%.?%a*)$', 'btq%1')
+  return { is_ours == 1 and vim.fn.executable(beside) == 1 and beside or 'btq' }
+end
+
 --- What the client can do, and the command that the server's code lenses run.
 local function capabilities()
   local known = vim.lsp.protocol.make_client_capabilities()

@@ -1,0 +1,301 @@
+"""The part of the parser that reads what stands at a node: attributes in brackets, qualities and requirements attached.
+
+One invariant: it stays on the logical line at hand; lines and blocks are the business of `nodes`.
+"""
+
+from __future__ import annotations
+
+from btq_lang.clauses import ClauseParser
+from btq_lang.cursor import VALUES, shown
+from btq_lang.diagnostics import Change, Fix, Place, replace_fix
+from btq_lang.near import near
+from btq_lang.slips import value_meant
+from btq_lang.syntax import (
+    NodeClause,
+    Pair,
+    Quality,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Word,
+)
+from btq_lang.text import Span
+from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NODE_CLAUSES, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+class AttributeParser(ClauseParser):
+    """A cursor that can read what stands at a node."""
+
+    # ---- attributes ----
+
+    def pairs_only(self) -> tuple[Pair, ...]:
+        """Attributes of something that takes no qualities."""
+        if self.kind != OPEN:
+            return ()
+        clauses: list[NodeClause] = []
+        pairs = self.attributes(clauses)
+        if clauses:
+            span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
+            note = "qualities and requirements stand at a node, or on a line of their own in the block of a tree"
+            self.complain("syntax-error", span, "only `key = value` pairs stand in these brackets", (note,))
+        return pairs
+
+    def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
+        """Attributes = "(" { Attribute [ "," ] } ")";  Attribute = "parameters" Pair … | NodeClause | Pair"""
+        pairs: list[Pair] = []
+        self.advance()
+        self.group += 1
+        while self.kind != CLOSE and self.kind != NEWLINE:
+            if self.kind == NAME or self.kind == STRING:
+                following = self.index + 1
+                if self.kinds[following] == OPERATOR and self.raws[following] == "=":
+                    pairs.append(self.pair())
+                elif self.kind == NAME and self.raw in NODE_CLAUSES:
+                    clauses.append(self.node_clause())
+                elif self.kind == NAME and self.raw == "parameters":
+                    self.advance()
+                    if not self.at_key():
+                        self.expected("`key = value` behind `parameters`")
+                    continue
+                else:
+                    self.not_an_attribute(pairs, clauses)
+            else:
+                self.not_an_attribute(pairs, clauses)
+            if self.kind == OPERATOR and self.raw == ",":
+                self.advance()
+        self.group -= 1
+        self.advance()
+        return tuple(pairs)
+
+    def not_an_attribute(self, pairs: list[Pair], clauses: list[NodeClause]) -> None:
+        """Complain of what stands in brackets and is no attribute; what it is probably meant for is read as that."""
+        at = self.index
+        if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
+            sign = self.starts[at + 1]
+            span = Span(sign, sign + len(self.raws[at + 1]))
+            written = "=" if self.text[sign - 1] in " \t" else " ="
+            fix = replace_fix("Write `=`", span, written, safe=True)
+            self.complain("syntax-error", span, "key and value are joined by `=`", (), (fix,))
+            pairs.append(self.pair())
+            return
+        if self.kind == NAME and self.kinds[at + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
+            clauses.append(self.node_clause(meant))
+            return
+        notes: tuple[str, ...] = ()
+        if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
+            notes = ("a value or name of several words stands in quotes",)
+        elif self.kinds[at - 1] == OPEN and self.kind in (NUMBER, QUANTITY, STRING):
+            notes = (f"a value stands behind the name of its port: `port = {shown(self.raw)}`",)
+        fixes: tuple[Fix, ...] = ()
+        if self.kind == NAME and self.kinds[at + 1] in (STRING, NUMBER, QUANTITY, BRACED):
+            gap = Span(self.here().end, self.starts[at + 1])
+            fixes = (replace_fix("Put `=` behind it", gap, " = "),)
+        self.expected("an attribute: key = value", notes, fixes)
+        if self.index == at:
+            self.advance()
+
+    def pair(self) -> Pair:
+        """Pair = Name "=" Value"""
+        key = self.take()
+        self.advance()
+        return Pair(key, self.value())
+
+    def value(self) -> Word | None:
+        """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
+        if self.kind not in VALUES and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
+            self.expected("a value: a string, a name, a number, a quantity or {key}")
+            return None
+        whole = self.kind in VALUES
+        word = self.take()
+        if whole and (self.at_key() or not self.joins()):
+            return word
+        if self.kind == STRING and word.kind != STRING:
+            return self.half_quoted(word)
+        return self.needs_quotes(word)
+
+    def half_quoted(self, word: Word) -> Word:
+        """`charger" …`: what follows is a string only because a quote is missing."""
+        span = word.span.shifted(self.base)
+        fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
+        at, lexer = self.starts[self.index], self.lexer
+        lexer.problems = [problem for problem in lexer.problems if problem.span.start != at]  # that it is not closed
+        self.forget()
+        self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
+        self.inside_out = min(self.inside_out, span.end)
+        self.recover()
+        return word
+
+    def joins(self) -> bool:
+        """Whether the token at hand makes one value with the one before it: there is no blank between."""
+        if self.kind in (NEWLINE, OPEN, CLOSE) or self.raw == "," or self.raw == "=":
+            return False
+        return self.adjacent(self.index)
+
+    def ends_value(self) -> bool:
+        """Whether what may follow a value follows."""
+        return self.kind in (NEWLINE, CLOSE) or self.raw == "," or self.raw in _ATTRIBUTE_WORDS or self.at_key()
+
+    def needs_quotes(self, word: Word) -> Word:
+        """`map/frame`, `/map`: take what is written without a blank as one value, and say that it needs quotes."""
+        cause = self.lost_quote() or self.wrong_unit()
+        while self.joins():
+            self.advance()
+        start = word.start + self.base
+        end = self.last_end() + self.base
+        raw = self.text[start:end]
+        if cause is not None:
+            self.report(cause)
+        elif word.kind == STRING:
+            note = "a quote in a string is written \\\", in a script '; or a closing quote is missing further up"
+            self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
+        else:
+            # A quote or a brace in it means that more went wrong than this.
+            safe = self.ends_value() and not set(raw) & set("\"'{}\\")
+            fix = value_meant(self.text, start, end, safe=safe)
+            self.complain("syntax-error", Span(start, end), "this value needs quotes", (), (fix,))
+        return Word(NAME, word.start, raw)
+
+    # ---- qualities and requirements on nodes ----
+
+    def misspelt_clause(self) -> str | None:
+        """The word that is probably meant by the one at hand, reported: `satisfys rq1`."""
+        meant = meant_clause(self.raw) if self.raw not in _ATTRIBUTE_WORDS else None
+        if meant is not None:
+            self.attaches_nothing(self.here(), meant)
+        return meant
+
+    def attaches_nothing(self, span: Span, meant: str) -> None:
+        """Complain of a misspelt satisfices, satisfies or tags."""
+        word = self.text[span.start : span.end]
+        fix = replace_fix(f"Replace `{word}` by `{meant}`", span, meant)
+        message = f"`{word}` attaches nothing to a node: did you mean `{meant}`?"
+        self.complain("syntax-error", span, message, (), (fix,))
+
+    def node_clause(self, meant: str = "") -> NodeClause:
+        """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }
+
+        Args:
+            meant: the word to read instead of the one at hand.
+        """
+        start = self.start()
+        word = self.take().raw
+        if meant:
+            word = meant
+        if word == "satisfices":
+            qualities = self.satisfices()
+            return Satisfices(start, self.last_end(), qualities)
+        if word == "satisfies":
+            uses = self.satisfies()
+            return Satisfies(start, self.last_end(), uses)
+        names: list[Word] = []
+        while name := self.name("a tag"):
+            names.append(name)
+            if not self.list_goes_on():
+                break
+        return Tags(start, self.last_end(), tuple(names))
+
+    def satisfices(self) -> tuple[Quality, ...]:
+        """Quality { "," Quality };  classic files leave the commas out"""
+        found: list[Quality] = []
+        self.skip_colon()
+        while True:
+            quality = self.quality()
+            if quality is None:
+                break
+            found.append(quality)
+            if not (self.at_quality() or self.list_goes_on(qualities=True)):
+                break
+        return tuple(found)
+
+    def at_quality(self) -> bool:
+        return self.kind == NAME and self.raw == "Quality" and self.is_operator(self.index + 1, "=")
+
+    def quality(self) -> Quality | None:
+        """ "Quality" "=" QualityPath [ "(" Requirement { [ "," ] Requirement } ")" ] | QualityPath"""
+        classic = self.at_quality()
+        if classic:
+            self.advance()
+            self.advance()
+        elif self.at_word("Quality") and self.is_behind_quality(self.index + 1):
+            self.advance()
+            self.expected("`=` behind `Quality`")
+            return None
+        path = self.quality_path()
+        if path is None:
+            return None
+        if not classic or self.kind != OPEN:
+            return Quality(path)
+        self.advance()
+        self.group += 1
+        requirements: list[Requirement] = []
+        while self.at_word("QualityReq"):
+            requirements.append(self.requirement())
+            self.accept(",")
+        self.close_group("QualityReq or `)`")
+        return Quality(path, tuple(requirements))
+
+    def is_behind_quality(self, index: int) -> bool:
+        """Whether a name stands there, so that `Quality` before it lacks its `=`."""
+        if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
+            return False
+        return not self.is_operator(index + 1, "=")
+
+    def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
+        """ReqUse { "," ReqUse };  classic files leave the commas out"""
+        found: list[Requirement | ReqRef] = []
+        self.skip_colon()
+        while True:
+            if self.at_word("QualityReq"):
+                found.append(self.requirement())
+            else:
+                if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
+                    at = self.last_end() + self.base
+                    fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
+                    self.expected("another requirement behind the comma", (), (fix,))
+                    break
+                name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
+                if name is None:
+                    break
+                found.append(self.req_ref(name))
+            if not (self.at_word("QualityReq") or self.list_goes_on()):
+                break
+        return tuple(found)
+
+    def list_goes_on(self, qualities: bool = False) -> bool:
+        """Pass a comma if another element follows it; in brackets an attribute may follow it instead."""
+        if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
+            gone = Span(self.last_end() + self.base, self.here().end)
+            fix = replace_fix("Write `,`", gone, ",", safe=True)
+            self.complain("syntax-error", self.here(), "`,` stands between them", (), (fix,))
+            self.advance()
+            return True
+        if not self.at(","):
+            return False
+        following = self.index + 1
+        if self.group:
+            if self.kinds[following] == CLOSE:
+                return False
+            if self.is_operator(following + 1, "=") and not (qualities and self.is_word(following, "Quality")):
+                return False
+            if self.kinds[following] == NAME and (
+                self.raws[following] in NODE_CLAUSES or self.raws[following] == "parameters"
+            ):
+                return False
+        self.advance()
+        return True
+
+
+def meant_clause(word: str) -> str | None:
+    """Which of satisfices, satisfies and tags is probably meant by another word."""
+    if likely := near(word, NODE_CLAUSES, limit=1):
+        return likely[0]
+    return "satisfies" if word.startswith("satisf") else None
+
+
+_ATTRIBUTE_WORDS: Final = NODE_CLAUSES | {"parameters"}

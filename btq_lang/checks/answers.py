@@ -1,0 +1,271 @@
+"""What was asked about a file, kept from one edit to the next.
+
+A check asks its view, and what it asked, it rests on: as long as the answers are the same, so is what it found.  There
+are two sorts of questions, both written as a function and its arguments:
+
+* a *look-up*, `what(workspace, path, …)`, reads the files and asks nothing.  After an edit it is made again: one that
+  begins with a kind and a name only if the edit touches an item that defines this name.  A *table* is a look-up for
+  all items at once.
+* a *conclusion*, `what(view, …)`, asks other questions and looks at nothing else but the items among its arguments.  It
+  is drawn again only when one of its questions has another answer, and when it comes out the same, all that rests on
+  it stays.  What is found in an item is such a conclusion.
+
+One invariant: after any edits an answer is the one that would be given afresh.  Who looks at the workspace
+itself, where nobody can say what he saw, notes `EVERYTHING`; that conclusion is not kept.  It knows no rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from heapq import heappop, heappush
+
+from btq_lang.record import Record
+from btq_lang.workspace import Facts, File, Name, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Any, Final, TypeAlias, TypeVar
+
+    from btq_lang.checks import Found
+    from btq_lang.checks.view import View
+    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.requirements import Memory
+
+    T = TypeVar("T")
+
+Question: TypeAlias = "tuple[Any, ...]"
+
+EVERYTHING: Final[Question] = ()
+_OUTSIDE: Final = {EVERYTHING}  # who asks for what no conclusion does
+
+
+class _Answer(Record):
+    """An answer.
+
+    Attributes:
+        asked: the questions that it rests on; None for a look-up.
+        height: more than that of each of these.
+    """
+
+    value: object
+    asked: set[Question] | None = None
+    height: int = 0
+
+
+class Answers:
+    """The answers about one file, and who asked for them.
+
+    Attributes:
+        told: of the items of which something was told: what was found, where the item began, and what that came to.
+        resolved: the requirements in scope, as they were resolved last; they are kept by a mechanism of their own.
+    """
+
+    def __init__(self) -> None:
+        self.told: dict[Facts, tuple[Found, int, list[Diagnostic]]] = {}
+        self.resolved: Memory | None = None
+        self._workspace: Workspace | None = None
+        self._path = ""
+        self._files: dict[str, File] = {}
+        self._answers: dict[Question, _Answer] = {}
+        self._askers: dict[Question, set[Question]] = {}
+        self._look_ups: set[Question] = set()  # but for those of a name
+        self._named: dict[Name, set[Question]] = {}
+        self._tables: dict[Callable[[View], Mapping[int, object]], Mapping[int, object]] = {}
+        self._stale: set[Question] = set()  # conclusions to be drawn again
+        self._outermost: set[Question] = set()  # what no conclusion asks
+        self._before: set[Question] = set()  # the same, before the last edit
+        self._asked = self._outermost  # what is asked for the conclusion that is being drawn
+        self._waiting: list[tuple[int, int, Question]] = []  # stale ones: their heights, a number, themselves
+        self._count = 0
+        self._is_asking = False
+
+    def begin(self, view: View, workspace: Workspace) -> None:
+        """The workspace is another one: look again at what may have changed, and draw conclusions of it.
+
+        One that no other conclusion asks for is drawn only when somebody asks: its item may be gone.
+        """
+        path = view.path
+        files = {each: workspace.files[each] for each in workspace.scope(path).paths}
+        old = self._workspace
+        was_left = self._is_asking  # by an exception
+        self._is_asking = True
+        if old is None or was_left or old.project is not workspace.project or list(files) != list(self._files):
+            self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
+            self._outermost, self._tables = set(), {}
+            self.told, self.resolved = {}, None
+        touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
+        self._workspace, self._path, self._files = workspace, path, files
+        self._before, self._outermost = self._outermost, set()
+        self._asked = self._outermost
+        self._stale = set()
+        for question in (*self._look_ups, *(each for name in touched for each in self._named.get(name, ()))):
+            value = question[0](workspace, path, *question[1:])
+            if not _is_same(value, self._answers[question].value):
+                self._answers[question] = _Answer(value)
+                self._pass_on(question)
+        self._draw_stale(view)
+        for table, before in self._tables.items():
+            now = self._tables[table] = self._made(view, table)
+            for item in before.keys() | now.keys():
+                question = table, item
+                if question in self._answers and not _is_same(now.get(item), self._answers[question].value):
+                    self._answers[question] = _Answer(now.get(item))
+                    self._pass_on(question)
+        self._draw_stale(view)
+
+    def _draw_stale(self, view: View) -> None:
+        while self._waiting:
+            _, _, question = heappop(self._waiting)
+            if question in self._stale:
+                self._draw(view, question)
+
+    def end(self) -> None:
+        """All is asked that will be: forget what nobody has asked for."""
+        self._is_asking = False
+        self._outermost.discard(EVERYTHING)
+        for question in self._outermost - self._before:
+            self._askers.setdefault(question, set()).add(EVERYTHING)
+        self._leave(self._before - self._outermost, EVERYTHING)
+
+    def look_up(self, question: Question, *, of_name: bool) -> Any:
+        """The answer of a look-up.
+
+        Args:
+            of_name: its arguments are a kind and a name, and it says nothing but what the items are that define it.
+        """
+        self._asked.add(question)
+        known = self._answers.get(question)
+        if known is None:
+            known = self._answers[question] = _Answer(question[0](self._workspace, self._path, *question[1:]))
+            (self._named.setdefault(question[1:], set()) if of_name else self._look_ups).add(question)
+        return known.value
+
+    def look_up_in(self, view: View, table: Callable[[View], Mapping[int, object]], item: int) -> Any:
+        """What a table says of an item, which is given by its `id`; a table is made once after every edit."""
+        question = table, item
+        self._asked.add(question)
+        if table not in self._tables:
+            self._tables[table] = self._made(view, table)
+        if question not in self._answers:
+            self._answers[question] = _Answer(self._tables[table].get(item))
+        return self._answers[question].value
+
+    def _made(self, view: View, table: Callable[[View], Mapping[int, object]]) -> Mapping[int, object]:
+        asked, self._asked = self._asked, self._outermost
+        made = table(view)
+        self._asked = asked
+        return made
+
+    def conclude(self, view: View, question: Question) -> Any:
+        """The answer of a conclusion."""
+        self._asked.add(question)
+        known = self._answers.get(question)
+        return self._draw(view, question) if known is None or question in self._stale else known.value
+
+    def unknown(self, what: object, about: Iterable[str]) -> list[str]:
+        """What of it a conclusion must be drawn of if somebody asks."""
+        answers, stale = self._answers, self._stale
+        return [each for each in about if (what, each) not in answers or (stale and (what, each) in stale)]
+
+    def conclude_each(self, view: View, what: object, about: Iterable[object]) -> list[Any]:
+        """The answers of one conclusion about many things."""
+        answers, stale = self._answers, self._stale
+        found = []
+        for each in about:
+            question = what, each
+            self._asked.add(question)
+            known = answers.get(question)
+            found.append(self._draw(view, question) if known is None or question in stale else known.value)
+        return found
+
+    def conclude_early(self, view: View, question: Question) -> Any:
+        """The same, for whoever will ask."""
+        asked, self._asked = self._asked, self._outermost
+        value = self.conclude(view, question)
+        self._asked = asked
+        return value
+
+    def note_everything(self) -> None:
+        """What is asked now rests on more than can be said."""
+        self._asked.add(EVERYTHING)
+
+    def watch(self, find: Callable[[], T]) -> tuple[T, bool]:
+        """What a part of a conclusion finds, and whether it rests on everything; if so, the conclusion does not rest
+        on the part."""
+        outer, self._asked = self._asked, set()
+        found = find()
+        asked, self._asked = self._asked, outer
+        if EVERYTHING in asked:
+            return found, True
+        outer |= asked
+        return found, False
+
+    def _draw(self, view: View, question: Question) -> Any:
+        """Draw a conclusion.  What it asks for the first time may be about to be drawn again itself; then this is, too,
+        if that makes a difference."""
+        self._stale.discard(question)
+        outer, self._asked = self._asked, set()
+        value = question[0](view, *question[1:])
+        asked, self._asked = self._asked, outer
+        known = self._answers.get(question)
+        if EVERYTHING in asked:
+            outer.discard(question)
+            outer.add(EVERYTHING)
+            if known is not None:
+                self._pass_on(question)
+                self._leave(self._forget(question), question)
+            return value
+        height = 1 + max([self._answers[each].height for each in asked if each in self._answers], default=0)
+        self._answers[question] = _Answer(value, asked, height)
+        if known is not None and not _is_same(value, known.value):
+            self._pass_on(question)
+        before: set[Question] = (known.asked if known is not None else None) or set()
+        for each in asked - before:
+            self._askers.setdefault(each, set()).add(question)
+        self._leave(before - asked, question)
+        return value
+
+    def _pass_on(self, question: Question) -> None:
+        """An answer is another one: what rests on it is to be drawn again, the lowest first."""
+        for asker in self._askers.get(question, ()):
+            if asker not in self._stale and asker in self._answers:
+                self._stale.add(asker)
+                if self._askers.get(asker) != _OUTSIDE:
+                    self._count += 1
+                    heappush(self._waiting, (self._answers[asker].height, self._count, asker))
+
+    def _leave(self, questions: Iterable[Question], asker: Question) -> None:
+        """Somebody asks these no more; what nobody asks is forgotten."""
+        waiting = [(each, asker) for each in questions]
+        while waiting:
+            question, asker = waiting.pop()
+            askers = self._askers.get(question, set())
+            askers.discard(asker)
+            if not askers and self._askers.pop(question, None) is not None:
+                waiting += [(each, question) for each in self._forget(question)]
+
+    def _forget(self, question: Question) -> Iterable[Question]:
+        """Forget an answer; what it rests on."""
+        self._stale.discard(question)
+        known = self._answers.pop(question, None)
+        if known is None:
+            return ()
+        if known.asked is None:
+            self._look_ups.discard(question)
+            if question[1:] in self._named:
+                self._named[question[1:]].discard(question)
+            return ()
+        return known.asked
+
+
+def _is_same(value: object, before: object) -> bool:
+    return value is before or value == before
+
+
+def _touched(before: File, after: File) -> Iterator[Name]:
+    """The names that are defined by items which only one of two states of a file has."""
+    if before is not after:
+        known, facts = before.facts, after.facts
+        for item in known.keys() ^ facts.keys():
+            for symbol in (known.get(item) or facts[item]).summary.symbols:
+                yield symbol.kind, symbol.name

@@ -1,0 +1,139 @@
+"""Bounds that nothing can keep or break, whatever the robot does, and the use of what nothing uses up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from math import ceil, floor, isfinite
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.quantities import parse_quantity
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Amount, Claim, Entry, Mission, Odds, OnViolation, Requirement, Scope, Signal, Word, walk
+from btq_lang.text import Span
+from btq_lang.tokens import NUMBER, QUANTITY
+from btq_lang.units import Dimension, parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A part of an attempt, a time below 0, and the attempts of a mission, which starts once."""
+    for requirement, claim in _claims(view, entry):
+        bound, verb = claim.bound, claim.verb.raw
+        is_count = verb in _COUNTED
+        if is_count and isinstance(claim.subject, Mission):
+            span = Span(claim.start, claim.end)
+            message = f"a mission starts once in a run, so `{verb}` says nothing of it"
+            notes = ("name the node whose starts are counted: `MoveBase tries at most 3`",)
+            yield Diagnostic("impossible-bound", span, message, notes=notes)
+        elif bound is not None:
+            for amount in walk(bound):
+                if not isinstance(amount, Amount):
+                    continue
+                number, what = _value(amount)
+                is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
+                if what == "count" and is_count and not claim.every:
+                    yield from _count(requirement, claim, amount, number, is_lower)
+                elif what == "time" and verb in _TIMED and not _is_limit(requirement, claim):
+                    yield from _time(amount, number, is_lower)
+
+
+def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """`uses … of` a signal that is neither a counter nor a level: nobody says what its use is."""
+    for _, claim in _claims(view, entry):
+        definition = view.scope.find(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
+        signal = definition.symbol.target if definition is not None else None
+        if claim.resource is None or definition is None or not isinstance(signal, Signal) or signal.unit is None:
+            continue
+        if signal.unit.text in ("bool", "text") or (signal.behaviour and signal.behaviour.raw != "gauge"):
+            continue
+        at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
+        place = Place(at, definition.path, definition.entry.item)
+        words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
+        yield Diagnostic(
+            "uses-of-gauge",
+            claim.resource.span,
+            f"`{claim.resource.text}` is neither a counter nor a level, so its use means nothing",
+            related=(view.defined_at(definition, "declared here"),),
+            notes=("uses of a counter are the value after less that before, of a level the other way round",),
+            fixes=tuple(
+                Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),))
+                for word in words
+            ),
+        )
+
+
+def _claims(view: View, entry: Entry) -> Iterator[tuple[Requirement, Claim]]:
+    for symbol in view.summary(entry).symbols:
+        if isinstance(requirement := symbol.target, Requirement):
+            for clause in requirement.clauses:
+                if isinstance(clause, Claim):
+                    yield requirement, clause
+
+
+def _value(amount: Amount) -> tuple[float, str]:
+    """What it says, and whether that is a count or a time; else it is told as something else, or a parameter's."""
+    word = amount.word
+    number, what = 0.0, ""
+    if word.kind == NUMBER:
+        number, what = float(word.raw), "count"
+    elif word.kind == QUANTITY and (quantity := parse_quantity(word.raw)) is not None:
+        number, what = quantity[0], _dimensions().get(quantity[1].dimension, "")
+    return (-number if amount.negative else number), what if isfinite(number) else ""
+
+
+def _count(
+    requirement: Requirement, claim: Claim, amount: Amount, number: float, is_lower: bool
+) -> Iterator[Diagnostic]:
+    what = "attempts" if claim.verb.raw == "tries" else "starts"
+    notes: tuple[str, ...] = ()
+    if number < 0 or number != int(number):
+        message = f"`{_shown(amount)}` is no number of {what}"
+        if isinstance(claim.per, Word) and number > 0:
+            notes = ("a rate has whole numbers, and as long a time as that needs: `runs at least 1 per 2 s`",)
+    elif what == "attempts" and not is_lower and number < 1 and not _has_scope(requirement):
+        message = "a node that is tried at all is tried once: nothing keeps this but a node that never starts"
+        notes = ("the first start counts, too; without a second one it `tries at most 1`",)
+    else:
+        return
+    fixes: tuple[Fix, ...] = ()
+    whole = max(1, ceil(number) if is_lower else floor(number))
+    if amount.word.kind == NUMBER and not amount.negative and not isinstance(claim.per, Word):
+        fixes = (replace_fix(f"Write `{whole}`", amount.word.span, str(whole)),)
+    yield Diagnostic("impossible-bound", amount.word.span, message, notes=notes, fixes=fixes)
+
+
+def _time(amount: Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
+    if number < 0 or (number == 0 and not is_lower):
+        message = f"every time is more than `{_shown(amount)}`"
+        yield Diagnostic("impossible-bound", amount.word.span, message)
+
+
+def _shown(amount: Amount) -> str:
+    return f"-{amount.word.raw}" if amount.negative else amount.word.raw
+
+
+def _is_limit(requirement: Requirement, claim: Claim) -> bool:
+    """Whether the engine is to hold the node to it, so that it is told as limit-too-small."""
+    clauses = requirement.clauses
+    actions = [clause.action.raw for clause in clauses if isinstance(clause, OnViolation) and clause.action is not None]
+    has_odds = any(isinstance(clause, Odds) for clause in clauses)
+    return claim.verb.raw in ("takes", "succeeds") and actions[:1] in (["fail"], ["halt"]) and not has_odds
+
+
+def _has_scope(requirement: Requirement) -> bool:
+    return any(isinstance(clause, Scope) for clause in requirement.clauses)
+
+
+@cache
+def _dimensions() -> dict[Dimension, str]:
+    units = ("1", "count"), ("times", "count"), ("s", "time")
+    return {unit.dimension: what for symbol, what in units if (unit := parse_unit(symbol)) is not None}
+
+
+_COUNTED: Final = frozenset(("tries", "runs"))
+_TIMED: Final = frozenset(("takes", "succeeds", "runs", "starts", "ends"))

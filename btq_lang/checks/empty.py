@@ -1,0 +1,99 @@
+"""Empty texts where a name is demanded, or where somebody looks for one to read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.rules import Severity
+from btq_lang.symbols import requirements_at
+from btq_lang.syntax import (
+    Because,
+    Entry,
+    Item,
+    Model,
+    Models,
+    NodeClause,
+    QualityDecl,
+    QualityPath,
+    Requirement,
+    Root,
+    Satisfices,
+    Signal,
+    Tags,
+    Tree,
+    Word,
+)
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+_Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
+
+
+def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A name that is empty: nothing can refer to it; or a text for people that is."""
+    if view.is_xml or not _has_empty(view.text):
+        return
+    for what, word in _names(entry.item):
+        if word is not None and (word.text == "" or word.raw == "{}"):
+            severity = Severity.HINT if what in _FOR_PEOPLE else None
+            yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)
+
+
+@lru_cache(1)  # all items of a file ask
+def _has_empty(text: str) -> bool:
+    return any(sign in text for sign in ('""', "''", "{}"))
+
+
+_TITLE, _REASON = "this title", "this reason"
+_FOR_PEOPLE = (_TITLE, _REASON)
+
+
+def _names(item: Item) -> _Found:
+    if isinstance(item, Tree):
+        yield from _of_clauses(item.clauses)
+        for node in item.walk():
+            if node.clauses:
+                yield from _of_clauses(node.clauses)
+    elif isinstance(item, Requirement):
+        yield from _of_requirement(item)
+    elif isinstance(item, Model | Models):
+        for model in (item,) if isinstance(item, Model) else item.models:
+            if isinstance(model, Model):
+                yield "the node's ID", model.name
+                yield from (("the port's type", port.type) for port in model.ports)
+    elif isinstance(item, Signal):
+        yield "the blackboard entry", item.source
+    elif isinstance(item, Root):
+        yield "the main tree's name", item.name
+    elif isinstance(item, QualityDecl):
+        yield "the quality's name", item.name
+        yield from _of_quality(item.parent)
+
+
+def _of_clauses(clauses: tuple[NodeClause, ...]) -> _Found:
+    for clause in clauses:
+        if isinstance(clause, Tags):
+            yield from (("this tag", name) for name in clause.names)
+        elif isinstance(clause, Satisfices):
+            for quality in clause.qualities:
+                yield from _of_quality(quality.path)
+    for requirement in requirements_at(clauses):
+        if isinstance(requirement, Requirement):
+            yield from _of_requirement(requirement)
+
+
+def _of_requirement(requirement: Requirement) -> _Found:
+    yield "the requirement's ID", requirement.name
+    yield from _of_quality(requirement.quality)
+    if requirement.clauses:  # else it says nothing, which is told
+        yield _TITLE, requirement.text
+    yield from ((_REASON, clause.text) for clause in requirement.clauses if isinstance(clause, Because))
+
+
+def _of_quality(path: QualityPath | None) -> _Found:
+    yield from (("the quality's name", name) for name in (path.names if path is not None else ()))

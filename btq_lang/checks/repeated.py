@@ -1,0 +1,121 @@
+"""What one node, or one `apply`, names twice: a requirement, a quality, a tag, nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks.clauses import with_blanks
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.record import Record
+from btq_lang.syntax import (
+    Apply,
+    Entry,
+    NodeClause,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Tree,
+    Word,
+    shape,
+)
+from btq_lang.text import Span
+
+
+class _Named(Record):
+    """A name in a list.
+
+    Attributes:
+        says: equal to that of another name which says the same.
+        clause: what can be mended there; None where that is for the reader to decide.
+        beside: where all names of the clause stand, and which of them this one is.
+    """
+
+    says: object
+    span: Span
+    clause: NodeClause | None = None
+    beside: tuple[tuple[Span, ...], int] = ((), 0)
+
+
+def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """The second of two places that attach the same requirement, quality or tag to a node."""
+    item = entry.item
+    if isinstance(item, Apply):
+        for elements in (item.uses, item.targets, item.exceptions):
+            spans = [part.name.span if isinstance(part, ReqRef) else Span(part.start, part.end) for part in elements]
+            named = [_Named(shape(part), span) for part, span in zip(elements, spans, strict=True)]
+            yield from _repeated(view, entry, named)
+    elif isinstance(item, Tree):
+        for clauses in (item.clauses, *(node.clauses for node in item.walk() if node.clauses)):
+            if _names_several(clauses) and not any(
+                clauses[0].start <= each.span.start <= clauses[-1].end for each in entry.diagnostics
+            ):
+                yield from _repeated(view, entry, [named for clause in clauses for named in _of_clause(view, clause)])
+
+
+def _names_several(clauses: tuple[NodeClause, ...]) -> bool:
+    """Whether there is more than one name, which is seldom so."""
+    if len(clauses) != 1:
+        return len(clauses) > 1
+    clause = clauses[0]
+    if isinstance(clause, Satisfices):
+        return len(clause.qualities) > 1 or any(quality.requirements for quality in clause.qualities)
+    return len(clause.names if isinstance(clause, Tags) else clause.uses) > 1
+
+
+def _repeated(view: View, entry: Entry, names: list[_Named]) -> Iterator[Diagnostic]:
+    first: dict[object, Span] = {}
+    for named in names:
+        if first.setdefault(named.says, named.span) is named.span:
+            continue
+        text = view.text[entry.start :]
+        yield Diagnostic(
+            "named-twice",
+            named.span,
+            f"a second `{text[named.span.start : named.span.end]}` changes nothing",
+            related=(Related(Place(first[named.says]), "this one is enough"),),
+            fixes=(_removal(named.clause, *named.beside, text),) if named.clause is not None else (),
+            tags=(Tag.UNNECESSARY,),
+        )
+
+
+def _of_clause(view: View, clause: NodeClause) -> Iterator[_Named]:
+    words: list[tuple[object, Word | None, Span]] = []
+    if isinstance(clause, Tags):
+        words = [(("tag", name.text), name, name.span) for name in clause.names]
+    elif isinstance(clause, Satisfies):
+        words = [_of_requirement(use) for use in clause.uses if use.name is not None]
+    elif isinstance(clause, Satisfices):
+        for quality in clause.qualities:
+            name = ".".join(word.text for word in quality.path.names)
+            match = view.quality(name)
+            same = match.quality.id if match is not None and match.quality is not None else name
+            # A quality that encloses requirements may stand here for their sake.
+            says: object = ("quality", same, bool(quality.requirements) and quality.path.span)
+            words.append((says, None if quality.requirements else quality.path.names[-1], quality.path.span))
+            words += [_of_requirement(use) for use in quality.requirements if use.name is not None]
+    places = tuple([span for _, _, span in words])
+    for index, (says, word, span) in enumerate(words):
+        yield _Named(says, span, clause if word is not None else None, (places, index))
+
+
+def _of_requirement(use: ReqRef | Requirement) -> tuple[object, Word | None, Span]:
+    """What has no arguments can go; what is defined in place, or has some, is for the reader to decide."""
+    assert use.name is not None, "the caller has looked"
+    arguments = use.arguments if isinstance(use, ReqRef) else ()
+    is_plain = isinstance(use, ReqRef) and not arguments
+    return ("requirement", use.name.text, shape(arguments)), use.name if is_plain else None, use.name.span
+
+
+def _removal(clause: NodeClause, places: tuple[Span, ...], index: int, text: str) -> Fix:
+    """Without one of its names a clause keeps the others; without its only one it goes."""
+    span = places[index]
+    if len(places) == 1:
+        gone = with_blanks(text, clause)
+    elif index == 0:
+        gone = Span(span.start, places[1].start)
+    else:
+        gone = Span(places[index - 1].end, span.end)
+    return replace_fix(f"Remove `{' '.join(text[gone.start : gone.end].strip(' ,').split())}`", gone, "", safe=True)

@@ -1,0 +1,53 @@
+"""Signals and contexts that nothing in the mission speaks of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.checks import lookups
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic, Tag
+from btq_lang.near import near
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Context, Entry, Signal
+
+
+def unused_signal(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A signal that no condition, no bound and no `uses` names."""
+    if isinstance(entry.item, Signal) and _is_unused(view, entry, Kind.SIGNAL):
+        yield from _unused(entry.item, "unused-signal", "nothing asks for the signal")
+
+
+def unused_context(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A context that no condition names."""
+    if isinstance(entry.item, Context) and _is_unused(view, entry, Kind.CONTEXT):
+        yield from _unused(entry.item, "unused-context", "no condition names the context")
+
+
+def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnostic]:
+    if item.name is not None:
+        yield Diagnostic(rule, item.name.span, f"{message} `{item.name.text}`", tags=(Tag.UNNECESSARY,))
+
+
+def _is_unused(view: View, entry: Entry, kind: Kind) -> bool:
+    if not view.has_trees or view.is_included:
+        return False  # a file of signals, or a library: their users may be anywhere
+    for symbol in view.summary(entry).symbols:
+        definition = view.scope.find(kind, symbol.name)
+        return (
+            definition is not None
+            and view.is_this(definition, entry)
+            and not view.look_up(lookups.is_asked_for, symbol.name)
+            and not _is_meant(view, symbol.name)
+            and view.is_read  # else its user may be what could not be
+        )
+    return False
+
+
+def _is_meant(view: View, name: str) -> bool:
+    """Whether something asks for what nothing declares and what looks like this name: that is told already."""
+    return view.ask(_is_near, name)
+
+
+def _is_near(view: View, name: str) -> bool:
+    return bool(near(name, view.look_up(lookups.asked_for_in_vain), limit=1))

@@ -1,0 +1,69 @@
+"""impossible-bound and uses-of-gauge: what their pages do not show."""
+
+from __future__ import annotations
+
+import pytest
+from check_asserts import assert_clean, assert_fix, assert_problems
+
+NODE = "BehaviorTree Main\n    Action X satisfies r\n"
+
+
+@pytest.mark.parametrize(
+    ("clause", "found"),
+    [
+        ("tries at most -1", "3:20 warning impossible-bound «1» `-1` is no number of attempts"),
+        ("tries at most 2.5 times", "3:19 warning impossible-bound «2.5 times» `2.5 times` is no number of attempts"),
+        ("tries between 1 and 2.5", "3:25 warning impossible-bound «2.5» `2.5` is no number of attempts"),
+        ("runs at least 1.5 per 2 s", "3:19 warning impossible-bound «1.5» `1.5` is no number of starts"),
+        ("runs every 0 s", "3:16 warning impossible-bound «0 s» every time is more than `0 s`"),
+        ("succeeds within 0 s", "3:21 warning impossible-bound «0 s» every time is more than `0 s`"),
+        (
+            "tries at most 0",
+            "3:19 warning impossible-bound «0» a node that is tried at all is tried once: nothing keeps this but a "
+            "node that never starts",
+        ),
+        (
+            "mission runs every 5 s",
+            "3:5 warning impossible-bound «mission runs every 5 s» a mission starts once in a run, so `runs` says "
+            "nothing of it",
+        ),
+    ],
+)
+def test_what_no_run_can_keep(clause: str, found: str) -> None:
+    assert_problems(f'QualityReq r "t"\n    X succeeds\n    {clause}\n{NODE}', found)
+
+
+@pytest.mark.parametrize(
+    ("clauses", "signal"),
+    [
+        ("tries at most 0 while low", "signal b : % from {b}\ncontext low : b < 3 %\n"),  # not in that situation
+        ("uses at most 0 % of b", "signal b : % from {b} level\n"),
+        ("uses at most -2.5 % of b", "signal b : % from {b} level\n"),  # it charges
+        ("takes at least 0 s", ""),
+        ("tries at most 3 times", ""),
+    ],
+)
+def test_what_is_meant_so(clauses: str, signal: str) -> None:
+    assert_clean(f'{signal}QualityReq r "t"\n    {clauses}\n{NODE}')
+
+
+def test_a_limit_is_told_as_one() -> None:
+    assert_problems(
+        f'QualityReq r "t"\n    takes at most 0 s\n    on violation fail\n{NODE}',
+        "2:5 error limit-too-small «takes at most 0 s» the engine cannot hold anything to `0 s`: it counts whole "
+        "milliseconds, and 0 is no limit",
+    )
+
+
+@pytest.mark.parametrize(("bound", "fixed"), [("at most 4.5", "at most 4"), ("at least 1.5", "at least 2")])
+def test_a_whole_number_is_offered(bound: str, fixed: str) -> None:
+    text = f'QualityReq r "t"\n    tries {bound}\n{NODE}'
+    assert_fix(text, f"Write `{fixed[-1]}`", text.replace(bound, fixed))
+
+
+def test_a_gauge_becomes_a_counter_or_a_level() -> None:
+    text = f'signal b : % from {{b}} gauge fresh within 1 s\nQualityReq r "t"\n    uses at most 2 % of b\n{NODE}'
+    assert_fix(text, "Declare it as a level", text.replace("gauge", "level"))
+    assert_fix(text, "Declare it as a counter", text.replace("gauge", "counter"))
+    text = text.replace(" gauge", "")
+    assert_fix(text, "Declare it as a level", text.replace("{b}", "{b} level"))
