@@ -69,6 +69,7 @@ class Server(LanguageServer):
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[tuple[Diagnostic, ...], int | None]] = {}
+        self.shown: set[str] = set()  # the files of which an editor that asks shows something
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
@@ -265,6 +266,7 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         found = self.diagnostics(path)
         result = f"{path in self.session.open}:{hash(found):x}"
+        (self.shown.add if found else self.shown.discard)(path)
         if workspace is None:
             return {"kind": "full", "items": []}
         if previous == result:

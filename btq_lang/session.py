@@ -147,6 +147,15 @@ class Session:
         """Every file that is known, those that are open first."""
         return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
 
+    def places(self) -> set[str]:
+        """Every file that is known, and every folder above one."""
+        found: set[str] = set()
+        for place in self._home:
+            while place not in found:
+                found.add(place)
+                place = place.rpartition("/")[0]
+        return found
+
     def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
         """All that is wrong with a file now."""
         workspace = self.workspace_of(path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -142,6 +143,20 @@ def test_files_that_change_on_the_disk(tmp_path: Path) -> None:
     assert editor.close() == ""
 
 
+def test_a_folder_that_is_deleted_as_a_whole(tmp_path: Path) -> None:
+    (tmp_path / "robot" / "missions").mkdir(parents=True)
+    (tmp_path / "robot" / "missions" / "main.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path)
+    assert editor.diagnostics("robot/missions/main.btq") != []
+    shutil.rmtree(tmp_path / "robot")
+    for deleted in ("elsewhere", "robot/missions/notes.txt"):  # nothing that it knows: it reads nothing again
+        editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri(deleted), "type": 3}])
+    assert editor.request("workspace/symbol", query="Main") != []
+    editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri("robot"), "type": 3}])
+    assert editor.diagnostics("robot/missions/main.btq") == []
+    assert editor.close() == ""
+
+
 def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
     editor.open(
         "main.btq", "Root Main\n" + WRONG.replace("Dock", "Pick satisfices usability.user-interface-aesthetics")
@@ -248,6 +263,32 @@ def test_what_is_shown_of_closed_files_goes_when_they_are_deleted_or_no_longer_w
     assert [(Path(each["uri"]).name, each["kind"]) for each in again[1:]] == (
         [("main.btq", "unchanged")] if why == "deleted" else []
     )
+    assert editor.close() == ""
+
+
+@pytest.mark.parametrize("why", ["deleted", "not wanted"])
+def test_what_is_shown_of_a_document_goes_when_it_is_closed_and_deleted_or_no_longer_wanted(
+    why: str, tmp_path: Path
+) -> None:
+    """VS Code asks once more before it says that a document is closed, and names its result never again."""
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    editor = Editor(tmp_path, capabilities=PULLS, initializationOptions={"checkClosedFiles": why == "deleted"})
+    editor.open("main.btq", WRONG)
+    first = editor.request("textDocument/diagnostic", **editor.document("main.btq"))
+    if why == "deleted":
+        (tmp_path / "main.btq").unlink()
+        editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri("main.btq"), "type": 3}])
+    last = editor.request("textDocument/diagnostic", **editor.document("main.btq"), previousResultId=first["resultId"])
+    assert last["kind"] == "unchanged"
+    editor.shut("main.btq")
+    gone = {"uri": editor.uri("main.btq"), "version": None, "kind": "full", "items": []}
+    assert editor.request("workspace/diagnostic", previousResultIds=[])["items"] == [gone]
+    (tmp_path / "main.btq").write_text(RIGHT, encoding="utf-8")
+    editor.open("main.btq", RIGHT)
+    assert editor.request("textDocument/diagnostic", **editor.document("main.btq"))["items"] == []
+    editor.shut("main.btq")
+    items = editor.request("workspace/diagnostic", previousResultIds=[])["items"]
+    assert [each["items"] for each in items] == ([[]] if why == "deleted" else [])
     assert editor.close() == ""
 
 

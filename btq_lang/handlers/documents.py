@@ -51,8 +51,9 @@ def _diagnostics(server: Server) -> None:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
-        # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so.
-        gone = known.keys() - set(paths) - session.open.keys()
+        # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so: also of
+        # those whose result it has forgotten, as VS Code does when a document is closed.
+        gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
         items: list[Plain] = [{"uri": convert.uri(path), "version": None, **_NOTHING} for path in sorted(gone)]
         async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
             for done, path in enumerate(paths, 1):

@@ -57,8 +57,9 @@ def register(server: Server) -> None:
         server.reload()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    def did_change_watched_files(_: types.DidChangeWatchedFilesParams) -> None:
-        server.reload()
+    def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
+        if _concerns(session, {convert.path(change.uri) for change in params.changes}):
+            server.reload()
 
 
 async def _register_watchers(server: Server) -> None:
@@ -67,10 +68,17 @@ async def _register_watchers(server: Server) -> None:
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
-    patterns = ("**/*.btq", "**/*.qualitybtcpp", "**/*.xml", "**/btq.toml", "**/pyproject.toml")
-    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(one) for one in patterns])
+    watchers = [types.FileSystemWatcher(f"**{ending}" if ending[0] == "/" else f"**/*{ending}") for ending in _ENDINGS]
+    # Of a folder that goes as a whole an editor tells nothing but that.
+    watchers.append(types.FileSystemWatcher("**/*", types.WatchKind.Delete))
+    options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
     wanted = types.Registration("watch", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     await server.client_register_capability_async(types.RegistrationParams([wanted]))
+
+
+def _concerns(session: Session, changed: set[str]) -> bool:
+    """Whether changes on the disk may change what is known: most that is deleted is a file or folder of others."""
+    return any(path.endswith(_ENDINGS) for path in changed) or not changed.isdisjoint(session.places())
 
 
 async def _ask_settings(server: Server) -> None:
@@ -98,3 +106,7 @@ async def _first_check(server: Server) -> None:
         while server.task is not None and not server.task.done():
             told(len(paths) - len(server.waiting))
             await asyncio.wait((server.task,), timeout=0.2)
+
+
+# Of the names of files that missions and projects are read from.
+_ENDINGS = (".btq", ".qualitybtcpp", ".xml", "/btq.toml", "/pyproject.toml")
