@@ -69,7 +69,7 @@ class Server(LanguageServer):
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[tuple[Diagnostic, ...], int | None]] = {}
-        self.shown: set[str] = set()  # the files of which an editor that asks shows something
+        self.shown: set[str] = set()  # the files of which an editor that asks may still show something
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
@@ -266,7 +266,8 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         found = self.diagnostics(path)
         result = f"{path in self.session.open}:{hash(found):x}"
-        (self.shown.add if found else self.shown.discard)(path)
+        if found:
+            self.shown.add(path)
         if workspace is None:
             return {"kind": "full", "items": []}
         if previous == result:

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Generator
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from installed import ARTIFACTS, STORE, missing, there
+from installed import ARTIFACTS, FAILED, STORE, missing, there
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    item.stash[FAILED] = report.failed
+    return report
 
 
 @pytest.fixture(scope="session")

@@ -30,3 +30,11 @@ def missing(what: str, part: str) -> NoReturn:
     if os.environ.get("BTQ_CI") and record.exists() and part in record.read_text().split():
         pytest.fail(f"install.sh has installed {what}, and it is not there")
     pytest.skip(f"{what} is not installed: tests/editors/install.sh")
+
+
+def has_failed(item: pytest.Item) -> bool:
+    """Whether the test itself, now that its fixtures end, has failed."""
+    return item.stash[FAILED]
+
+
+FAILED = pytest.StashKey[bool]()

@@ -7,11 +7,16 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
-from installed import ROOT, STORE, there
-from workbench import Workbench, workbench
+from installed import ROOT, STORE, has_failed, there
+from workbench import Windows, Workbench, workbench
+
+# A workbench loses a click or a change of its settings now and then, on a busy machine: what fails is tried once more,
+# in a window of its own, and the run says so.
+pytestmark = pytest.mark.flaky(reruns=1)
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 ENVIRONMENT = {
@@ -29,20 +34,24 @@ ENVIRONMENT = {
 
 
 @pytest.fixture(scope="module")
-def window(
+def windows(
     vsix: Path, node: Path, driver: None, artifacts: Path, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Workbench]:
+) -> Iterator[Windows]:
     there(shutil.which("chromium"), "Chromium", "from_apt")
     there(STORE / "vscode/node_modules/code-server/out/node/entry.js", "VS Code", "vscode")
-    scratch = tmp_path_factory.mktemp("vscode")
-    files = ROOT / "examples" / "hospital"
-    programs = scratch / "programs"
-    programs.mkdir()
-    program(programs / "btq-lsp")
-    with workbench(
-        store=STORE, node=node, vsix=vsix, scratch=scratch, files=files, settings=ENVIRONMENT, programs=programs
-    ) as window:
-        yield window
+
+    def window() -> AbstractContextManager[Workbench]:
+        scratch = tmp_path_factory.mktemp("vscode")
+        files = ROOT / "examples" / "hospital"
+        programs = scratch / "programs"
+        programs.mkdir()
+        program(programs / "btq-lsp")
+        return workbench(
+            store=STORE, node=node, vsix=vsix, scratch=scratch, files=files, settings=ENVIRONMENT, programs=programs
+        )
+
+    with Windows(window) as windows:
+        yield windows
 
 
 def program(path: Path) -> None:
@@ -52,12 +61,17 @@ def program(path: Path) -> None:
 
 
 @pytest.fixture
-def code(window: Workbench, request: pytest.FixtureRequest, artifacts: Path) -> Iterator[Workbench]:
-    """The window with no editor open; how it looks at the end of the test is kept."""
-    yield window
-    window.shot(artifacts / f"vscode-{request.node.name}.png")
-    window.close_all()
-    window.clean()
+def code(windows: Windows, request: pytest.FixtureRequest, artifacts: Path) -> Iterator[Workbench]:
+    """The window with no editor open; how it looks at the end of the test is kept.  A test that failed leaves none."""
+    code = windows.current()
+    yield code
+    code.shot(artifacts / f"vscode-{request.node.name}.png")
+    if has_failed(request.node):
+        print(code.seen())
+        windows.close()
+        return
+    code.close_all()
+    code.clean()
 
 
 def test_an_example_is_clean_and_a_mistake_is_underlined(code: Workbench) -> None:
@@ -211,10 +225,28 @@ def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
 
 
 def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench) -> None:
-    code.write("closed.btq", WRONG)
+    code.write("unopened.btq", WRONG)
     code.command("btq: Check All Missions")
-    code.see(".terminal-wrapper.active .xterm-accessibility-tree, .terminal-wrapper.active .xterm-screen")
-    assert "btq unknown-node" in " ".join(code.problems_of("closed.btq", 1))
+    code.task_ends()
+    assert "btq unknown-node" in " ".join(code.problems_of("unopened.btq", 1))
+
+
+@pytest.mark.parametrize("gone", ["robot", "robot/mission.btq"])
+def test_problems_go_with_the_file_or_its_folder(code: Workbench, gone: str) -> None:
+    code.write("robot/mission.btq", WRONG)
+    code.write("robot/closed.btq", WRONG)
+    code.open("robot/mission.btq")
+    code.problems_of("mission.btq", 1)
+    code.problems_of("closed.btq", 1)
+    if gone == "robot":
+        shutil.rmtree(code.folder / gone)
+    else:
+        (code.folder / gone).unlink()
+    code.focus()
+    code.close_all()
+    code.no_problems_of("mission.btq")
+    if gone == "robot":
+        code.no_problems_of("closed.btq")
 
 
 def test_the_xml_beside_follows_what_is_typed(code: Workbench) -> None:
@@ -486,7 +518,7 @@ def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
     code.see(".getting-started-step:has-text('Check the whole project')").click()
     code.see(".getting-started-step .monaco-button:has-text('Check All Missions')").click()
     # VS Code ticks the step in a new session; in this one, where the command was run before, not always.
-    code.see(".terminal-wrapper.active .xterm-accessibility-tree, .terminal-wrapper.active .xterm-screen")
+    code.task_ends()
     code.focus_nothing()
 
 

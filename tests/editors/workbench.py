@@ -15,7 +15,7 @@ import urllib.parse
 import urllib.request
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -71,6 +71,7 @@ class Workbench:
         self.command("View: Revert and Close Editor") if self.page.locator(".tab.dirty").count() else None
         self.command("View: Close All Editors")
         self.gone(".tab")
+        self.no_more("iframe.webview")  # their pages last a little longer
 
     def focus(self) -> None:
         self.page.locator(".editor-instance .view-lines .view-line").first.click()
@@ -110,12 +111,20 @@ class Workbench:
 
     def answer_path(self, path: Path) -> None:
         """Answer the dialog that asks where to save."""
+        from playwright.sync_api import TimeoutError as Timeout
+
         box = self._quick_input()
         # It writes what it proposes when the folder is read, over whatever was typed before.
         self.until(lambda: box.input_value() != "", lambda: "the dialog proposes nothing")
         box.fill(str(path))
-        self.page.locator(".quick-input-action a, .quick-input-action .monaco-button").first.click()
-        self.gone(".quick-input-widget")
+        accept = self.page.locator(".quick-input-action a, .quick-input-action .monaco-button").first
+
+        def is_taken() -> bool:  # while it reads the folder a click is lost
+            with suppress(Timeout):
+                accept.click(timeout=_WAIT / 40)
+            return not box.is_visible()
+
+        self.until(is_taken, lambda: f"the dialog stays: {box.input_value()}")
 
     def cursor(self, line: int, column: int) -> None:
         self.keys("Control+g")
@@ -179,6 +188,15 @@ class Workbench:
         rows = self.page.locator(".markers-panel .monaco-list-row:has(.marker-icon)").all_inner_texts()
         return [re.sub(r"\s+", " ", row) for row in rows]
 
+    def no_problems_of(self, name: str) -> None:
+        """Wait until the Problems view does not name the file."""
+        self.command("Problems: Focus on Problems View")
+        self.no_more(f".markers-panel .monaco-list-row:has-text({_quoted(name)})")
+
+    def task_ends(self) -> None:
+        """Wait until the task in the terminal that is shown has ended."""
+        self.see(".single-terminal-tab .codicon-error, .single-terminal-tab .codicon-check")
+
     def on_disk(self, name: str, text: str) -> None:
         """Wait until the file has this text."""
         path = self.folder / name
@@ -216,6 +234,12 @@ class Workbench:
         ]
         return [text.replace("\xa0", " ").rstrip() for _, text in sorted(placed)]
 
+    def seen(self) -> str:
+        """What stands on the screen, for who reads why a test failed."""
+        parts = (".tab", ".quick-input-widget", ".notification-toast", ".markers-panel", ".part.statusbar")
+        found = ((part, self.page.locator(f"{part}:visible").all_inner_texts()) for part in parts)
+        return "\n".join(f"{part}: {texts}" for part, texts in found)
+
     def shot(self, path: Path) -> None:
         self.page.screenshot(path=str(path))
 
@@ -231,6 +255,30 @@ class Workbench:
         box = self.page.locator(".quick-input-widget input:visible").first
         box.wait_for(timeout=_WAIT)
         return box
+
+
+class Windows:
+    """One window for many tests, and another once it was closed."""
+
+    def __init__(self, make: Callable[[], AbstractContextManager[Workbench]]) -> None:
+        self._make = make
+        self._stack = ExitStack()
+        self._current: Workbench | None = None
+
+    def __enter__(self) -> Windows:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def current(self) -> Workbench:
+        if self._current is None:
+            self._current = self._stack.enter_context(self._make())
+        return self._current
+
+    def close(self) -> None:
+        self._current = None
+        self._stack.close()
 
 
 def _quoted(text: str) -> str:

@@ -2,7 +2,15 @@
 // One invariant: whatever goes wrong with the server is said once, with a button that helps, and the rest goes on working.
 import { execFile } from "node:child_process";
 import * as vscode from "vscode";
-import { ExecuteCommandRequest, LanguageClient, type Location, type Position, State, TransportKind } from "vscode-languageclient/node";
+import {
+  ExecuteCommandRequest,
+  LanguageClient,
+  type Location,
+  type MessageSignature,
+  type Position,
+  State,
+  TransportKind,
+} from "vscode-languageclient/node";
 
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
@@ -78,6 +86,21 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   await restart();
 }
 
+/** Says nothing of requests that fail because the server is being stopped: their answers are nobody's loss. */
+class Client extends LanguageClient {
+  override handleFailedRequest<T>(
+    type: MessageSignature,
+    token: vscode.CancellationToken | undefined,
+    error: unknown,
+    defaultValue: T,
+    showNotification = true,
+    throwOnCancel?: boolean,
+  ): T {
+    const shows = showNotification && this.isRunning();
+    return super.handleFailedRequest(type, token, error, defaultValue, shows, throwOnCancel);
+  }
+}
+
 export async function deactivate(): Promise<void> {
   await turn;
   await client?.dispose();
@@ -99,7 +122,7 @@ async function start(
   try {
     server = await findServer(context.extensionPath, await activeInterpreter());
     log.info(`starting ${server.origin}: ${[server.command, ...server.args].join(" ")}`);
-    client = new LanguageClient(
+    client = new Client(
       "btq",
       "btq",
       { command: server.command, args: server.args, transport: TransportKind.stdio },
