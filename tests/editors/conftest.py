@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from installed import ARTIFACTS, FAILED, STORE, missing, there
+from workbench import FLAGS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 
 @pytest.hookimpl(wrapper=True)
@@ -46,6 +51,18 @@ def driver() -> None:
     """The browser's driver is there."""
     if find_spec("playwright") is None:
         missing("the browser's driver", "driver")
+
+
+@pytest.fixture(scope="module")
+def browser(driver: None) -> Iterator[Browser]:
+    """Chromium without a window."""
+    from playwright.sync_api import sync_playwright
+
+    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(chromium), args=FLAGS)
+        yield browser
+        browser.close()
 
 
 @pytest.fixture(scope="session")

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import pytest
-from installed import ROOT, there
-from workbench import FLAGS
+from installed import ROOT
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -61,17 +58,6 @@ def until(condition: Callable[[], bool], otherwise: str) -> None:
     end = time.monotonic() + 40
     while not condition():
         assert time.monotonic() < end, otherwise
-
-
-@pytest.fixture(scope="module")
-def browser(driver: None) -> Iterator[Browser]:
-    from playwright.sync_api import sync_playwright
-
-    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(chromium), args=FLAGS)
-        yield browser
-        browser.close()
 
 
 def test_the_page_follows_the_text_and_the_cursor_and_leads_back(

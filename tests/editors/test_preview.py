@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -11,8 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from installed import there
-from workbench import FLAGS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -29,17 +26,6 @@ BehaviorTree Main
 BehaviorTree Rest
     Charge satisfices safety
 """
-
-
-@pytest.fixture(scope="module")
-def browser(driver: None) -> Iterator[Browser]:
-    from playwright.sync_api import sync_playwright
-
-    chromium = there(shutil.which("chromium"), "Chromium", "from_apt")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(chromium), args=FLAGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture
