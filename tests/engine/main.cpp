@@ -9,8 +9,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <iostream>
+#include <mutex>
 #include <thread>
 
 using Json = nlohmann::json;
@@ -266,9 +268,11 @@ Json values(BT::Blackboard& blackboard)
 void tick(BT::Tree& tree, const Json& job, Json& answer)
 {
   Json& transitions = answer["transitions"] = Json::array();
-  int ticks = 0;
+  std::atomic<int> ticks = 0;
+  std::mutex one_at_a_time;  // a Timeout halts its child from another thread
   const auto note = [&](BT::TimePoint, const BT::TreeNode& node, NodeStatus before, NodeStatus after) {
-    transitions.push_back({ ticks, node.UID(), BT::toStr(before), BT::toStr(after) });
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    transitions.push_back({ ticks.load(), node.UID(), BT::toStr(before), BT::toStr(after) });
   };
   std::vector<BT::TreeNode::StatusChangeSubscriber> subscribers;
   tree.applyVisitor([&](BT::TreeNode* node) { subscribers.push_back(node->subscribeToStatusChange(note)); });
@@ -288,7 +292,7 @@ void tick(BT::Tree& tree, const Json& job, Json& answer)
     tree.haltTree();
   }
   answer["status"] = BT::toStr(status);
-  answer["ticks"] = ticks;
+  answer["ticks"] = ticks.load();
   for(const auto& subtree : tree.subtrees)
     answer["blackboards"][subtree->instance_name] = values(*subtree->blackboard);
 }

@@ -78,8 +78,8 @@ def test_stubs_write_on_the_blackboard(engine: Engine) -> None:
 
 
 def test_a_limit_is_broken_in_real_time(engine: Engine) -> None:
-    xml = mission('<Timeout name="rq1_limit" msec="20"><Move/></Timeout>')
-    answer = engine.run_one(xml, parts={"Move": ["RUNNING"]}, ticks=1_000, tick_ms=1)
+    xml = mission('<Timeout name="rq1_limit" msec="200"><Move/></Timeout>')
+    answer = engine.run_one(xml, parts={"Move": ["RUNNING"]}, ticks=10_000, tick_ms=1, seconds=60)
     assert answer.status == "FAILURE"
     assert answer.statuses("Move") == ["RUNNING", "IDLE"]
     assert engine.run_one(xml, parts={"Move": ["SUCCESS"]}, ticks=1).status == "SUCCESS"
