@@ -504,6 +504,8 @@ class ClauseParser(ConditionParser):
             if meant is None:
                 example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
                 note = f"how much is said before the value: `at most {example}`"
+                if self.kind in (QUANTITY, NUMBER) and self.raws[self.index + 1] == "-":
+                    note = "a range is written `between 10 s and 20 s`"
                 self.expected("a bound: at most, at least, less than, more than or between", (note,))
                 return None
             relation = RELATIONS[meant]
@@ -629,9 +631,12 @@ _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
 _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(
-        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to")), ("at", "most")
+        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
+        ("at", "most"),
     ),
-    **dict.fromkeys((("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than")), ("at", "least")),
+    **dict.fromkeys(
+        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
+    ),
     **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
     **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
 }
