@@ -6,15 +6,18 @@ what stands in a file that is written in XML is shown where it stands there.
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from json.encoder import encode_basestring_ascii as as_json
 from typing import TYPE_CHECKING
 from urllib.parse import quote, unquote, urlsplit
 
 from lsprotocol import types
 
 from btq_lang.diagnostics import Diagnostic, Related, Tag
-from btq_lang.protocol import Plain
+from btq_lang.protocol import Json, Plain
 from btq_lang.rules import Severity, page_path
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
 
@@ -25,6 +28,9 @@ if TYPE_CHECKING:  # all these import the checks, and an editor waits for the se
     from btq_lang.features.signature import Signature
     from btq_lang.features.structure import Fold
     from btq_lang.workspace import Workspace
+
+
+_MOST_KEPT = 2_000  # texts, of some 300 characters each
 
 
 class Converter:
@@ -121,28 +127,36 @@ class Converter:
         ]
         return types.WorkspaceEdit(document_changes=[*documents])
 
-    def diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Plain]:
-        """Diagnostics; their spans count in the text on the disk already."""
+    def diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> Json:
+        """Diagnostics, as JSON has a list of them; their spans count in the text on the disk already.
+
+        At every key all of a file's are sent, and of most nothing has changed but the lines: what they say is written
+        once and kept as text.
+        """
         lines = workspace.files[path].source_lines
+        written: list[str] = []
+        for one in found:
+            said = _said(
+                one.rule, one.message, one.notes, one.effective_severity, one.tags, self.uri(page_path(one.rule))
+            )
+            related = ", ".join([self._information(workspace, path, each) for each in one.related])
+            written.append(
+                f'{{"range": {self._range_as_json(lines, one.span)}, {said}, "relatedInformation": [{related}]}}'
+            )
+        return Json(f"[{', '.join(written)}]")
 
-        def information(related: Related) -> Plain:
-            target = related.place.path or path
-            range_ = self._plain_range(workspace.files[target].source_lines, related.place.span)
-            return {"location": {"uri": self.uri(target), "range": range_}, "message": related.message}
+    def _information(self, workspace: Workspace, path: str, related: Related) -> str:
+        target = related.place.path or path
+        range_ = self._range_as_json(workspace.files[target].source_lines, related.place.span)
+        uri, message = as_json(self.uri(target)), as_json(related.message)
+        return f'{{"location": {{"uri": {uri}, "range": {range_}}}, "message": {message}}}'
 
-        return [
-            {
-                "range": self._plain_range(lines, one.span),
-                "message": "\n".join((one.message, *one.notes)) if one.notes else one.message,
-                "severity": _SEVERITIES[one.effective_severity],
-                "code": one.rule,
-                "codeDescription": {"href": self.uri(page_path(one.rule))},
-                "source": "btq",
-                "tags": [_TAGS[tag] for tag in one.tags],
-                "relatedInformation": [information(related) for related in one.related],
-            }
-            for one in found
-        ]
+    def _range_as_json(self, lines: LineIndex, span: Span) -> str:
+        (line, column), (end_line, end_column) = [lines.position(offset, self.encoding) for offset in span]
+        return (
+            f'{{"start": {{"line": {line}, "character": {column}}}, '
+            f'"end": {{"line": {end_line}, "character": {end_column}}}}}'
+        )
 
     def _plain_range(self, lines: LineIndex, span: Span) -> Plain:
         start, end = lines.position(span.start, self.encoding), lines.position(span.end, self.encoding)
@@ -153,7 +167,7 @@ class Converter:
 
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
         mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
-        found = {"diagnostics": self.diagnostics(workspace, path, [mends])} if mends is not None else {}
+        found = {"diagnostics": json.loads(self.diagnostics(workspace, path, [mends]))} if mends is not None else {}
         edit = self.workspace_edit(workspace, action.edits, versions)
         return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
 
@@ -225,6 +239,20 @@ class Converter:
         return {"isIncomplete": False, "items": items}
 
 
+@lru_cache(_MOST_KEPT)
+def _said(rule: str, message: str, notes: tuple[str, ...], severity: Severity, tags: tuple[Tag, ...], href: str) -> str:
+    """What a diagnostic says, wherever it stands: members of a JSON object."""
+    members = {
+        "message": "\n".join((message, *notes)),
+        "severity": _SEVERITIES[severity],
+        "code": rule,
+        "codeDescription": {"href": href},
+        "source": "btq",
+        "tags": [_TAGS[tag] for tag in tags],
+    }
+    return json.dumps(members)[1:-1]
+
+
 def _path_of(url: str) -> str:
     """The path that a URL names: as urllib.request has it, which takes long to import."""
     if os.name != "nt":
@@ -234,6 +262,7 @@ def _path_of(url: str) -> str:
     return url2pathname(url)
 
 
+@lru_cache(_MOST_KEPT)  # every place that a diagnostic names has one
 def _url_of(path: str) -> str:
     if os.name != "nt":
         return quote(path)

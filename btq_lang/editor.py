@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import json
 import logging
 import sys
 from collections.abc import Callable, Iterable
@@ -22,7 +23,8 @@ from pygls.lsp.server import LanguageServer
 from btq_lang import __version__
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.protocol import Messages, Plain, Protocol
+from btq_lang.garbage import collect_in_pause
+from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
 
 if TYPE_CHECKING:
@@ -39,6 +41,8 @@ class Refused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+NOTHING = Json('{"kind": "full", "items": []}')
+A_PAUSE = 0.1  # seconds, less than between two keys of most who type
 A_FEW = 2  # of the files, behind which is let go what is held for nobody
 MOST_DETAILS = 500  # a parameter may hold a whole text
 
@@ -73,6 +77,7 @@ class Server(LanguageServer):
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
+        self._pause: asyncio.TimerHandle | None = None
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
 
@@ -238,6 +243,9 @@ class Server(LanguageServer):
             await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)
+        if self._pause is not None:
+            self._pause.cancel()
+        self._pause = asyncio.get_running_loop().call_later(A_PAUSE, collect_in_pause)
 
     def publish(self, path: str) -> None:
         """Tell the diagnostics of a file, unless the editor knows them."""
@@ -255,13 +263,12 @@ class Server(LanguageServer):
             return
         self.published[path] = found, version
         if found or known is not None or path in self.session.open:
-            params: Plain = {"uri": self.convert.uri(path)}
-            params["diagnostics"] = self.convert.diagnostics(workspace, path, found)
-            if version is not None:
-                params["version"] = version
+            name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
+            told = self.convert.diagnostics(workspace, path, found)
+            params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
-    def report(self, path: str, previous: str | None) -> Plain:
+    def report(self, path: str, previous: str | None) -> Json:
         """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
         workspace = self.session.workspace_of(path)
         found = self.diagnostics(path)
@@ -269,10 +276,11 @@ class Server(LanguageServer):
         if found:
             self.shown.add(path)
         if workspace is None:
-            return {"kind": "full", "items": []}
+            return NOTHING
         if previous == result:
-            return {"kind": "unchanged", "resultId": result}
-        return {"kind": "full", "resultId": result, "items": self.convert.diagnostics(workspace, path, found)}
+            return Json(f'{{"kind": "unchanged", "resultId": "{result}"}}')
+        items = self.convert.diagnostics(workspace, path, found)
+        return Json(f'{{"kind": "full", "resultId": "{result}", "items": {items}}}')
 
     def reload(self) -> None:
         """Read folders and projects again, and tell what has changed."""

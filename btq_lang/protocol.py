@@ -18,7 +18,7 @@ Plain = dict[str, Any]  # what json writes as it is
 
 
 class Json(str):
-    """A result that is JSON already."""
+    """A result, or what is told, that is JSON already."""
 
     __slots__ = ()
 
@@ -39,15 +39,22 @@ class Protocol(LanguageServerProtocol):
     def _send_response(self, msg_id: int | str, result: Any = None, error: types.ResponseError | None = None) -> None:
         if error is not None:
             super()._send_response(msg_id, error=error)
-        elif isinstance(result, Json) and self.writer is not None:
-            body = f'{{"jsonrpc": "2.0", "id": {json.dumps(msg_id)}, "result": {result}}}'.encode()
-            self.writer.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+        elif isinstance(result, Json):
+            self._write(f'{{"jsonrpc": "2.0", "id": {json.dumps(msg_id)}, "result": {result}}}')
         else:  # what is of lsprotocol in it is made plain by `_serialize_message`
             self._send_data({"jsonrpc": self.VERSION, "id": msg_id, "result": result})
 
-    def tell(self, method: str, params: Plain) -> None:
-        """Send a notification of plain data."""
-        self._send_data({"jsonrpc": self.VERSION, "method": method, "params": params})
+    def tell(self, method: str, params: Plain | Json) -> None:
+        """Send a notification of plain data, or of what is JSON already."""
+        if isinstance(params, Json):
+            self._write(f'{{"jsonrpc": "2.0", "method": "{method}", "params": {params}}}')
+        else:
+            self._send_data({"jsonrpc": self.VERSION, "method": method, "params": params})
+
+    def _write(self, message: str) -> None:
+        if self.writer is not None:
+            body = message.encode()
+            self.writer.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
 
     @lsp_method(types.TEXT_DOCUMENT_DID_OPEN)
     def lsp_text_document__did_open(self, params: types.DidOpenTextDocumentParams) -> None:

@@ -150,8 +150,10 @@ class LineIndex:
         """The position of an offset, its column counted in `encoding`; an offset outside the text is clamped."""
         offset = max(0, min(offset, len(self._text)))
         line = bisect_right(self._starts, offset) - 1
-        before = self._text[self._starts[line] : offset]
-        return Position(line, _width(before, encoding))
+        start = self._starts[line]
+        if self._text.isascii():  # Python knows that of a text without looking at it
+            return Position(line, offset - start)
+        return Position(line, _width(self._text[start:offset], encoding))
 
     def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
         """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""

@@ -70,7 +70,7 @@ class View:
         self.text = self._file.text
         self.is_xml = self._file.origin is not None
         self._scope = workspace.scope(path)
-        self.scope: Scope = self._scope if answers is None else NotingScope(self._scope, self)
+        self.scope: Scope = self._scope if answers is None else NotingScope(self._scope, answers)
         self._nodes: dict[int, tuple[SeenNode, ...]] = {}
         self._scripts: dict[str, Script] = {}
         self.model_ports: dict[int, tuple[KnownPort, ...]] = {}
@@ -456,27 +456,30 @@ class _NodeNames:
 
 
 class NotingScope(Scope):
-    """A scope that notes what it is asked."""
+    """A scope that notes what it is asked.  It knows no view: one that knows what knows it is garbage that stays until
+    Python looks for it, with all that hangs on it, and an editor makes one at every key."""
 
-    def __init__(self, scope: Scope, view: View) -> None:
+    def __init__(self, scope: Scope, answers: Answers) -> None:
         self.paths = scope.paths
         self._scope = scope
-        self._view = view
+        self._answers = answers
 
     @property
     def complete(self) -> bool:
-        return self._view.look_up(lookups.is_complete)
+        complete: bool = self._answers.look_up((lookups.is_complete,), of_name=False)
+        return complete
 
     def find(self, kind: Kind, name: str) -> Definition | None:
-        self._view.look_up_name(lookups.meaning, kind, name)
+        self._answers.look_up((lookups.meaning, kind, name), of_name=True)
         return self._scope.find(kind, name)
 
     def all(self, kind: Kind, name: str) -> tuple[Definition, ...]:
-        self._view.look_up_name(lookups.owners, kind, name)
+        self._answers.look_up((lookups.owners, kind, name), of_name=True)
         return self._scope.all(kind, name)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
-        return self._view.look_up(lookups.names, kind)
+        names: tuple[str, ...] = self._answers.look_up((lookups.names, kind), of_name=False)
+        return names
 
 
 def subtree_ports(view: View, seen: SeenNode) -> tuple[Port, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import json
 
 from lsprotocol import types
 
-from btq_lang.editor import A_FEW, Server
+from btq_lang.editor import A_FEW, NOTHING, Server
 from btq_lang.handlers.progress import checking
-from btq_lang.protocol import Plain
+from btq_lang.protocol import Json
 
 
 def register(server: Server) -> None:
@@ -43,33 +44,41 @@ def _diagnostics(server: Server) -> None:
         types.TEXT_DOCUMENT_DIAGNOSTIC,
         types.DiagnosticOptions(identifier="btq", inter_file_dependencies=True, workspace_diagnostics=True),
     )
-    def document_diagnostic(params: types.DocumentDiagnosticParams) -> Plain:
+    def document_diagnostic(params: types.DocumentDiagnosticParams) -> Json:
         return server.report(convert.path(params.text_document.uri), params.previous_result_id)
 
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
-    async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Plain:
+    async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Json:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
         # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so: also of
         # those whose result it has forgotten, as VS Code does when a document is closed.
         gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
-        items: list[Plain] = [{"uri": convert.uri(path), "version": None, **_NOTHING} for path in sorted(gone)]
+        items = [_about(convert.uri(path), None, NOTHING) for path in sorted(gone)]
         async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
             for done, path in enumerate(paths, 1):
-                about = {"uri": convert.uri(path), "version": server.versions.get(path)}
-                items.append({**about, **server.report(path, known.get(path))})
+                report = server.report(path, known.get(path))
+                items.append(_about(convert.uri(path), server.versions.get(path), report))
                 if done % A_FEW == 0:
                     session.let_go()
                 if done % A_PART == 0:
                     told(done)
                     if params.partial_result_token is not None:
-                        part = {"token": params.partial_result_token, "value": {"items": items}}
-                        server.protocol.tell(types.PROGRESS, part)
+                        token = json.dumps(params.partial_result_token)
+                        server.protocol.tell(types.PROGRESS, Json(f'{{"token": {token}, "value": {_all(items)}}}'))
                         items = []
                 await asyncio.sleep(0)  # the editor may have given up, or changed something
-        return {"items": items}
+        return _all(items)
+
+
+def _about(uri: str, version: int | None, report: Json) -> str:
+    """A report, with the file that it is about."""
+    return f'{{"uri": {json.dumps(uri)}, "version": {json.dumps(version)}, {report[1:]}'
+
+
+def _all(items: list[str]) -> Json:
+    return Json(f'{{"items": [{", ".join(items)}]}}')
 
 
 A_PART = 20  # of the files, told together
-_NOTHING: Plain = {"kind": "full", "items": []}

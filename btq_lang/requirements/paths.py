@@ -61,6 +61,9 @@ class PathReader:
             and path not in workspace.included_files
             and not any(entry.diagnostics for each in scope.paths for entry in workspace.files[each].parsed.entries)
         )
+        # None of these knows the reader: one that knows what knows it would stay, with all that it has read, until
+        # Python looks for garbage, and an editor makes one at every key.
+        requirements, signals, contexts = self.requirements, self.signals, self.contexts
         self._answers: dict[str, Callable[[Any], object]] = {
             "find": nodes.find,
             "every": nodes.every,
@@ -73,11 +76,11 @@ class PathReader:
             "mission": lambda _: mission,
             "knows all nodes": lambda _: knows_all_nodes,
             "knows all names": lambda _: scope.complete,
-            "requirement": self.requirements.get,
-            "signal": self.signals.get,
-            "signals": lambda _: tuple(self.signals),
-            "context": lambda name: self.contexts.get(name, _NOTHING),
-            "contexts": lambda _: tuple(self.contexts),
+            "requirement": requirements.get,
+            "signal": signals.get,
+            "signals": lambda _: tuple(signals),
+            "context": lambda name: contexts.get(name, _NOTHING),
+            "contexts": lambda _: tuple(contexts),
         }
 
     # ---- what is looked up ----
