@@ -2,7 +2,7 @@
 
 Why not dataclasses: importing them and making our classes with them costs 50 ms at every start of `btq check`, more
 than the whole check.  A record is made once, with its slots, where a decorator would make a second class of the first;
-and classes of as many fields share one compiled `__init__`.  Type checkers treat both alike (PEP 681).  Deliberately
+and classes of as many fields share the code of one `__init__`.  Type checkers treat both alike (PEP 681).  Deliberately
 left out: inheritance, keyword-only fields, default factories, ordering.
 """
 
@@ -11,6 +11,8 @@ from __future__ import annotations
 from functools import cache
 from operator import attrgetter
 from types import CellType, FunctionType
+
+from btq_lang.record_inits import INITS
 
 TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
 if TYPE_CHECKING:
@@ -116,12 +118,15 @@ def _init(made: type, fields: tuple[str, ...], defaults: tuple[object, ...]) -> 
 @cache
 def _init_code(count: int) -> CodeType:
     """The code of an `__init__` of so many fields, which finds their setters in its closure, in order."""
+    if count in INITS:
+        code: CodeType = INITS[count](*range(count)).__code__
+        return code
     setters = [f"set{number:02}" for number in range(count)]  # a closure is sorted by name
     parameters = ", ".join(["self", *(f"value{number}" for number in range(count))])
     body = "; ".join(f"{setter}(self, value{number})" for number, setter in enumerate(setters)) or "pass"
     scope: dict[str, Any] = {}
     exec(f"def outer({', '.join(setters)}):\n def __init__({parameters}): {body}\n return __init__", scope)
-    code: CodeType = scope["outer"](*setters).__code__
+    code = scope["outer"](*setters).__code__
     return code
 
 

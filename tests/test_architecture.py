@@ -16,7 +16,10 @@ PACKAGE = Path(btq_lang.__file__).parent
 
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
-    frozenset({"record", "garbage", "text", "places", "near", "globs", "rules", "diagnostics", "units", "quantities"}),
+    frozenset(
+        {"record", "record_inits", "garbage", "text", "places", "near", "globs"}
+        | {"rules", "diagnostics", "units", "quantities"}
+    ),
     frozenset(
         {"tokens", "characters", "scan", "slips", "lexer", "words", "node_clauses", "syntax", "cursor"}
         | {
