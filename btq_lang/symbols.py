@@ -97,14 +97,9 @@ NOTHING = Summary((), ())
 
 def summarize(item: Item) -> Summary:
     """The summary of an item."""
-    symbols: list[Symbol] = []
-    uses: list[Use] = []
-    for found in _names(item):
-        if isinstance(found, Symbol):
-            symbols.append(found)
-        else:
-            uses.append(found)
-    return Summary(tuple(symbols), tuple(uses)) if symbols or uses else NOTHING
+    names = _Names()
+    names.add(item)
+    return Summary(tuple(names.symbols), tuple(names.uses)) if names.symbols or names.uses else NOTHING
 
 
 def requirements_at(clauses: tuple[NodeClause, ...]) -> Iterator[Requirement | ReqRef]:
@@ -161,82 +156,83 @@ def _saying(requirement: Requirement) -> object:
     return text, shape(requirement.quality), shape(requirement.parameters), shape(requirement.clauses)
 
 
-def _names(item: Item) -> Iterator[Symbol | Use]:
-    if isinstance(item, Tree):
-        if item.name is not None:
-            yield _defines(Kind.TREE, item.name, item)
-        yield from _clauses(item.clauses, None)
-        for node in item.walk():
-            yield from _node(node)
-    elif isinstance(item, Model):
-        if item.name is not None:
-            yield _defines(Kind.MODEL, item.name, item)
-    elif isinstance(item, Models):
-        for model in item.models:
-            if isinstance(model, Model) and model.name is not None:
-                yield _defines(Kind.MODEL, model.name, model)
-    elif isinstance(item, Requirement):
-        yield from _requirement(item, None)
-    elif isinstance(item, Signal):
-        if item.name is not None:
-            yield _defines(Kind.SIGNAL, item.name, item)
-    elif isinstance(item, Context):
-        if item.name is not None:
-            yield _defines(Kind.CONTEXT, item.name, item)
-    elif isinstance(item, QualityDecl):
-        if item.name is not None:
-            yield _defines(Kind.QUALITY, item.name, item)
-        yield from _quality(item.parent, None)
-    elif isinstance(item, Apply):
-        for reference in item.uses:
-            yield _uses(Kind.REQUIREMENT, reference.name, None)
-    elif isinstance(item, Root):
-        for name in (item.name, *(pair.value for pair in item.attributes if pair.key.text == "main_tree_to_execute")):
-            if name is not None:
-                yield _uses(Kind.TREE, name, None)
+class _Names:
+    """The names in an item, as they are met: no generators in generators, for every node of every file is looked at."""
 
+    def __init__(self) -> None:
+        self.symbols: list[Symbol] = []
+        self.uses: list[Use] = []
 
-def _node(node: Node) -> Iterator[Symbol | Use]:
-    if node.kind is not None and node.kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
-        yield _uses(Kind.TREE, tree, node)  # version 3's word for SubTree
-    elif node.id is not None:
-        is_subtree = node.category is not None and node.category.raw == "SubTree"
-        yield _uses(Kind.TREE if is_subtree else Kind.MODEL, node.id, node)
-    yield from _clauses(node.clauses, node)
+    def add(self, item: Item) -> None:
+        if isinstance(item, Model):
+            self._define(Kind.MODEL, item.name, item)
+        elif isinstance(item, Tree):
+            self._define(Kind.TREE, item.name, item)
+            self._add_clauses(item.clauses, None)
+            for node in item.walk():
+                self._add_node(node)
+        elif isinstance(item, Models):
+            for model in item.models:
+                if isinstance(model, Model):
+                    self._define(Kind.MODEL, model.name, model)
+        elif isinstance(item, Requirement):
+            self._add_requirement(item, None, attached=False)
+        elif isinstance(item, Signal):
+            self._define(Kind.SIGNAL, item.name, item)
+        elif isinstance(item, Context):
+            self._define(Kind.CONTEXT, item.name, item)
+        elif isinstance(item, QualityDecl):
+            self._define(Kind.QUALITY, item.name, item)
+            self._use_quality(item.parent, None)
+        elif isinstance(item, Apply):
+            for reference in item.uses:
+                self._use(Kind.REQUIREMENT, reference.name, None)
+        elif isinstance(item, Root):
+            self._use(Kind.TREE, item.name, None)
+            for pair in item.attributes:
+                if pair.key.text == "main_tree_to_execute":
+                    self._use(Kind.TREE, pair.value, None)
 
+    def _add_node(self, node: Node) -> None:
+        name, kind, category = node.id, node.kind, node.category
+        if kind is not None and kind.raw == "SubTreePlus" and (tree := node.attribute("ID")) is not None:
+            self._use(Kind.TREE, tree, node)  # version 3's word for SubTree
+        elif name is not None:
+            is_subtree = category is not None and category.raw == "SubTree"
+            self._use(Kind.TREE if is_subtree else Kind.MODEL, name, node)
+        if node.clauses:
+            self._add_clauses(node.clauses, node)
 
-def _clauses(clauses: tuple[NodeClause, ...], node: Node | None) -> Iterator[Symbol | Use]:
-    for clause in clauses:
-        if isinstance(clause, Tags):
-            continue
-        if isinstance(clause, Satisfices):
-            for quality in clause.qualities:
-                yield from _quality(quality.path, node)
-        for requirement in requirements_at((clause,)):
-            if isinstance(requirement, ReqRef):
-                yield _uses(Kind.REQUIREMENT, requirement.name, node)
-            else:
-                yield from _requirement(requirement, node, attached=True)
+    def _add_clauses(self, clauses: tuple[NodeClause, ...], node: Node | None) -> None:
+        for clause in clauses:
+            if isinstance(clause, Tags):
+                continue
+            if isinstance(clause, Satisfices):
+                for quality in clause.qualities:
+                    self._use_quality(quality.path, node)
+            for requirement in requirements_at((clause,)):
+                if isinstance(requirement, ReqRef):
+                    self._use(Kind.REQUIREMENT, requirement.name, node)
+                else:
+                    self._add_requirement(requirement, node, attached=True)
 
-
-def _requirement(requirement: Requirement, node: Node | None, attached: bool = False) -> Iterator[Symbol | Use]:
-    """attached: it stands in a `satisfies` or `satisfices`, so without a text it refers to another place."""
-    if requirement.name is not None:
+    def _add_requirement(self, requirement: Requirement, node: Node | None, *, attached: bool) -> None:
+        """attached: it stands in a `satisfies` or `satisfices`, so without a text it refers to another place."""
         if attached and requirement.is_reference:
-            yield _uses(Kind.REQUIREMENT, requirement.name, node)
+            self._use(Kind.REQUIREMENT, requirement.name, node)
         else:
-            yield _defines(Kind.REQUIREMENT, requirement.name, requirement)
-    yield from _quality(requirement.quality, node)
+            self._define(Kind.REQUIREMENT, requirement.name, requirement)
+        self._use_quality(requirement.quality, node)
 
+    def _use_quality(self, path: QualityPath | None, node: Node | None) -> None:
+        if path is not None:
+            name = ".".join([name.text for name in path.names])
+            self.uses.append(Use(Kind.QUALITY, name, path.span, node))
 
-def _quality(path: QualityPath | None, node: Node | None) -> Iterator[Use]:
-    if path is not None:
-        yield Use(Kind.QUALITY, ".".join(name.text for name in path.names), path.span, node)
+    def _define(self, kind: Kind, name: Word | None, target: Target) -> None:
+        if name is not None:
+            self.symbols.append(Symbol(kind, name.text, name.span, target))
 
-
-def _defines(kind: Kind, name: Word, target: Target) -> Symbol:
-    return Symbol(kind, name.text, name.span, target)
-
-
-def _uses(kind: Kind, name: Word, node: Node | None) -> Use:
-    return Use(kind, name.text, name.span, node)
+    def _use(self, kind: Kind, name: Word | None, node: Node | None) -> None:
+        if name is not None:
+            self.uses.append(Use(kind, name.text, name.span, node))

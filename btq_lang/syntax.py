@@ -383,7 +383,7 @@ class Model(Record):
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        return tuple([part for part in self.body if isinstance(part, Port)])
+        return tuple([part for part in self.body if isinstance(part, Port)]) if self.body else ()
 
 
 class Models(Record):

@@ -20,7 +20,7 @@ from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.project import Project, include_candidates
 from btq_lang.record import Record
 from btq_lang.symbols import Kind, Summary, Symbol, Use, asked_for, summarize
-from btq_lang.syntax import Entry, Include, Item, Root, Tree, Word
+from btq_lang.syntax import Entry, Include, Item, Model, Root, Signal, Tree, Word
 from btq_lang.text import LineIndex, Span, changed
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -164,7 +164,8 @@ class Tally:
     @classmethod
     def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
         """A tally of the names of a kind that items use, or of another set of names that their facts have."""
-        return cls(of, dict(Counter(chain.from_iterable([each.said(of) for each in items]))))
+        said = [each.said(of) for each in items if type(each.item) not in _SAYING_NOTHING]
+        return cls(of, dict(Counter(chain.from_iterable(said))))
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
         """The tally after an edit that has put other items in the place of some; the same one if they say the same."""
@@ -182,6 +183,9 @@ class Tally:
     @cached_property
     def names(self) -> frozenset[str]:
         return frozenset(self._counts)
+
+
+_SAYING_NOTHING = (Model, Signal)  # of others; most items are such
 
 
 class Names:
@@ -219,7 +223,15 @@ class Names:
 
     @cached_property
     def by_kind(self) -> dict[Kind, tuple[str, ...]]:
-        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in Kind}
+        names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
+        for kind, name in self.found:
+            names[kind].append(name)
+        return {kind: tuple(each) for kind, each in names.items()}
+
+    @cached_property
+    def repeated(self) -> frozenset[Name]:
+        """Those with several definitions."""
+        return frozenset([name for name, found in self.found.items() if len(found) > 1])
 
 
 class File:
@@ -472,6 +484,7 @@ class Scope:
         ) and not any(file.is_swallowed for file in self._files)
         self._found: dict[Name, tuple[Definition, ...]] = {}
         self._names: dict[Kind, tuple[str, ...]] = {}
+        self._repeated: frozenset[Name] | None = None
 
     @property
     def complete(self) -> bool:
@@ -491,6 +504,12 @@ class Scope:
         found = self._found.get((kind, name))
         return self._look_up(kind, name) if found is None else found
 
+    def is_repeated(self, kind: Kind, name: str) -> bool:
+        """Whether a name has several definitions: hardly any has, so who looks at all of them asks this first."""
+        if self._repeated is None:
+            self._repeated = _repeated([file.names for file in self._files])
+        return (kind, name) in self._repeated
+
     def names(self, kind: Kind) -> tuple[str, ...]:
         """All names of a kind, in the order of their definitions."""
         names = self._names.get(kind)
@@ -503,6 +522,17 @@ class Scope:
         known = [file.definitions(kind, name) for file in self._files if (kind, name) in file.names.found]
         found = self._found[kind, name] = known[0] if len(known) == 1 else tuple(chain(*known))
         return found
+
+
+def _repeated(files: list[Names]) -> frozenset[Name]:
+    """The names with several definitions, in one of these files or in two of them."""
+    seen: set[Name] = set()
+    found: set[Name] = set()
+    for names in files:
+        found |= names.repeated
+        found |= seen & names.all
+        seen |= names.all
+    return frozenset(found)
 
 
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))

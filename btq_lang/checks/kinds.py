@@ -180,7 +180,9 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
             both = (view.defined_at(first, "the first one, which counts"), view.defined_at(second, "the second one"))
             yield _second(second.symbol, include_place(entry), both, "this file brings a second definition of")
     for symbol in view.summary(entry).symbols:
-        counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind in _DEFINED_ONCE else None
+        if symbol.kind not in _DEFINED_ONCE or not view.scope.is_repeated(symbol.kind, symbol.name):
+            continue
+        counts = view.scope.find(symbol.kind, symbol.name)
         if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
             one = (view.defined_at(counts, "the first one, which counts"),)
             yield _second(symbol, symbol.span, one, "there are two definitions of")

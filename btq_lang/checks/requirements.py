@@ -43,7 +43,9 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message = f"this file brings a second requirement `{second.symbol.name}`, which says something else"
             yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
     for symbol in view.summary(entry).symbols:
-        counts = view.scope.find(symbol.kind, symbol.name) if symbol.kind is Kind.REQUIREMENT else None
+        if symbol.kind is not Kind.REQUIREMENT or not view.scope.is_repeated(symbol.kind, symbol.name):
+            continue
+        counts = view.scope.find(symbol.kind, symbol.name)
         if counts is not None and counts.symbol is not symbol and _differ(symbol, counts.symbol):
             yield Diagnostic(
                 "conflicting-requirement",

@@ -57,6 +57,8 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name
+    if not view.scope.is_repeated(Kind.TREE, name.text):
+        return
     first_one = view.scope.find(Kind.TREE, name.text)
     if first_one is not None and not view.is_this(first_one, entry):
         yield Diagnostic(

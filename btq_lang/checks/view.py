@@ -477,6 +477,9 @@ class NotingScope(Scope):
         self._answers.look_up((lookups.owners, kind, name), of_name=True)
         return self._scope.all(kind, name)
 
+    def is_repeated(self, kind: Kind, name: str) -> bool:
+        return len(self.all(kind, name)) > 1
+
     def names(self, kind: Kind) -> tuple[str, ...]:
         names: tuple[str, ...] = self._answers.look_up((lookups.names, kind), of_name=False)
         return names
