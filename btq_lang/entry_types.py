@@ -79,7 +79,7 @@ def is_number(text: str) -> bool:
 
     Source: std::from_chars, for an int and for a double.
     """
-    return re.fullmatch(_NUMBER, text) is not None
+    return text[:1] in _BEGINS_NUMBER and re.fullmatch(_NUMBER, text) is not None
 
 
 def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
@@ -99,4 +99,5 @@ def _plain(type_: str) -> str:
     return "" if type_ in ("BT::AnyTypeAllowed", "BT::Any") else type_
 
 
+_BEGINS_NUMBER: Final = frozenset("-.0123456789iInN")  # most values do not, and the pattern takes long to compile
 _NUMBER: Final = r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"

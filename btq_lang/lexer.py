@@ -515,7 +515,7 @@ class Lexer:
         start, end = self._whole_word(at)
         self._strange = True  # more of it may follow
         fixes: tuple[Fix, ...] = ()
-        if _VALUE_END.match(self.text, end):
+        if re.compile(_VALUE_END).match(self.text, end):
             fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
         self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
         return self._add(NAME, start, end)
@@ -770,7 +770,8 @@ _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
-_VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
+# Compiled when first used: most files need none of these.
+_VALUE_END: Final = r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)"
 _IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))
 _QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time

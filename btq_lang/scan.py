@@ -13,13 +13,16 @@ import re
 
 from btq_lang.characters import (
     BANG,
+    DOT,
     EQUALS,
     LINE_FEED,
     MINUS,
+    NINE,
     QUESTION,
     RETURN,
     SPACE,
     TAB,
+    ZERO,
     begins_name,
     goes_on,
 )
@@ -128,7 +131,7 @@ def line_start(text: str, lower: i64, position: i64) -> i64:
 
 def path_end(text: str, start: i64) -> i64:
     """Behind what somebody probably wrote as a path: up to a blank, a bracket or a quote."""
-    return _PATH(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    return re.compile(_PATH).match(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
 def symbol_at(text: str, start: i64) -> str:
@@ -166,14 +169,15 @@ def number_at(text: str, start: i64) -> tuple[i64, i64]:
         or units follow it that make none together.
     """
     size: i64 = len(text)
-    end: i64 = _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
+    end = number_end(text, start)
     unit = end
     while unit < size and ((code := ord(text[unit])) == SPACE or code == TAB):
         unit += 1
     if unit < size and ((character := text[unit]).isalpha() or character in "_%1°"):
         unit_end = unit_at(text, unit)
         if unit_end > unit:
-            if not _FOLLOWS(text, unit_end):
+            behind = blanks_end(text, unit_end, size)
+            if not text.startswith("(", behind) and (not text.startswith("=", behind) or text.startswith("==", behind)):
                 return (QUANTITY, unit_end) if is_unit(text[unit:unit_end]) else (ERROR, end)
         elif character == "°" or (unit == end and (character.isalpha() or character == "_")):
             return ERROR, end
@@ -182,26 +186,72 @@ def number_at(text: str, start: i64) -> tuple[i64, i64]:
 
 def number_end(text: str, start: i64) -> i64:
     """Behind the number that begins at `start`, a digit or a `-` and a digit; its unit does not count."""
-    return _NUMBER(text, start).end()  # type: ignore[union-attr]  # a digit is there
+    size: i64 = len(text)
+    end = _digits_end(text, start + 1, size)
+    if end < size and ord(text[end]) == DOT:
+        end = _digits_end(text, end + 1, size) if _is_digit(text, end + 1, size) else end
+    if end < size and text[end] in "eE":
+        power = end + 2 if text.startswith(("+", "-"), end + 1) else end + 1
+        end = _digits_end(text, power, size) if _is_digit(text, power, size) else end
+    return end
+
+
+def _digits_end(text: str, start: i64, size: i64) -> i64:
+    while _is_digit(text, start, size):
+        start += 1
+    return start
+
+
+def _is_digit(text: str, at: i64, size: i64) -> bool:
+    return at < size and ZERO <= ord(text[at]) <= NINE
 
 
 def unit_at(text: str, start: i64) -> i64:
     """The end of the UNIT that begins at `start`, or `start` where none does."""
-    factor = _FACTOR(text, start)
-    if factor is None:
-        return start
-    if factor[1] == "1":
-        if not text.startswith("/", factor.end()):
+    word, end = _factor(text, start)
+    if word == "1":
+        if not text.startswith("/", end):
             return start
-    elif factor[1] not in UNITS:
+    elif word not in UNITS:
         return start
-    end = factor.end()
     while end < len(text) and text[end] in "*/":
-        factor = _FACTOR(text, end + 1)
-        if factor is None or factor[1] not in UNITS:
+        word, further = _factor(text, end + 1)
+        if word not in UNITS:
             break
-        end = factor.end()
+        end = further
     return start if text[start:end] == "1" else end
+
+
+def _factor(text: str, start: i64) -> tuple[str, i64]:
+    """The word of a unit's factor, empty where there is none, and the end of the factor: behind its exponent.
+
+    It is a whole word: in `6 m-base` and `6 m!` there is none.
+    """
+    size: i64 = len(text)
+    end = start
+    while end < size and text[end].isalnum() and not text[end].isdecimal():
+        end += 1
+    if end == start:
+        if end == size or text[end] not in "%1":
+            return "", start
+        end += 1
+    elif end < size and (
+        (text[end] == "-" and _is_of_word(text, end + 1)) or (text[end] in "?!" and not text.startswith("=", end + 1))
+    ):
+        return "", start
+    word = text[start:end]
+    if text.startswith("^", end):
+        power = end + 2 if text.startswith("-", end + 1) else end + 1
+        end = power
+        while end < size and text[end].isdecimal():
+            end += 1
+        if end == power:
+            return "", start
+    return ("", start) if _is_of_word(text, end) or text.startswith("^", end) else (word, end)
+
+
+def _is_of_word(text: str, at: i64) -> bool:
+    return at < len(text) and (text[at].isalnum() or text[at] == "_")
 
 
 def is_unit(word: str) -> bool:
@@ -211,7 +261,18 @@ def is_unit(word: str) -> bool:
 
 def unit_run(text: str, start: i64) -> i64:
     """The end of what somebody probably wrote as a unit, right or wrong."""
-    return _UNIT_RUN(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    end = start
+    while end < len(text):
+        if text[end] in "*/":
+            if not text[end + 1 : end + 2].isalnum() and not text.startswith(("%", "°"), end + 1):
+                break
+        elif text[end] == "-":
+            if end == 0 or text[end - 1] != "^":
+                break
+        elif not text[end].isalnum() and text[end] not in "_%°·^":
+            break
+        end += 1
+    return end
 
 
 _WORD: Final = re.compile(r"\w*").match
@@ -222,12 +283,7 @@ _OPENING: Final = re.compile(
     r"([ \t]*)(?![ \t\r\n]) | [\r\n]+([ \t]*)(?![ \t\r\n]) | (?:[ \t\r\n]*[\r\n])([ \t]*)", re.VERBOSE
 ).match
 _LINE: Final = re.compile(r"[^\r\n]*").match
-_PATH: Final = re.compile(r"[^\s()\"']*").match
-_NUMBER: Final = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?").match
-# A unit is a whole word: in `6 m-base` and `6 m!` there is none.
-_FACTOR: Final = re.compile(r"([^\W\d_]+(?!-\w|[?!](?!=))|[%1])(?:\^-?\d+)?(?![\w^])").match
-_UNIT_RUN: Final = re.compile(r"(?:[\w%°·^]|(?<=\^)-|[*/](?=[^\W_]|[%°]))*").match
-_FOLLOWS: Final = re.compile(r"[ \t]*(?:=(?!=)|\()").match
+_PATH: Final = r"[^\s()\"']*"  # compiled when first used: it says what is wrong
 _BY_FIRST: Final = {
     first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
     for first in {symbol[0] for symbol in SYMBOLS}

@@ -66,7 +66,7 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
 def is_xml_name(name: str) -> bool:
     """Can a name be a tag or the name of an attribute, for every reader of XML?  Namespaces aside."""
     if name.isascii():
-        return re.fullmatch(_ASCII_NAME, name) is not None
+        return name[:1] not in ("-", ".") and name.replace("-", "_").replace(".", "_").isidentifier()
     return re.fullmatch(_XML_NAME, name) is not None  # which takes long to compile, and few files need it
 
 
@@ -117,4 +117,3 @@ _NAME_START: Final = (
     "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
 _XML_NAME: Final = f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*"
-_ASCII_NAME: Final = "[A-Z_a-z][-.0-9A-Z_a-z]*"
