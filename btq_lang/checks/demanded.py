@@ -11,7 +11,6 @@ from btq_lang.requirements import Requirements
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.durations import Term
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
-from btq_lang.requirements.spans import node_of
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -84,6 +83,8 @@ def _claims(
         for claim in applied.requirement.claims:
             node = applied.node
             if isinstance(applied.subject, Span) and claim.verb == "takes":
+                from btq_lang.requirements.spans import node_of  # few claims speak of a way between two nodes
+
                 node = node_of(applied.subject, budgets)
             place = told_at(view, applied, claim) if node is not None else None
             if node is not None and place is not None:

@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
-from btq_lang.constraints import Constraint, clauses_of
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Requirement, Signal, Word
 from btq_lang.text import Span
 from btq_lang.units import Dimension, parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.constraints import Constraint
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -56,7 +59,8 @@ def _all_without_claims(view: View) -> dict[int, set[str]]:
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
     """The clause that stands for prose; a condition of a requirement needs but its verb."""
-    from btq_lang.checks.wording import as_clause  # as above
+    from btq_lang.checks.wording import as_clause  # few requirements are prose
+    from btq_lang.constraints import clauses_of
 
     text = " ".join(constraint.text.split()).rstrip(".")
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
-from btq_lang.checks.attached import other_word
 from btq_lang.checks.kinds import written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
@@ -27,6 +26,8 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if match.kind != "unknown":
             continue
         if view.scope.find(Kind.REQUIREMENT, use.name) is not None:
+            from btq_lang.checks.attached import other_word  # few take one word for the other
+
             yield other_word(view, entry, use, "unknown-quality", requirement=True)
             continue
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))

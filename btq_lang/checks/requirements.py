@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.checks.attached import other_word
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.checks.view import View
@@ -24,6 +23,8 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         quality = view.quality(use.name)
         if not elsewhere and (quality is None or quality.kind != "unknown"):
             is_exact = quality is None or quality.kind == "exact"
+            from btq_lang.checks.attached import other_word  # few take one word for the other
+
             yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])

@@ -14,7 +14,6 @@ from btq_lang.record import Record
 from btq_lang.requirements import Memory, Requirements
 from btq_lang.requirements.memory import Table
 from btq_lang.requirements.model import Signal, SourceNode
-from btq_lang.requirements.reading import signals_in
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
@@ -67,6 +66,8 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may hold for many nodes
         if key not in known:
+            from btq_lang.requirements.reading import signals_in  # few missions have a claim that is enforced
+
             known[key] = tuple({each.name: each for each in signals_in(parts)}.values())
         yield known[key], place
 

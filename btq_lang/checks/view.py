@@ -14,7 +14,6 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import SeenNode
-from btq_lang.constraints import Constraint, can_be_checked, constraints
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
 from btq_lang.symbols import Kind, Summary, Use
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.answers import Answers
     from btq_lang.checks.entries import Mention
     from btq_lang.checks.ports import KnownPort
+    from btq_lang.constraints import Constraint
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Memory, Requirements
     from btq_lang.requirements.budgets import Budgets
@@ -367,6 +367,8 @@ class View:
         """What stands behind SuccessIf and FailureIf in a description, and whether it is more than prose."""
         if requirement.text is None or requirement.clauses:
             return ()
+        from btq_lang.constraints import can_be_checked, constraints  # requirements with clauses need none of it
+
         names = _NodeNames(self)
         return tuple([(each, can_be_checked(each.text, names)) for each in constraints(requirement.text)])
 

@@ -25,7 +25,6 @@ from operator import is_
 
 from btq_lang.record import Record
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
-from btq_lang.requirements.classic import with_constraints
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.memory import Memory, Table
 from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace, Use
@@ -205,7 +204,12 @@ def _read_requirement(reader: Reader, file: File, symbol: Symbol, quality: str |
     (definition, *_others) = file.definitions(Kind.REQUIREMENT, symbol.name)
     written = symbol.target
     assert isinstance(written, WrittenRequirement), "its kind says so"
-    return with_constraints(reader, resolve(reader, definition, written, quality), written)
+    requirement = resolve(reader, definition, written, quality)
+    if written.clauses or written.text is None:
+        return requirement
+    from btq_lang.requirements.classic import with_constraints  # a requirement that has clauses needs none of it
+
+    return with_constraints(reader, requirement, written.text)
 
 
 def _by_requirement(found: list[Uses], memory: Memory) -> dict[str, tuple[Use, ...]]:

@@ -12,7 +12,7 @@ from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax import Claim as WrittenClaim
-from btq_lang.syntax import Requirement as WrittenRequirement
+from btq_lang.syntax import Word
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -22,15 +22,13 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Relation
 
 
-def with_constraints(reader: Reader, requirement: Requirement, written: WrittenRequirement) -> Requirement:
-    """A requirement with what its description demands; one that has clauses says it there."""
-    if written.clauses or written.text is None:
-        return requirement
-    found = constraints(written.text)
+def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Requirement:
+    """A requirement without clauses, which would say it, with what its description demands."""
+    found = constraints(text)
     names = frozenset(reader.ask("nodes")) if found else frozenset()
     for constraint in found:
         if can_be_checked(constraint.text, names):
-            requirement = _with(reader, requirement, constraint, written.text.span)
+            requirement = _with(reader, requirement, constraint, text.span)
     if not requirement.claims:
         return requirement
     return replace(requirement, classic=True, action=requirement.action or "fail")

@@ -9,7 +9,6 @@ from __future__ import annotations
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.diagnostics import Place
 from btq_lang.record import Record
-from btq_lang.requirements.names import names_of
 from btq_lang.syntax import Item, Node, Tree
 from btq_lang.text import Span as TextSpan
 from btq_lang.units import Dimension, Unit
@@ -73,6 +72,8 @@ class SourceNode:
     def names(self) -> frozenset[str]:
         """Every name that a path can call it by: its ID, all spellings of its kind, its label."""
         if self._names is None:
+            from btq_lang.requirements.names import names_of  # few requirements name nodes by a path
+
             self._names = names_of(self.node, self.kind, self.category)
         return self._names
 

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from btq_lang.requirements.model import SourceNode, Target
-from btq_lang.requirements.names import kinds_of
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Item, Model, Node, Tree
@@ -268,4 +267,6 @@ def _runs(node: SourceNode, tree: str) -> bool:
 
 
 def _kinds(node: SourceNode) -> frozenset[str]:
+    from btq_lang.requirements.names import kinds_of  # few requirements name nodes by their kind
+
     return kinds_of(node.node, node.kind, node.category)
