@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
+from btq_lang.checks import check
 from btq_lang.project import Project
+from btq_lang.rules import Severity
+from btq_lang.workspace import Workspace
 
 OLD = Project(engines=("4.6",))
 
@@ -45,6 +48,31 @@ def test_a_tree_is_renamed_wherever_it_is_named() -> None:
 def test_a_new_name_is_not_taken() -> None:
     text = 'Root "a b"\nBehaviorTree "a b"\n    SubTree a_b\nBehaviorTree a_b\n    X\n'
     assert_fix(text, "Rename it to `a_b_` wherever it is named", text.replace('"a b"', "a_b_"))
+
+
+@pytest.mark.parametrize(
+    ("name", "others", "taken", "free"),
+    [
+        ("Charged?", "BehaviorTree Charged\n    X\n", "`Charged`: that is the tree `Charged`", "Charged_"),
+        ("a b", 'BehaviorTree "a.b"\n    X\n', "`a_b`: that is the tree `a.b`", "a_b_"),
+        ("Dock?", "Action Dock\n", "`Dock`: that is the node `Dock`", "Dock_"),
+        ("Fallback?", "", "`Fallback`: that is a node of the engine", "Fallback_"),
+    ],
+)
+@pytest.mark.parametrize("place", ["here", "included", "including"])
+def test_a_tree_whose_mended_name_is_taken_is_an_error(
+    name: str, others: str, taken: str, free: str, place: str
+) -> None:
+    text = f'Root "{name}"\nBehaviorTree "{name}"\n    Y\n'
+    files = {"main.btq": text + others}
+    if place == "included":
+        files = {"main.btq": f'include "other.btq"\n{text}', "other.btq": others or "Action X\n"}
+    elif place == "including":
+        files = {"main.btq": text, "other.btq": f'include "main.btq"\n{others}'}
+    workspace = Workspace.of(files)
+    (found,) = [each for each in check(workspace, "main.btq") if each.rule == "forbidden-name" and name in each.message]
+    assert (found.effective_severity, found.notes) == (Severity.ERROR, (f"`btq build` cannot write it as {taken}",))
+    assert found.fixes[0].title == f"Rename it to `{free}` wherever it is named"
 
 
 def test_a_forbidden_name_is_told_where_the_tree_is() -> None:

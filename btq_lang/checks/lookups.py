@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 
+from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.rules import Severity
@@ -101,6 +102,26 @@ def trees(workspace: Workspace, path: str) -> tuple[Facts, ...]:
 def trees_in_scope(workspace: Workspace, path: str) -> tuple[tuple[str, Facts], ...]:
     """All trees in scope and their files, in order."""
     return tuple([(each, tree) for each in workspace.scope(path).paths for tree in trees(workspace, each)])
+
+
+def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
+    """The names that a tree of the mission cannot have in XML, as its other trees and its nodes have them: by what is
+    written, what has it.
+
+    Args:
+        but: the tree that a name is wanted for.
+    """
+    target, mission = workspace.project.target, workspace.missions[path]
+    taken = dict.fromkeys(BUILTINS, "a node of the engine")
+    trees: dict[str, str] = {}
+    for each in sorted(other for other, of in workspace.missions.items() if of == mission):
+        for kind, name in sorted(workspace.files[each].defined_names, key=lambda one: one[1]):
+            if kind is Kind.TREE and name != but:
+                is_refused = model_name_problem(name, target) is not None
+                trees[legal_name(name) if is_refused else name] = f"the tree `{name}`"
+            elif kind is Kind.MODEL:
+                taken[name] = f"the node `{name}`"
+    return taken | trees
 
 
 def is_node_name(workspace: Workspace, path: str, name: str) -> bool:

@@ -95,16 +95,21 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
 
 
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
-    """Only a warning: a build writes the tree and all that refer to it under a legal name."""
+    """Only a warning where a build writes the tree and all that refer to it under a legal name, which must be free."""
     if view.is_xml:
         return _refused("tree", name, reason)
+    legal = legal_name(name.text)
+    taken = view.look_up(lookups.taken_names, name.text).get(legal)
+    note = f"`btq build` writes it as `{legal}`"
+    if taken is not None:
+        note = f"`btq build` cannot write it as `{legal}`: that is {taken}"
     return Diagnostic(
         "forbidden-name",
         name.span,
         f"the engine refuses the tree name `{name.text}`: {reason}",
-        notes=(f"`btq build` writes it as `{legal_name(name.text)}`",),
+        notes=(note,),
         fixes=fixes,
-        severity=Severity.WARNING,
+        severity=Severity.WARNING if taken is None else Severity.ERROR,
     )
 
 
@@ -119,7 +124,8 @@ def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
     if definition is None or not view.is_this(definition, entry):
         return ()
     legal = legal_name(name.text)
-    while view.scope.find(Kind.TREE, legal) is not None:
+    taken = view.look_up(lookups.taken_names, name.text)
+    while legal in taken:
         legal += "_"
     places = [view.place(definition)]
     places += [Place(use.use.span, use.path, use.entry.item) for use in view.workspace.references(definition)]
