@@ -275,6 +275,21 @@ def test_a_side_file_that_is_not_made_any_more_goes(btq: Btq) -> None:
     assert btq.files == ["mission.btq", "mission.qreq.json", "mission.xml"]
 
 
+def test_what_was_built_from_a_mission_that_is_gone_is_named_and_stays(btq: Btq) -> None:
+    btq.write(a="BehaviorTree A\n    Pick\n", b="BehaviorTree B\n    Pick satisfices safety\n")
+    btq.write(**{"others.xml": '<root BTCPP_format="4"/>\n'})
+    assert btq.build()[0] == 0
+    (btq.folder / "b.btq").unlink()
+    assert btq.build("--check") == (1, "left over: b.xml\nleft over: b.qreq.json\n", "")
+    assert btq.build() == (
+        0,
+        "",
+        GUESSED.format("Pick (Action)") + "left over: b.xml\nleft over: b.qreq.json\n1 file left as it is\n",
+    )
+    assert btq.files == ["a.btq", "a.xml", "b.qreq.json", "b.xml", "others.xml"]
+    assert btq.build("--check", "-o", "elsewhere")[1] == "missing: elsewhere/a.xml\n"
+
+
 def test_a_side_file_that_went_is_back_where_another_file_cannot_be_written(btq: Btq) -> None:
     btq.write(a="BehaviorTree A\n    Pick satisfices safety\n", b="BehaviorTree B\n    Pick\n")
     assert btq.build()[0] == 0

@@ -16,6 +16,7 @@ from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
+from btq_lang.commands.left_over import left_over
 from btq_lang.diagnostics import Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.record import Record, replace
@@ -136,7 +137,10 @@ def build(options: Namespace, files: Files) -> Outcome:
     for group in groups:
         for path in _missions(group) if options.bundle else _sources(group):
             outputs += _outputs(group.workspace, path, places, exports, options)
-    code = (_compare if options.check else _write)(outputs, options)
+    gone = () if options.output else left_over(os.path.dirname(path) for path in sources)
+    for path in gone:
+        print(f"left over: {shown(path)}", file=sys.stdout if options.check else sys.stderr)
+    code = _compare(outputs, bool(gone)) if options.check else _write(outputs, options)
     return Outcome(code, watched, tuple(output.path for output in outputs if output.text is not None))
 
 
@@ -335,13 +339,13 @@ def _old_text(path: str) -> str | None:
     return read(path)[0] if os.path.exists(path) else None
 
 
-def _compare(outputs: list[Output], options: Namespace) -> int:
+def _compare(outputs: list[Output], is_more_stale: bool) -> int:
     """`--check`: name the files that are not what they would be, or would not be."""
     stale = [output for output in outputs if output.text != output.old]
     for output in stale:
         state = "missing" if output.old is None else "out of date" if output.text is not None else "left over"
         print(f"{state}: {shown(output.path)}")
-    return int(bool(stale))
+    return int(bool(stale) or is_more_stale)
 
 
 def _write(outputs: list[Output], options: Namespace) -> int:
