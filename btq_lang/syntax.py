@@ -467,9 +467,12 @@ class Tree(Record):
 
     def walk(self) -> Iterator[Node]:
         """All its nodes, depth first, in document order."""
-        for child in self.children:
-            if isinstance(child, Node):
-                yield from child.walk()
+        stack = [child for child in reversed(self.children) if isinstance(child, Node)]
+        while stack:
+            node = stack.pop()
+            yield node
+            if node.children:
+                stack += [child for child in reversed(node.children) if isinstance(child, Node)]
 
 
 class Skipped(Record):

@@ -95,7 +95,10 @@ class NodeKind(Record):
 
     def port(self, name: str) -> PortKind | None:
         """Its port of that name."""
-        return next((port for port in self.ports if port.name == name), None)
+        for port in self.ports:
+            if port.name == name:
+                return port
+        return None
 
 
 @cache

@@ -215,6 +215,18 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         unreachable.unreachable_child,
     )
 )
+# Most models have no ports, and these look at nothing else of a model.
+_OF_PORTS: frozenset[Check] = frozenset(
+    (
+        ports.duplicate_port,
+        ports.misspelt_type,
+        literals.invalid_literal,
+        literals.quantity_on_unitless_port,
+        constants.number_for_text,
+        names.forbidden_name,
+    )
+)
+_OF_NAMES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS)
 
 
 class Found(Record):
@@ -249,7 +261,11 @@ def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tu
     if answers is not None:
         answers.begin(view, workspace)
     if answers is None:
-        found = [each for entry in file.parsed.entries for each in _told(view, entry, _found(view, entry), workspace)]
+        found = []
+        for entry in file.parsed.entries:
+            of_entry = [diagnostic for each in _checks_of(entry) for diagnostic in each(view, entry)]
+            if of_entry or entry.diagnostics:
+                found += _told(view, entry, of_entry, workspace)
     else:
         found = _known(view, workspace, answers)
         answers.end()
@@ -264,11 +280,6 @@ def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tu
         found = shown_on_origins(workspace, path, found)
     found = list(configured(workspace.project, found))
     return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
-
-
-def _found(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """What the checks find in an entry."""
-    return (diagnostic for each in _checks_of(entry) for diagnostic in each(view, entry))
 
 
 def _told(view: View, entry: Entry, found: Iterable[Diagnostic], workspace: Workspace) -> list[Diagnostic]:
@@ -314,8 +325,11 @@ def _kept(view: View, facts: Facts) -> Found:
 
 
 def _checks_of(entry: Entry) -> tuple[Check, ...]:
-    checks = CHECKS.get(type(entry.item), ())
-    if any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
+    item = entry.item
+    checks = CHECKS.get(type(item), ())
+    if type(item) is Model and not item.body:
+        return _OF_NAMES
+    if entry.diagnostics and any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
         checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
     return checks
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.seen import SeenNode
@@ -15,6 +16,7 @@ from btq_lang.syntax import Entry, Node, Word
 from btq_lang.text import Span
 
 _INTEGER = r"-?[0-9]{1,18}"
+_SWITCHES = tuple(tag for tag in BUILTINS if tag.startswith("Switch"))
 _THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 
 
@@ -22,15 +24,15 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
     nodes = view.nodes(entry)
     for index, seen in enumerate(nodes):
-        if seen.category is None or _is_switch_by_children(seen):
+        if seen.category is None:
+            continue
+        least, most = seen.kind.children if seen.kind is not None else CHILDREN[seen.category]
+        count = len(seen.node.children)
+        if (least <= count and (most is None or count <= most)) or _is_switch_by_children(seen):
             continue
         declared = declared_category(seen)
         if seen.kind is None and seen.node.category is not None and declared not in (None, seen.node.category.raw):
             continue  # which of the two is wrong is told first
-        least, most = seen.kind.children if seen.kind else CHILDREN[seen.category]
-        count = len(seen.node.children)
-        if least <= count and (most is None or count <= most):
-            continue
         if any(misspelt_clause(child) for child in seen.node.nodes):
             continue  # of a child that is meant for a clause, that is told
         if count == 0 and entry.diagnostics:
@@ -56,8 +58,8 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Switch whose cases and children do not match: a child for each case, and one more for the default."""
-    for seen in view.nodes(entry):
-        if seen.kind is None or not seen.kind.tag.startswith("Switch"):
+    for seen in view.seen(entry).tagged(*_SWITCHES):
+        if seen.kind is None:
             continue
         node = seen.node
         count = len(node.children)
@@ -87,9 +89,9 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
-    for seen in view.nodes(entry):
+    for seen in view.seen(entry).tagged(*_THRESHOLDS):
         count = len(seen.node.children)
-        if seen.kind is None or seen.kind.tag not in _THRESHOLDS or count == 0:
+        if seen.kind is None or count == 0:
             continue  # without a child, that is what is told
         for port in _THRESHOLDS[seen.kind.tag]:
             value = seen.node.attribute(port)

@@ -33,7 +33,7 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
 def _operands(view: View, entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
-        clauses = (item.clauses, *(seen.node.clauses for seen in view.nodes(entry) if seen.node.clauses))
+        clauses = (item.clauses, *[seen.node.clauses for seen in view.seen(entry).demanding])
         roots: Iterable[Requirement | ReqRef | Context] = (
             requirement for each in clauses for requirement in requirements_at(each)
         )

@@ -21,11 +21,11 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
     if not at_least(view.project.target, _TYPED_SINCE):
         return
-    for seen in view.nodes(entry):
-        if not seen.is_subtree or seen.node.id is None:
+    for seen in view.seen(entry).subtrees:
+        if seen.id is None:
             continue
         for pair in seen.node.attributes:
-            met = _text_below(view, seen.node.id, pair.key, pair.value)
+            met = _text_below(view, seen.id, pair.key, pair.value)
             if met is not None and pair.value is not None:
                 yield _told(pair.value, met, None)
     for tree, port in _ports_of_trees(entry):

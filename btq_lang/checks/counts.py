@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
-    for seen in view.nodes(entry):
-        if seen.kind is None or seen.kind.tag not in _PORTS:
+    for seen in view.seen(entry).tagged(*_PORTS):
+        if seen.kind is None:
             continue
         value = seen.node.attribute(_PORTS[seen.kind.tag])
         number = _number(value) if value is not None else None

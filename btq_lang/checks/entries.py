@@ -60,7 +60,7 @@ def blackboards(view: View) -> Blackboards:
 
 
 def _mentions(view: View, tree: Facts) -> Iterator[Mention]:
-    for seen in view.nodes_of(tree):
+    for seen in view.seen_in(tree).given:
         for pair in seen.node.attributes:
             value = pair.value
             if value is None:
@@ -187,10 +187,10 @@ def _handling(view: View, tree: str) -> Handling:
     declared = model.symbol.target.ports if model is not None and isinstance(model.symbol.target, Model) else ()
     gives: list[tuple[str, str, str]] = []
     shares: list[tuple[str, frozenset[str]]] = []
-    for seen in view.nodes_of(facts):
-        if not seen.is_subtree or seen.node.id is None:
+    for seen in view.seen_in(facts).subtrees:
+        if seen.id is None:
             continue
-        below = seen.node.id.text
+        below = seen.id.text
         for pair in seen.node.attributes:
             name = pointed_at(pair.key.text, pair.value.text) if pair.value is not None else None
             if name is not None:

@@ -14,7 +14,6 @@ from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance
-from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
@@ -39,10 +38,8 @@ CHILDREN: dict[str, tuple[int, int | None]] = {
 def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A kind that nobody knows: where a palette of models is in scope, or where a known name is so near that this must
     be a slip.  Without a palette any other name is a custom node that the robot's program registers."""
-    for seen in view.nodes(entry):
-        name = seen.node.id
-        if seen.is_subtree or seen.kind or seen.definition:
-            continue
+    for seen in view.seen(entry).strangers:
+        name = seen.id
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
             if not is_torn(entry, seen):
@@ -65,11 +62,14 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A word of the published language, or of an older engine, that no engine of today registers."""
     for seen in view.nodes(entry):
-        name = seen.node.id
+        name = seen.id
         if name is None or seen.definition or seen.is_subtree:
             continue
-        message = f"`{name.text}` is no node of the engine"
-        known = KNOWN_WORDS.get(name.text)
+        text = name.text
+        if seen.kind is not None and seen.kind.tag == text:
+            continue
+        message = f"`{text}` is no node of the engine"
+        known = KNOWN_WORDS.get(text)
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
             notes = (known.why, *_way_in(view, known))
@@ -83,15 +83,16 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A built-in that a version which the project is for does not have."""
     project = view.project
-    for seen in view.nodes(entry):
-        if seen.kind is None or seen.node.id is None:
-            continue
-        missing = [version for version in project.engines if not available(seen.kind, version)]
-        if missing:
+    for tagged in view.seen(entry).by_tag.values():
+        kind = tagged[0].kind
+        missing = [version for version in project.engines if kind is not None and not available(kind, version)]
+        for seen in tagged if missing else ():
+            if seen.kind is None or seen.id is None:
+                continue
             pin = f'if that is what you run, say `engine = "{project.target}"` in btq.toml'
             yield Diagnostic(
                 "newer-engine-node",
-                seen.node.id.span,
+                seen.id.span,
                 f"`{seen.kind.tag}` came with BehaviorTree.CPP {seen.kind.since}; {missing[0]} does not have it",
                 notes=() if project.pinned else (pin,),
                 severity=None if project.pinned else Severity.WARNING,
@@ -122,14 +123,14 @@ def _given_ports_in(view: View, tree: Facts) -> tuple[str, ...]:
 
 
 def _gives_ports(seen: SeenNode) -> bool:
-    if seen.kind is not None or seen.is_subtree or seen.node.id is None or is_placeholder(seen.node):
+    if seen.kind is not None or seen.is_subtree or seen.id is None or seen.is_placeholder:
         return False
     return any(is_port_name(pair.key.text) for pair in seen.node.attributes)
 
 
 def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`Condition MoveBase` where MoveBase is an action."""
-    for seen in view.nodes(entry):
+    for seen in view.seen(entry).categorized:
         category = declared_category(seen)
         written_as = seen.node.category
         if written_as is None or category is None or category == written_as.raw:
@@ -146,16 +147,18 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node called `keeps`."""
-    for seen in view.nodes(entry):
+    nodes = view.seen(entry)
+    for seen in nodes.given:
         for pair in seen.node.attributes:
             if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
                 message = f"`{pair.key.raw} =` is a port of {seen.shown} here"
                 note = f"what a node {pair.key.raw} stands behind the word: `{pair.key.raw} {pair.value.raw}`"
                 fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
                 yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
+    for seen in nodes.strangers:  # no built-in is called so
         name = seen.node.kind
         meant = misspelt_clause(seen.node)
-        if name is None or not (meant or _is_clause(seen)) or seen.definition:
+        if name is None or not (meant or _is_clause(seen)):
             continue
         if any(problem.span.start == name.start for problem in entry.diagnostics):
             continue  # the parser has said so already

@@ -13,7 +13,6 @@ from btq_lang.checks.kinds import written
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
-from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
 from btq_lang.rules import Severity
@@ -125,8 +124,8 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
             continue
         if (target := _declared(port, False)) is not None:
             yield target, value
-    for seen in view.nodes(entry):
-        if not seen.node.attributes or is_placeholder(seen.node):
+    for seen in view.seen(entry).given:
+        if seen.is_placeholder:
             continue
         for pair in seen.node.attributes:
             value = pair.value

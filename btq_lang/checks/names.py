@@ -11,7 +11,6 @@ from btq_lang.checks.kinds import likely_category, written
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.placeholders import is_placeholder
 from btq_lang.record import replace
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
@@ -31,7 +30,11 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(view, item.name, reason, _renamed(view, entry, item.name))
         for seen in view.nodes(entry):
-            yield from _of_node(view, entry, seen, version)
+            name, label = seen.id, seen.node.name
+            if name is not None and (reason := model_name_problem(name.text, version)):
+                yield from _of_id(view, seen, name, reason)
+            if label is not None:
+                yield from _of_instance(view, entry, seen, label, version)
     elif isinstance(item, Model | Models):
         for model in (item,) if isinstance(item, Model) else item.models:
             if not isinstance(model, Model) or model.category.raw != "SubTree":
@@ -49,9 +52,9 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if name is None or (name.text == "" and not seen.is_subtree):
             continue
         text = name.text
-        if seen.node.id is not None and text == seen.node.id.text and not seen.is_subtree:
+        if seen.id is not None and text == seen.id.text and not seen.is_subtree:
             continue  # the engine tells such nodes apart by their number
-        if is_placeholder(seen.node) and legal_name(text) == text:
+        if seen.is_placeholder and legal_name(text) == text:
             continue  # the name becomes the ID, and no instance name is left
         other = first.setdefault((seen.is_subtree, text), name)
         if other is name:
@@ -67,18 +70,17 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related)
 
 
-def _of_node(view: View, entry: Entry, seen: SeenNode, version: str) -> Iterator[Diagnostic]:
-    name = seen.node.id
-    label = seen.node.name
-    if name is not None and (reason := model_name_problem(name.text, version)):
-        if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
-            yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
-        elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
-            yield _refused("node", name, reason, _explicit(seen, name))
-    if label is not None and (reason := instance_name_problem(label.text, version)):
+def _of_id(view: View, seen: SeenNode, name: Word, reason: str) -> Iterator[Diagnostic]:
+    if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
+        yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
+    elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
+        yield _refused("node", name, reason, _explicit(seen, name))
+
+
+def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:
+    if reason := instance_name_problem(label.text, version):
         yield _refused("instance", label, reason)
-    is_empty = label is not None and label.text == ""
-    if label is not None and is_empty and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
+    if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
         refused = _refused("instance", label, "it is empty, as that of the main tree is")
         note = "`btq build` leaves it out"
         yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))

@@ -11,7 +11,6 @@ from btq_lang.checks import lookups
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
 from btq_lang.workspace import Facts
@@ -56,12 +55,13 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
     """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
     keep whatever they are given."""
-    return _outputs_in(view, view.nodes(entry))
+    return _outputs_in(view, view.seen(entry).given)
 
 
 def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNode, Pair, str]]:
+    """nodes: those with attributes."""
     for seen in nodes:
-        if not seen.node.attributes or is_placeholder(seen.node):
+        if seen.is_placeholder:
             continue
         types = _types(view, seen)
         for pair in seen.node.attributes if types else ():
@@ -88,7 +88,7 @@ def _first_with_value(view: View) -> Facts | None:
 
 def _counts(view: View, tree: Facts) -> tuple[int, int]:
     """How many outputs a tree gives something to, and how many of them a value."""
-    given = [pair.value for _, pair, _ in _outputs_in(view, view.nodes_of(tree)) if pair.value is not None]
+    given = [pair.value for _, pair, _ in _outputs_in(view, view.seen_in(tree).given) if pair.value is not None]
     return len(given), sum(map(_is_literal, given))
 
 

@@ -29,8 +29,8 @@ _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERBS | {"xml"}
 
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A placeholder, with the same in the short form."""
-    for seen in view.nodes(entry):
-        if not is_placeholder(seen.node) or seen.node.name is None or seen.node.kind is None:
+    for seen in view.seen(entry).placeholders:
+        if seen.node.name is None or seen.node.kind is None:
             continue
         name = _id_of(seen.node.name.text)
         if _taken(view, name) is not None:
@@ -47,9 +47,9 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that becomes an ID which another name has become already, or which is taken."""
-    for seen in view.nodes(entry):
+    for seen in view.seen(entry).placeholders:
         name = seen.node.name
-        if name is None or not is_placeholder(seen.node):
+        if name is None:
             continue
         legal = _id_of(name.text)
         taken = _taken(view, legal)

@@ -14,7 +14,6 @@ from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance, near
-from btq_lang.placeholders import is_placeholder
 from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
@@ -26,16 +25,14 @@ _OWN = frozenset(("ID", "name"))
 
 def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree behind a SubTree does not have."""
-    for seen in view.nodes(entry):
-        if not seen.node.attributes:
-            continue
+    for seen in view.seen(entry).given:
         yield from _forbidden_id(seen)
-        known = _ports(view, seen)
-        if known is None:
+        ports = _ports(view, seen)
+        if ports is None or not (meant := _meant(seen, ports)):
             continue
-        meant = _meant(seen, known)
-        names = ", ".join(f"`{port.name}`" for port in known) if meant else ""
-        required = {port.name for port in known if port.required}
+        known = ports.all
+        names = ", ".join(f"`{port.name}`" for port in known)
+        required = {port.name for port in ports.required}
         for key, likely in meant.items():
             # The engine takes any port of a SubTree, and a model without ports is often one that nobody finished.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
@@ -56,16 +53,16 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port without a value: one the engine asks for, or an input without default of a model."""
     for seen in view.nodes(entry):
-        known = _ports(view, seen) or ()
-        if not any(port.required for port in known):
+        ports = _ports(view, seen)
+        if ports is None or not ports.required:
             continue
         given = {pair.key.text for pair in seen.node.attributes}
         if seen.is_subtree:  # the engine gives a tree only what it takes for ports
             given = set(filter(is_port_name, given))
-        missing = [port for port in known if port.required and port.name not in given]
+        missing = [port for port in ports.required if port.name not in given]
         if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(entry, seen):
             continue  # a value may be what could not be read
-        slips = {likely[0] for likely in _meant(seen, known).values() if likely}  # told as unknown, with a fix
+        slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # told as unknown, with a fix
         missing = [port for port in missing if port.name not in slips]
         if not missing:
             continue
@@ -94,7 +91,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if kind is not None and kind.is_script:
                 message = f"`{pair.key.text}` does nothing on a BehaviorTree: put it on the tree's node"
                 yield Diagnostic("unknown-attribute", pair.key.span, message)
-    for seen in view.nodes(entry):
+    for seen in view.seen(entry).given:
         for pair in seen.node.attributes:
             key = pair.key.text
             if is_port_name(key) or key in _OWN or key in _KEPT:
@@ -116,7 +113,10 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two values for one attribute: the first counts."""
-    for pairs, said_before in _attribute_lists(entry):
+    for pairs, said_before in _attribute_lists(view, entry):
+        keys = {pair.key.text for pair in pairs}
+        if len(keys) == len(pairs) and keys.isdisjoint(said_before):
+            continue
         first: dict[str, Word | Pair] = {key: word for key, word in said_before.items() if word is not None}
         for pair in pairs:
             key = pair.key.text
@@ -177,14 +177,26 @@ class KnownPort(Record):
     doc: str
 
 
-def _ports(view: View, seen: SeenNode) -> tuple[KnownPort, ...] | None:
+class KnownPorts:
+    """The ports that a node has, its names and those that need a value."""
+
+    __slots__ = ("all", "names", "required")
+
+    def __init__(self, ports: tuple[KnownPort, ...]) -> None:
+        self.all = ports
+        self.names = frozenset([port.name for port in ports])
+        self.required = tuple([port for port in ports if port.required])
+
+
+def _ports(view: View, seen: SeenNode) -> KnownPorts | None:
     """The ports a node has; None where nobody knows."""
-    if is_placeholder(seen.node):
+    if seen.is_placeholder:
         return None
     if seen.is_subtree:
         # The engine reads `default = ""` as none, and asks for outputs, too.
         declared = subtree_ports(view, seen)
-        return tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared) or None
+        ports = tuple(_declared_port(port, not (port.default and port.default.text)) for port in declared)
+        return KnownPorts(ports) if ports else None
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag)
     if seen.model is not None:
@@ -192,19 +204,23 @@ def _ports(view: View, seen: SeenNode) -> tuple[KnownPort, ...] | None:
     return None
 
 
-def _model_ports(view: View, model: Model) -> tuple[KnownPort, ...]:
+def _model_ports(view: View, model: Model) -> KnownPorts:
     known = view.model_ports.get(id(model))
     if known is None:
-        known = view.model_ports[id(model)] = tuple(
-            _declared_port(port, port.direction.raw == "input" and port.default is None) for port in model.ports
+        known = view.model_ports[id(model)] = KnownPorts(
+            tuple(
+                [_declared_port(port, port.direction.raw == "input" and port.default is None) for port in model.ports]
+            )
         )
     return known
 
 
 @cache
-def _builtin_ports(tag: str) -> tuple[KnownPort, ...]:
+def _builtin_ports(tag: str) -> KnownPorts:
     ports = BUILTINS[tag].ports
-    return tuple(KnownPort(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
+    return KnownPorts(
+        tuple(KnownPort(port.name, port.required, f"{port.doc[0].lower()}{port.doc[1:]}") for port in ports)
+    )
 
 
 def _declared_port(port: Port, required: bool) -> KnownPort:
@@ -212,13 +228,14 @@ def _declared_port(port: Port, required: bool) -> KnownPort:
     return KnownPort(name.text if name else "", required and name is not None, port.text.text if port.text else "")
 
 
-def _meant(seen: SeenNode, known: tuple[KnownPort, ...]) -> dict[Word, tuple[str, ...]]:
+def _meant(seen: SeenNode, ports: KnownPorts) -> dict[Word, tuple[str, ...]]:
     """The keys that are no port, each with the ports that may be meant: none that has a value."""
-    names = {port.name for port in known}
-    given = {pair.key.text for pair in seen.node.attributes}
-    if given <= names:
+    names = ports.names
+    given = [pair.key.text for pair in seen.node.attributes]
+    if names.issuperset(given):
         return {}
-    free = [port for port in known if port.name not in given]
+    has_value = set(given)
+    free = [port for port in ports.all if port.name not in has_value]
     found: dict[Word, tuple[str, ...]] = {}
     for pair in seen.node.attributes:
         key = pair.key.text
@@ -279,7 +296,7 @@ def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPor
     return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 
-def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
+def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str, Word | None]]]:
     """Every list of attributes in an item, with what stands before the brackets and says an attribute, too."""
     item = entry.item
     if isinstance(item, Tree):
@@ -287,8 +304,9 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
         for port in item.ports:
             if port.attributes:
                 yield port.attributes, _said(port)
-        for node in item.walk():
-            if len(node.attributes) > 1 or (node.attributes and (node.label or node.category)):
+        for seen in view.seen(entry).given:
+            node = seen.node
+            if len(node.attributes) > 1 or node.label is not None or node.category is not None:
                 yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
     elif isinstance(item, Include):
         yield item.attributes, {"path": item.path}
@@ -296,7 +314,7 @@ def _attribute_lists(entry: Entry) -> Iterator[tuple[tuple[Pair, ...], dict[str,
         yield item.attributes, {"main_tree_to_execute": item.name}
     elif isinstance(item, Model | Models):
         for model in (item,) if isinstance(item, Model) else item.models:
-            if isinstance(model, Model):
+            if isinstance(model, Model) and (model.attributes or model.body):
                 yield model.attributes, {"ID": model.name}
                 for part in model.body:
                     if isinstance(part, Port) and part.attributes:

@@ -10,15 +10,16 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_xml_name, model_name_problem
+from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.results import result
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
-from btq_lang.placeholders import is_placeholder
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word, quote
 
+_REACTIVE = tuple(tag for tag, kind in BUILTINS.items() if kind.reactive)
 _SEQUENCES = frozenset(("Sequence", "AsyncSequence", "SequenceWithMemory"))  # a reactive one asks at every tick itself
 _APART = "put it in a Sequence of its own"
 _BEGIN_WITH_A_CHILD = _SEQUENCES | {"Inverter"}
@@ -27,8 +28,8 @@ _BEGIN_WITH_A_CHILD = _SEQUENCES | {"Inverter"}
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child of a reactive node that runs behind another one that runs: a warning where the other one certainly takes
     more than a tick, a hint where it does if a custom action does."""
-    for seen in view.nodes(entry):
-        if seen.kind is None or not seen.kind.reactive:
+    for seen in view.seen(entry).tagged(*_REACTIVE):
+        if seen.kind is None:
             continue
         refused = _second_async_sequence(seen, view.project.target)
         if refused is not None:
@@ -54,10 +55,11 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
     target = view.project.target
-    if not at_least(target, "4.8"):
+    nodes = view.seen(entry)
+    if "ReactiveSequence" not in nodes.by_tag or not at_least(target, "4.8"):
         return
-    for seen in view.nodes(entry):
-        parent, category, name = seen.parent, seen.node.category, seen.node.id
+    for seen in nodes.all:
+        parent, category, name = seen.parent, seen.node.category, seen.id
         if parent is None or parent.kind is None or parent.kind.tag != "ReactiveSequence" or seen.is_subtree:
             continue
         is_forbidden = name is not None and model_name_problem(name.text, target) is not None
@@ -69,7 +71,7 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
             note = f"`Unknown node type: {category.raw}`, it says, and means the tag: {shown if can_be_tag else _APART}"
             message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
             yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
-        elif name is None or can_be_tag or seen.kind is not None or is_placeholder(seen.node):
+        elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
             continue
         elif category is not None or not is_forbidden:  # else forbidden-name tells it
             message = f"the engine refuses `{name.text}` directly below a ReactiveSequence"
@@ -79,11 +81,12 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
-    if not view.is_main(entry):
+    choices = view.seen(entry).tagged("Fallback", "AsyncFallback")
+    if not choices or not view.is_main(entry):
         return
     nodes = {id(seen.node): seen for seen in view.nodes(entry)}
-    for seen in nodes.values():
-        if seen.kind is None or seen.kind.tag not in ("Fallback", "AsyncFallback") or not _is_at_the_top(seen):
+    for seen in choices:
+        if not _is_at_the_top(seen):
             continue
         guard: SeenNode | None = None
         for child in seen.node.nodes:

@@ -48,7 +48,7 @@ def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
             named = [_Named(shape(part), span) for part, span in zip(elements, spans, strict=True)]
             yield from _repeated(view, entry, named)
     elif isinstance(item, Tree):
-        for clauses in (item.clauses, *(node.clauses for node in item.walk() if node.clauses)):
+        for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen(entry).demanding]):
             if _names_several(clauses) and not any(
                 clauses[0].start <= each.span.start <= clauses[-1].end for each in entry.diagnostics
             ):

@@ -10,7 +10,6 @@ from __future__ import annotations
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import is_circular
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
-from btq_lang.placeholders import is_placeholder
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Node, Tree
@@ -67,9 +66,9 @@ def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
 def _of_node(view: View, tree: str, seen: SeenNode, known: dict[int, Results]) -> Results:
     found = _UNKNOWN
     if seen.is_subtree:
-        called = seen.node.id.text if seen.node.id is not None else ""
+        called = seen.id.text if seen.id is not None else ""
         found = _UNKNOWN if view.ask(is_circular, tree, called) else view.ask(_of_tree, called)
-    elif seen.kind is not None and not is_placeholder(seen.node):
+    elif seen.kind is not None and not seen.is_placeholder:
         children = tuple([known.get(id(child), _UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind.tag, seen.node, children)
     elif not seen.node.children:

@@ -1,7 +1,7 @@
-"""A node as checks see it.
+"""A node as checks see it, and the nodes of a tree, sorted by what checks look for.
 
-One invariant: it is a plain class, so that it may be compiled (hatch_build.py): a file has as many as it has nodes, and
-nearly every check looks at each.
+One invariant: these are plain classes, so that they may be compiled (hatch_build.py): a file has as many nodes as it
+has, and nearly every check would look at each.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.kinds import NodeKind
-from btq_lang.syntax import Model, Node, Tree
+from btq_lang.placeholders import is_placeholder
+from btq_lang.syntax import Model, Node, Tree, Word
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -28,11 +29,26 @@ class SeenNode:
         definition: where its model stands, where one is in scope.
         model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
-        is_subtree: whether that is SubTree.
+        id: that of the node, which is looked for in its attributes where it has no kind.
+        is_subtree: whether the category is SubTree.
+        is_placeholder: it stands for a skill, see placeholders.py.
         asked: the name that a model was looked for by; nothing where none was.
     """
 
-    __slots__ = ("asked", "category", "definition", "index", "is_subtree", "kind", "model", "node", "parent", "tree")
+    __slots__ = (
+        "asked",
+        "category",
+        "definition",
+        "id",
+        "index",
+        "is_placeholder",
+        "is_subtree",
+        "kind",
+        "model",
+        "node",
+        "parent",
+        "tree",
+    )
 
     def __init__(
         self,
@@ -45,6 +61,7 @@ class SeenNode:
         model: Model | None,
         category: str | None,
         asked: str,
+        id: Word | None,
     ) -> None:
         self.node: Final = node
         self.tree: Final = tree
@@ -54,7 +71,9 @@ class SeenNode:
         self.definition: Final = definition
         self.model: Final = model
         self.category: Final = category
+        self.id: Final = id
         self.is_subtree: Final = category == "SubTree"
+        self.is_placeholder: Final = is_placeholder(node)
         self.asked: Final = asked
 
     @property
@@ -68,3 +87,58 @@ class SeenNode:
         while above is not None:
             yield above
             above = above.parent
+
+
+class SeenNodes:
+    """The nodes of a tree, each list of them depth first, in document order.
+
+    Attributes:
+        all: all of them.
+        given: those with attributes.
+        marked: those with attributes that are no port by their first letter, as `_while`.
+        demanding: those with clauses.
+        categorized: those whose category is written.
+        subtrees: those that run another tree.
+        placeholders: those that stand for a skill.
+        strangers: those that are neither a built-in nor a SubTree, and have no model.
+        by_tag: the built-ins, by their tag.
+    """
+
+    __slots__ = (
+        "all",
+        "by_tag",
+        "categorized",
+        "demanding",
+        "given",
+        "marked",
+        "placeholders",
+        "strangers",
+        "subtrees",
+    )
+
+    def __init__(self, nodes: tuple[SeenNode, ...]) -> None:
+        self.all: Final = nodes
+        self.given: Final = [seen for seen in nodes if seen.node.attributes]
+        self.marked: Final = [seen for seen in self.given if _is_marked(seen.node)]
+        self.demanding: Final = [seen for seen in nodes if seen.node.clauses]
+        self.categorized: Final = [seen for seen in nodes if seen.node.category is not None]
+        self.subtrees: Final = [seen for seen in nodes if seen.is_subtree]
+        self.placeholders: Final = [seen for seen in nodes if seen.is_placeholder]
+        self.strangers: Final = [
+            seen for seen in nodes if seen.kind is None and seen.definition is None and not seen.is_subtree
+        ]
+        self.by_tag: Final[dict[str, list[SeenNode]]] = {}
+        for seen in nodes:
+            if seen.kind is not None:
+                self.by_tag.setdefault(seen.kind.tag, []).append(seen)
+
+    def tagged(self, *tags: str) -> list[SeenNode]:
+        """The built-ins with one of these tags, tag by tag."""
+        return [seen for tag in tags for seen in self.by_tag.get(tag, ())]
+
+
+def _is_marked(node: Node) -> bool:
+    return any(not pair.key.raw[:1].isalpha() for pair in node.attributes)
+
+
+NO_NODES: Final = SeenNodes(())

@@ -21,10 +21,10 @@ _LAST_WINS = "the engine does not complain: it runs the last one it reads"
 
 def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
-    for seen in view.nodes(entry):
+    for seen in view.seen(entry).subtrees:
         word = seen.node.category
-        is_nameless = seen.node.id is None or seen.node.id.text == ""
-        if seen.is_subtree and word is not None and is_nameless and not is_torn(entry, seen):
+        is_nameless = seen.id is None or seen.id.text == ""
+        if word is not None and is_nameless and not is_torn(entry, seen):
             yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
     for use in view.uses(entry, Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name):

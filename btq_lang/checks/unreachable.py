@@ -29,7 +29,7 @@ _BY_CONDITION = frozenset(("IfThenElse", "WhileDoElse"))
 def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child that can never run; told once for all those behind one place."""
     for seen in view.nodes(entry):
-        if seen.kind is None or len(seen.node.children) < 2:
+        if len(seen.node.children) < 2 or seen.kind is None:
             continue
         tag = seen.kind.tag
         if tag in _GOES_ON:

@@ -13,7 +13,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spel
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
-from btq_lang.checks.seen import SeenNode
+from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
 from btq_lang.near import near
 from btq_lang.symbols import Kind, Summary, Use
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.answers import Answers
     from btq_lang.checks.entries import Mention
-    from btq_lang.checks.ports import KnownPort
+    from btq_lang.checks.ports import KnownPorts
     from btq_lang.constraints import Constraint
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements import Memory, Requirements
@@ -71,9 +71,9 @@ class View:
         self.is_xml = self._file.origin is not None
         self._scope = workspace.scope(path)
         self.scope: Scope = self._scope if answers is None else NotingScope(self._scope, answers)
-        self._nodes: dict[int, tuple[SeenNode, ...]] = {}
+        self._nodes: dict[int, SeenNodes] = {}
         self._scripts: dict[str, Script] = {}
-        self.model_ports: dict[int, tuple[KnownPort, ...]] = {}
+        self.model_ports: dict[int, KnownPorts] = {}
         self._in_order: set[Callable[[View, str], object]] = set()
 
     # ---- what is asked, and noted ----
@@ -166,12 +166,20 @@ class View:
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
+        return self.seen(entry).all
+
+    def seen(self, entry: Entry) -> SeenNodes:
+        """The same, and those among them that only some checks look for."""
         if self._answers is None and (known := self._nodes.get(id(entry.item))) is not None:
             return known
-        return self.nodes_of(self.facts(entry)) if isinstance(entry.item, Tree) else ()
+        return self.seen_in(self.facts(entry)) if isinstance(entry.item, Tree) else NO_NODES
 
     def nodes_of(self, tree: Facts) -> tuple[SeenNode, ...]:
-        """The same, of a tree of any file in scope."""
+        """The nodes of a tree of any file in scope."""
+        return self.seen_in(tree).all
+
+    def seen_in(self, tree: Facts) -> SeenNodes:
+        """The same, sorted."""
         if self._answers is not None:
             return self.ask(_seen_nodes, tree)
         known = self._nodes.get(id(tree.item))
@@ -401,7 +409,7 @@ class View:
             category = kind.category
         elif category is None and model is not None:
             category = model.category.raw
-        return SeenNode(node, tree, parent, index, kind, definition, model, category, asked)
+        return SeenNode(node, tree, parent, index, kind, definition, model, category, asked, name)
 
     def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
         """The names that a file included here and one included before it both define, each with the definition that
@@ -515,8 +523,8 @@ def called(node: Node) -> str:
     return f"`{node.head.text}`" if name is None or name.text == node.head.text else f"`{node.head.text} {name.text}`"
 
 
-def _seen_nodes(view: View, facts: Facts) -> tuple[SeenNode, ...]:
-    return tuple(view._seen(facts.item)) if isinstance(facts.item, Tree) else ()
+def _seen_nodes(view: View, facts: Facts) -> SeenNodes:
+    return SeenNodes(tuple(view._seen(facts.item))) if isinstance(facts.item, Tree) else NO_NODES
 
 
 def _has_trees(view: View) -> bool:
