@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from enum import Enum
 
-from btq_lang.record import Record
+from btq_lang.record import Record, fields_of
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -31,7 +31,6 @@ from btq_lang.syntax import (
     Tree,
     Word,
     shape,
-    walk,
 )
 from btq_lang.text import Span
 from btq_lang.tokens import NAME
@@ -147,7 +146,17 @@ def _asked_by(requirement: Requirement) -> frozenset[str]:
 
 def _words_in(part: object) -> frozenset[str]:
     """Each name, and of `a-b`, which may be meant as a subtraction, both sides, too."""
-    names = [word.text for word in walk(part) if isinstance(word, Word) and word.kind == NAME]
+    names: list[str] = []
+    waiting = [part]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Word):
+            if part.kind == NAME:
+                names.append(part.text)
+        elif isinstance(part, tuple):
+            waiting += part
+        elif part is not None and not isinstance(part, str | int):
+            waiting += [getattr(part, field) for field in fields_of(part)]
     return frozenset([*names, *(side for name in names if "-" in name for side in name.split("-"))])
 
 

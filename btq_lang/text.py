@@ -102,7 +102,7 @@ class LineIndex:
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._starts = [0, *(end.end() for end in LINE_END.finditer(text))]
+        self._starts = [0, *[end.end() for end in LINE_END.finditer(text)]]
 
     def edited(self, text: str, change: Span | None = None) -> LineIndex:
         """The index of the text after an edit; the lines before and behind the change are not looked for again.

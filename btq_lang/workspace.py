@@ -519,8 +519,12 @@ class Scope:
         return names
 
     def _look_up(self, kind: Kind, name: str) -> tuple[Definition, ...]:
-        known = [file.definitions(kind, name) for file in self._files if (kind, name) in file.names.found]
-        found = self._found[kind, name] = known[0] if len(known) == 1 else tuple(chain(*known))
+        key = kind, name
+        found: tuple[Definition, ...] = ()
+        for file in self._files:
+            if key in file.names.found:
+                found += file.definitions(kind, name)
+        self._found[key] = found
         return found
 
 

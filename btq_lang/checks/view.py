@@ -32,7 +32,7 @@ from btq_lang.workspace import Definition, Facts, File, Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
+    from typing import Any, Final, TypeVar
 
     from btq_lang.checks.answers import Answers
     from btq_lang.checks.entries import Mention
@@ -44,6 +44,9 @@ if TYPE_CHECKING:
     from btq_lang.script import Script
 
     T = TypeVar("T")
+
+
+_UNKNOWN: Final = object()  # None is an answer, too
 
 
 class View:
@@ -83,18 +86,20 @@ class View:
         question = (what, *about)
         if self._answers is not None:
             return self._answers.conclude(self, question)  # type: ignore[no-any-return]  # it is what `what` returns
-        if question not in self._given:
-            self._given[question] = what(self, *about)
-        return self._given[question]  # type: ignore[no-any-return]  # as above
+        known = self._given.get(question, _UNKNOWN)
+        if known is _UNKNOWN:
+            known = self._given[question] = what(self, *about)
+        return known  # type: ignore[no-any-return]  # as above
 
     def look_up(self, what: Callable[..., T], *about: object) -> T:
         """What `what(workspace, path, *about)` says, which reads the files and asks nothing."""
         question = (what, *about)
         if self._answers is not None:
             return self._answers.look_up(question, of_name=False)  # type: ignore[no-any-return]  # as above
-        if question not in self._given:
-            self._given[question] = what(self._workspace, self.path, *about)
-        return self._given[question]  # type: ignore[no-any-return]  # as above
+        known = self._given.get(question, _UNKNOWN)
+        if known is _UNKNOWN:
+            known = self._given[question] = what(self._workspace, self.path, *about)
+        return known  # type: ignore[no-any-return]  # as above
 
     def look_up_name(self, what: Callable[..., T], kind: Kind, name: str) -> T:
         """The same, of what says nothing but what the items are that define a name."""
@@ -397,12 +402,13 @@ class View:
         definition: Definition | None = None
         asked = ""
         if name is not None and category != "SubTree":
-            kind = lookup(name.text, name.quoted, len(node.nodes))
+            text = name.text
+            kind = lookup(text, name.quoted, len(node.nodes) if node.children else 0)
             if kind is None:
-                asked = name.text
+                asked = text
                 definition = self.scope.find(Kind.MODEL, asked)
-            if kind is None and definition is None and not name.quoted and name.text in KNOWN_WORDS:
-                kind = BUILTINS.get(KNOWN_WORDS[name.text].replacement or "")
+                if definition is None and not name.quoted and text in KNOWN_WORDS:
+                    kind = BUILTINS.get(KNOWN_WORDS[text].replacement or "")
         target = definition.symbol.target if definition is not None else None
         model = target if isinstance(target, Model) else None
         if category is None and kind is not None:

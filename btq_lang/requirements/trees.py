@@ -6,12 +6,18 @@ does not know other trees.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
-from btq_lang.catalog.nodes import KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax import Node, NodeClause, Satisfices, Tags, Tree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+_TIMEOUT: Final = BUILTINS["Timeout"]
 
 
 class TreeNodes:
@@ -54,9 +60,9 @@ class TreeNodes:
         self.qualities: dict[int, str] = {}
         self._by_name: dict[str, list[SourceNode]] | None = None
         self.all = tuple(self._read(categories))
-        subtrees = [node for node in self.all if node.category == "SubTree"]
-        self.calls = tuple([(node.node.id.text, node) for node in subtrees if node.node.id is not None])
-        self.timeouts = tuple([node for node in self.all if node.tag == "Timeout"])
+        subtrees = [(node.node.id, node) for node in self.all if node.category == "SubTree"]
+        self.calls = tuple([(called.text, node) for called, node in subtrees if called is not None])
+        self.timeouts = tuple([node for node in self.all if node.kind is _TIMEOUT])
         self.called = tuple([name for name, _ in self.calls])
         for node in self.all:
             if node.node.clauses:
@@ -89,8 +95,9 @@ class TreeNodes:
                     for requirement in quality.requirements:
                         self.qualities[id(requirement)] = ".".join(name.text for name in quality.path.names)
 
-    def _read(self, categories: Mapping[str, str]) -> Iterator[SourceNode]:
+    def _read(self, categories: Mapping[str, str]) -> list[SourceNode]:
         path, item, tree = self.path, self.item, self.name
+        nodes: list[SourceNode] = []
         waiting: list[tuple[Node, SourceNode | None, int]] = []
         waiting += [(child, None, at) for at, child in enumerate(item.children) if isinstance(child, Node)]
         waiting.reverse()
@@ -100,11 +107,12 @@ class TreeNodes:
             found = SourceNode(node, path, item, tree, parent, index, kind, category)
             if parent is not None:
                 parent.children.append(found)
-            yield found
+            nodes.append(found)
             if node.children:
                 children = [(child, found, at) for at, child in enumerate(node.children) if isinstance(child, Node)]
                 children.reverse()
                 waiting += children
+        return nodes
 
     def _kind(self, node: Node, categories: Mapping[str, str]) -> tuple[NodeKind | None, str | None]:
         """The built-in that a node is, and its category."""
@@ -115,7 +123,7 @@ class TreeNodes:
         if is_placeholder(node):
             return None, PLACEHOLDERS[name.raw]
         text = name.text
-        kind = lookup(text, name.quoted, len(node.nodes))
+        kind = lookup(text, name.quoted, len(node.nodes) if node.children else 0)
         if kind is not None:
             return kind, category or kind.category
         if category is None:
