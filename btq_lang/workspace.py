@@ -373,9 +373,18 @@ class File:
         return (name in self.text or not _ESCAPED.isdisjoint(name)) and (kind, name) in self.defined_names
 
     @cached_property
+    def problems(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with its syntax; spans count from the items."""
+        found: tuple[Diagnostic, ...] = ()
+        for entry in self.parsed.entries:
+            if entry.diagnostics:
+                found += entry.diagnostics
+        return found
+
+    @cached_property
     def is_swallowed(self) -> bool:
         """Whether a forgotten quote may have made text of what declares names."""
-        return any(problem.rule in _SWALLOWING for entry in self.parsed.entries for problem in entry.diagnostics)
+        return any(problem.rule in _SWALLOWING for problem in self.problems)
 
     def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
         """Every word of one of the file's entries that names something."""
@@ -492,6 +501,11 @@ class Scope:
         is not here is nowhere."""
         return self._complete
 
+    def defines(self, kind: Kind, name: str) -> bool:
+        """Whether a name means something."""
+        key = kind, name
+        return bool([file for file in self._files if key in file.names.found])
+
     def find(self, kind: Kind, name: str) -> Definition | None:
         """The definition that a name means: the first one."""
         found = self._found.get((kind, name))
@@ -556,6 +570,7 @@ class Workspace:
         self._scopes: dict[str, Scope] = {}
         self._everywhere: dict[Name, tuple[Definition, ...]] = {}
         self._closures: dict[str, tuple[str, ...]] = {}
+        self._main_trees: dict[str, Definition | None] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
 
     @classmethod
@@ -579,6 +594,7 @@ class Workspace:
             self.files[path].forget_tree()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
+        self._main_trees.clear()
         self._referred.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
@@ -738,6 +754,11 @@ class Workspace:
     def main_tree(self, path: str) -> Definition | None:
         """The tree that runs when the engine loads the file: the one its `Root` names, its only tree, or the only one
         of its trees that no other of its trees refers to."""
+        if path not in self._main_trees:
+            self._main_trees[path] = self._main_tree(path)
+        return self._main_trees[path]
+
+    def _main_tree(self, path: str) -> Definition | None:
         file = self.files[path]
         for entry in file.parsed.entries:
             if isinstance(entry.item, Root):

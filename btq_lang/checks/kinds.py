@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 
 from btq_lang.catalog.names import is_port_name, model_name_problem
-from btq_lang.catalog.nodes import KNOWN_WORDS, KnownWord, NodeKind, available, lookup
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, misspelt_clause
@@ -84,8 +85,7 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A built-in that a version which the project is for does not have."""
     project = view.project
     for tagged in view.seen(entry).by_tag.values():
-        kind = tagged[0].kind
-        missing = [version for version in project.engines if kind is not None and not available(kind, version)]
+        missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, project.engines)
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None:
                 continue
@@ -97,6 +97,11 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 notes=() if project.pinned else (pin,),
                 severity=None if project.pinned else Severity.WARNING,
             )
+
+
+@lru_cache(1_000)  # every tree of every file asks
+def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
+    return [version for version in engines if not available(BUILTINS[tag], version)]
 
 
 def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:

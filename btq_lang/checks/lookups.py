@@ -23,7 +23,7 @@ from btq_lang.workspace import Facts, Origin, Workspace
 
 def is_defined(workspace: Workspace, path: str, kind: Kind, name: str) -> bool:
     """Whether a name means something."""
-    return workspace.scope(path).find(kind, name) is not None
+    return workspace.scope(path).defines(kind, name)
 
 
 def meaning(workspace: Workspace, path: str, kind: Kind, name: str) -> object:
@@ -209,13 +209,12 @@ def edition(workspace: Workspace, path: str) -> str:
 
 def is_read(workspace: Workspace, path: str) -> bool:
     """Whether the whole file could be read."""
-    problems = (problem for entry in workspace.files[path].parsed.entries for problem in entry.diagnostics)
-    return all(problem.effective_severity is not Severity.ERROR for problem in problems)
+    return all(problem.effective_severity is not Severity.ERROR for problem in workspace.files[path].problems)
 
 
 def has_torn_tree(workspace: Workspace, path: str) -> bool:
     """Whether the name of one of the file's trees may be what could not be read."""
-    return any(
+    return bool(workspace.files[path].problems) and any(
         problem.span.start <= entry.item.end
         for entry in workspace.files[path].parsed.entries
         if entry.diagnostics and isinstance(entry.item, Tree)

@@ -29,12 +29,13 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _nameless(view, entry, item)
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(view, item.name, reason, _renamed(view, entry, item.name))
-        for seen in view.nodes(entry):
-            name, label = seen.id, seen.node.name
-            if name is not None and (reason := model_name_problem(name.text, version)):
-                yield from _of_id(view, seen, name, reason)
-            if label is not None:
-                yield from _of_instance(view, entry, seen, label, version)
+        nodes = view.seen(entry)
+        for seen in nodes.all:
+            if seen.id is not None and (reason := model_name_problem(seen.id.text, version)):
+                yield from _of_id(view, seen, seen.id, reason)
+        for seen in nodes.named:
+            if seen.name is not None:
+                yield from _of_instance(view, entry, seen, seen.name, version)
     elif isinstance(item, Model | Models):
         for model in (item,) if isinstance(item, Model) else item.models:
             if not isinstance(model, Model) or model.category.raw != "SubTree":
@@ -47,8 +48,8 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two nodes of a tree with one name: their paths are one path, in logs and in Groot."""
     first: dict[tuple[bool, str], Word] = {}
-    for seen in view.nodes(entry):
-        name = seen.node.name
+    for seen in view.seen(entry).named:
+        name = seen.name
         if name is None or (name.text == "" and not seen.is_subtree):
             continue
         text = name.text

@@ -30,9 +30,9 @@ _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERBS | {"xml"}
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A placeholder, with the same in the short form."""
     for seen in view.seen(entry).placeholders:
-        if seen.node.name is None or seen.node.kind is None:
+        if seen.name is None or seen.node.kind is None:
             continue
-        name = _id_of(seen.node.name.text)
+        name = _id_of(seen.name.text)
         if _taken(view, name) is not None:
             continue  # told as a clash
         what = "the condition" if seen.category == "Condition" else "the action"
@@ -48,7 +48,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that becomes an ID which another name has become already, or which is taken."""
     for seen in view.seen(entry).placeholders:
-        name = seen.node.name
+        name = seen.name
         if name is None:
             continue
         legal = _id_of(name.text)

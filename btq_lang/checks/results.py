@@ -7,6 +7,8 @@ the blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import is_circular
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
@@ -41,17 +43,22 @@ class Results(Record):
 
 def result(view: View, entry: Entry, node: object) -> Results:
     """What a node of a tree can return; for verbatim XML that is anything."""
+    return results(view, entry).get(id(node), UNKNOWN)
+
+
+def results(view: View, entry: Entry) -> Mapping[int, Results]:
+    """What the nodes of a tree can return, by their `id`; what is not in it is verbatim XML."""
     view.ask_in_order(_of_tree)
-    return view.ask(_of_nodes, view.facts(entry)).get(id(node), _UNKNOWN)
+    return view.ask(_of_nodes, view.facts(entry))
 
 
 def _of_tree(view: View, tree: str) -> Results:
     """What the tree of a name can return."""
     facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
     if facts is None or not isinstance(facts.item, Tree):
-        return _UNKNOWN
+        return UNKNOWN
     roots = [child for child in facts.item.children if isinstance(child, Node)]
-    return view.ask(_of_nodes, facts)[id(roots[0])] if len(roots) == 1 else _UNKNOWN
+    return view.ask(_of_nodes, facts)[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
 def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
@@ -64,12 +71,12 @@ def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
 
 
 def _of_node(view: View, tree: str, seen: SeenNode, known: dict[int, Results]) -> Results:
-    found = _UNKNOWN
+    found = UNKNOWN
     if seen.is_subtree:
         called = seen.id.text if seen.id is not None else ""
-        found = _UNKNOWN if view.ask(is_circular, tree, called) else view.ask(_of_tree, called)
+        found = UNKNOWN if view.ask(is_circular, tree, called) else view.ask(_of_tree, called)
     elif seen.kind is not None and not seen.is_placeholder:
-        children = tuple([known.get(id(child), _UNKNOWN) for child in seen.node.children])
+        children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind.tag, seen.node, children)
     elif not seen.node.children:
         found = _CUSTOM.get(seen.category or "", _UNKNOWN_LEAF)
@@ -101,7 +108,7 @@ def _of_builtin(tag: str, node: Node, children: tuple[Results, ...]) -> Results:
 
 _FEW: Final = 4  # there are not many such combinations
 _without_ports: Final[dict[tuple[str | int, ...], Results]] = {}
-_UNKNOWN: Final = Results(ANYTHING, ANYTHING, ANYTHING)
+UNKNOWN: Final = Results(ANYTHING, ANYTHING, ANYTHING)
 _ANY_LEAF: Final = SUCCESS | FAILURE | RUNNING
 _UNKNOWN_LEAF: Final = Results(_ANY_LEAF, _ANY_LEAF, _ANY_LEAF)
 _CUSTOM: Final = {

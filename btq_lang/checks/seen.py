@@ -29,7 +29,7 @@ class SeenNode:
         definition: where its model stands, where one is in scope.
         model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
-        id: that of the node, which is looked for in its attributes where it has no kind.
+        id, name: those of the node, which are looked for in its attributes where they stand nowhere else.
         is_subtree: whether the category is SubTree.
         is_placeholder: it stands for a skill, see placeholders.py.
         asked: the name that a model was looked for by; nothing where none was.
@@ -45,6 +45,7 @@ class SeenNode:
         "is_subtree",
         "kind",
         "model",
+        "name",
         "node",
         "parent",
         "tree",
@@ -72,6 +73,7 @@ class SeenNode:
         self.model: Final = model
         self.category: Final = category
         self.id: Final = id
+        self.name: Final = node.name
         self.is_subtree: Final = category == "SubTree"
         self.is_placeholder: Final = is_placeholder(node)
         self.asked: Final = asked
@@ -99,6 +101,7 @@ class SeenNodes:
         demanding: those with clauses.
         categorized: those whose category is written.
         subtrees: those that run another tree.
+        named: those with an instance name.
         placeholders: those that stand for a skill.
         strangers: those that are neither a built-in nor a SubTree, and have no model.
         by_tag: the built-ins, by their tag.
@@ -111,6 +114,7 @@ class SeenNodes:
         "demanding",
         "given",
         "marked",
+        "named",
         "placeholders",
         "strangers",
         "subtrees",
@@ -121,6 +125,7 @@ class SeenNodes:
         self.given: Final = [seen for seen in nodes if seen.node.attributes]
         self.marked: Final = [seen for seen in self.given if _is_marked(seen.node)]
         self.demanding: Final = [seen for seen in nodes if seen.node.clauses]
+        self.named: Final = [seen for seen in nodes if seen.name is not None]
         self.categorized: Final = [seen for seen in nodes if seen.node.category is not None]
         self.subtrees: Final = [seen for seen in nodes if seen.is_subtree]
         self.placeholders: Final = [seen for seen in nodes if seen.is_placeholder]

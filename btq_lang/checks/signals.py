@@ -204,23 +204,24 @@ def _entries_of(demanded: Demanded, tree: TreeNodes) -> _Entries:
                 continue
             text = pair.value.text
             port = pair.key.text
-            if is_pointer(text):
+            is_entry = is_pointer(text)
+            if is_entry:
                 key = text[1:-1].strip()
                 key = port if key == "=" else key
                 pointers.setdefault(key.removeprefix("@"), []).append((node, pair, key[:1] == "@"))
-            if _is_script(node, pair):
+            if _is_script(node, port):
                 writes += ((node, name) for name in _assigned(text))
-            elif node.tag == "SetBlackboard" and port == "output_key":
+            elif port == "output_key" and node.tag == "SetBlackboard":
                 writes.append((node, text.strip("{}")))
-            elif is_pointer(text) and _may_write(demanded, node, port):
+            elif is_entry and _may_write(demanded, node, port):
                 writes.append((node, key))
     written = frozenset([name.removeprefix("@") for _, name in writes])
     return _Entries(tuple(writes), written, pointers)
 
 
-def _is_script(node: SourceNode, pair: Pair) -> bool:
-    attribute = RESERVED_ATTRIBUTES.get(pair.key.text)
-    port = node.kind.port(pair.key.text) if node.kind is not None else None
+def _is_script(node: SourceNode, key: str) -> bool:
+    attribute = RESERVED_ATTRIBUTES.get(key)
+    port = node.kind.port(key) if node.kind is not None else None
     return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.checks.results import result
+from btq_lang.checks.results import UNKNOWN, result, results
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
@@ -50,8 +50,9 @@ def _behind(
     view: View, entry: Entry, seen: SeenNode, children: tuple[Node | Verbatim, ...], goes_on: int
 ) -> Diagnostic | None:
     """The child behind one that can only end the node."""
+    known = results(view, entry)
     for child, following in pairwise(children):
-        if isinstance(child, Node) and not result(view, entry, child).ever & (goes_on | SKIPPED):
+        if isinstance(child, Node) and not known.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
             never = "succeeds" if goes_on == SUCCESS else "fails"
             return _unreachable(following, f"{_shown(child)} before it never {never}", child)
     return None

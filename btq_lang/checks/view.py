@@ -5,7 +5,7 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 
 from btq_lang.attributes import meant_clause
@@ -156,7 +156,7 @@ class View:
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name in scope means something."""
         if self._answers is None:
-            return self._scope.find(kind, name) is not None
+            return self._scope.defines(kind, name)
         return self.look_up_name(lookups.is_defined, kind, name)
 
     def has_names(self, kind: Kind) -> bool:
@@ -417,15 +417,13 @@ class View:
             category = model.category.raw
         return SeenNode(node, tree, parent, index, kind, definition, model, category, asked, name)
 
-    def clashes(self, entry: Entry, *kinds: Kind) -> Iterator[tuple[Definition, Definition]]:
+    def clashes(self, entry: Entry, *kinds: Kind) -> Sequence[tuple[Definition, Definition]]:
         """The names that a file included here and one included before it both define, each with the definition that
         counts and the other one.  Neither file can see the other, so nobody else says it."""
         if not isinstance(entry.item, Include):
-            return
+            return ()
         self.note_everything()
-        for first, second in self._clashes.get(id(entry), ()):
-            if second.symbol.kind in kinds:
-                yield first, second
+        return [clash for clash in self._clashes.get(id(entry), ()) if clash[1].symbol.kind in kinds]
 
     @cached_property
     def _clashes(self) -> dict[int, list[tuple[Definition, Definition]]]:

@@ -59,7 +59,7 @@ class PathReader:
             nodes.are_known
             and scope.complete
             and path not in workspace.included_files
-            and not any(entry.diagnostics for each in scope.paths for entry in workspace.files[each].parsed.entries)
+            and not any(workspace.files[each].problems for each in scope.paths)
         )
         # None of these knows the reader: one that knows what knows it would stay, with all that it has read, until
         # Python looks for garbage, and an editor makes one at every key.
