@@ -215,18 +215,13 @@ _OF_STRUCTURE: frozenset[Check] = frozenset(
         unreachable.unreachable_child,
     )
 )
-# Most models have no ports, and these look at nothing else of a model.
+# Of models, of which a file has many, these look at nothing but the ports, and the others at those of models of trees.
 _OF_PORTS: frozenset[Check] = frozenset(
-    (
-        ports.duplicate_port,
-        ports.misspelt_type,
-        literals.invalid_literal,
-        literals.quantity_on_unitless_port,
-        constants.number_for_text,
-        names.forbidden_name,
-    )
+    (ports.duplicate_port, ports.misspelt_type, literals.invalid_literal, literals.quantity_on_unitless_port)
 )
-_OF_NAMES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS)
+_OF_PORTS_OF_TREES: frozenset[Check] = frozenset((constants.number_for_text, names.forbidden_name))
+_OF_NODES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS_OF_TREES)
+_WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
 
 
 class Found(Record):
@@ -328,7 +323,9 @@ def _checks_of(entry: Entry) -> tuple[Check, ...]:
     item = entry.item
     checks = CHECKS.get(type(item), ())
     if type(item) is Model and not item.body:
-        return _OF_NAMES
+        return _WITHOUT_PORTS
+    if type(item) is Model and item.category.raw != "SubTree":
+        return _OF_NODES
     if entry.diagnostics and any(problem.rule in _STRUCTURE_IS_LOST for problem in entry.diagnostics):
         checks = tuple(each for each in checks if each not in _OF_STRUCTURE)
     return checks

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 
 from btq_lang.catalog.literals import check_literal, is_pointer
@@ -137,14 +137,12 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
                 yield target, value
 
 
-def _declared_ports(entry: Entry) -> Iterator[Port]:
+def _declared_ports(entry: Entry) -> Sequence[Port]:
     item = entry.item
     if isinstance(item, Tree | Model):
-        yield from item.ports
-    elif isinstance(item, Models):
-        for model in item.models:
-            if isinstance(model, Model):
-                yield from model.ports
+        return item.ports
+    models = item.models if isinstance(item, Models) else ()
+    return [port for model in models if isinstance(model, Model) for port in model.ports]
 
 
 def _target(view: View, seen: SeenNode, pair: Pair, value: Word) -> _Target | None:

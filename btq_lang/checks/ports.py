@@ -314,8 +314,9 @@ def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...
         yield item.attributes, {"main_tree_to_execute": item.name}
     elif isinstance(item, Model | Models):
         for model in (item,) if isinstance(item, Model) else item.models:
-            if isinstance(model, Model) and (model.attributes or model.body):
-                yield model.attributes, {"ID": model.name}
+            if isinstance(model, Model):
+                if model.attributes:
+                    yield model.attributes, {"ID": model.name}
                 for part in model.body:
                     if isinstance(part, Port) and part.attributes:
                         yield part.attributes, _said(part)

@@ -151,7 +151,7 @@ class View:
 
     def summary(self, entry: Entry) -> Summary:
         """What an entry of the file defines and refers to."""
-        return self._file.summary_of(entry)
+        return self._file.facts[id(entry.item)].summary
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name in scope means something."""

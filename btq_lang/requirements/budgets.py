@@ -151,9 +151,9 @@ class Budgets:
         waiting = [top] if id(top) not in found.held else []
         while waiting:
             node = waiting[-1]
-            at = self._in(self._nodes.within(node.item))
-            missing = [child for child in node.children if id(child) not in at.held]
-            root = self._run_before(node)
+            at = found if node.item is top.item else self._in(self._nodes.within(node.item))
+            missing = [child for child in node.children if id(child) not in at.held] if node.children else []
+            root = self._run_before(node) if node.category == "SubTree" else None
             if root is not None and id(root) not in self._in(self._nodes.within(root.item)).held:
                 missing.append(root)
             if missing:
@@ -226,8 +226,9 @@ class Budgets:
         if not node.children:
             sure = budget.success is not None and budget.failure is None and budget.success.high < inf
             return Success(budget.success.high, 1.0) if sure and budget.success is not None else None
-        if any(pair.key.text in _CHANGING for child in node.children for pair in child.node.attributes):
-            return None
+        for child in node.children:
+            if child.node.attributes and any(pair.key.text in _CHANGING for pair in child.node.attributes):
+                return None
         parts = [_success_as_part(child, at.successes[id(child)]) for child in node.children]
         known = [part for part in parts if part is not None]
         if len(known) < len(node.node.children):
@@ -276,7 +277,10 @@ def _without_terms(budget: Budget) -> Budget:
 
 
 def _with_ranges(budget: Budget, change: Callable[[Range | None], Range | None]) -> Budget:
-    success, failure, skip = change(budget.success), change(budget.failure), change(budget.skip)
+    """change: what is not there, is not there afterwards either."""
+    success = change(budget.success)
+    failure = success if budget.failure is budget.success else change(budget.failure)
+    skip = change(budget.skip) if budget.skip is not None else None
     return Budget(success, failure, skip, budget.waits, budget.probability, "", budget.endless)
 
 
