@@ -179,7 +179,9 @@ def _runs(view: View, tree: str) -> Runs:
     facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
     uses = facts.summary.uses if facts is not None else ()
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    return tuple(called), tuple([name for name in map(_meant, uses) if name and view.defines(Kind.TREE, name)])
+    meant = [name for name in map(_meant, uses) if name]
+    trees = {name for name in set(meant) if view.defines(Kind.TREE, name)}
+    return tuple(called), tuple([name for name in meant if name in trees])
 
 
 def _meant(use: Use) -> str:

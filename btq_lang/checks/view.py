@@ -192,10 +192,9 @@ class View:
             known = self._nodes[id(tree.item)] = _seen_nodes(self, tree)
         return known
 
-    def uses(self, entry: Entry, kind: Kind) -> Iterator[Use]:
+    def uses(self, entry: Entry, kind: Kind) -> list[Use]:
         """What an entry refers to, of one kind."""
-        uses = self.summary(entry).uses
-        return (use for use in uses if use.kind is kind) if uses else iter(())
+        return [use for use in self.summary(entry).uses if use.kind is kind]
 
     @property
     def trees(self) -> tuple[Entry, ...]:

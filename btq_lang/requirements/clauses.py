@@ -139,7 +139,7 @@ def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
             _verb(reader, written)
             return None
     found = _verb(reader, written)
-    return replace(found, subject=subject) if found is not None else None
+    return found if found is None or subject is None else replace(found, subject=subject)
 
 
 def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
@@ -168,7 +168,7 @@ def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
     per = _per(reader, written.per)
     if written.per is not None and per is None:
         return None
-    return replace(claim, per=per)
+    return claim if per is None else replace(claim, per=per)
 
 
 def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted | None]:
