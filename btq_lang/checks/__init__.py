@@ -258,7 +258,7 @@ def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tu
     if answers is None:
         found = []
         for entry in file.parsed.entries:
-            of_entry = [diagnostic for each in _checks_of(entry) for diagnostic in each(view, entry)]
+            of_entry = [diagnostic for each in checks_of(entry) for diagnostic in each(view, entry)]
             if of_entry or entry.diagnostics:
                 found += _told(view, entry, of_entry, workspace)
     else:
@@ -308,7 +308,7 @@ def _kept(view: View, facts: Facts) -> Found:
     entry = view.entry(facts)
     found: list[Diagnostic] = []
     restless: list[Check] = []
-    for each in _checks_of(entry):
+    for each in checks_of(entry):
         diagnostics = view.watched(each, entry)
         if diagnostics is None:
             restless.append(each)
@@ -319,7 +319,8 @@ def _kept(view: View, facts: Facts) -> Found:
     return Found(tuple(found), tuple(restless), any(place.anchor is not None for place in chain(places, changed)))
 
 
-def _checks_of(entry: Entry) -> tuple[Check, ...]:
+def checks_of(entry: Entry) -> tuple[Check, ...]:
+    """The checks that may have something to say of an entry."""
     item = entry.item
     checks = CHECKS.get(type(item), ())
     if type(item) is Model and not item.body:
