@@ -88,8 +88,7 @@ def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
         likely: blanks with which the line probably begins, for most begin as the one before.
     """
     if not COMPILED:
-        match = _OPENING(text, start)
-        return match.span(match.lastindex)  # type: ignore
+        return _OPENING(text, start).span(1)  # type: ignore[union-attr]  # it matches nothing at least
     size: i64 = len(text)
     at = _behind(text, start, likely)
     while at < size:
@@ -278,10 +277,8 @@ def unit_run(text: str, start: i64) -> i64:
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
-# Three ways to say one thing: the first two spare the engine from looking back over the blanks it has passed.
-_OPENING: Final = re.compile(
-    r"([ \t]*)(?![ \t\r\n]) | [\r\n]+([ \t]*)(?![ \t\r\n]) | (?:[ \t\r\n]*[\r\n])([ \t]*)", re.VERBOSE
-).match
+# The first way over line ends spares the engine from looking back over the blanks it has passed.
+_OPENING: Final = re.compile(r"(?:[\r\n]+|[ \t\r\n]*[\r\n]|)([ \t]*)(?![ \t\r\n])").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
 _PATH: Final = r"[^\s()\"']*"  # compiled when first used: it says what is wrong
 _BY_FIRST: Final = {
