@@ -572,6 +572,7 @@ class Workspace:
         self._closures: dict[str, tuple[str, ...]] = {}
         self._main_trees: dict[str, Definition | None] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
+        self._main_trees: dict[str, Definition | None] = {}
 
     @classmethod
     def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
@@ -596,6 +597,7 @@ class Workspace:
         self._everywhere.clear()
         self._main_trees.clear()
         self._referred.clear()
+        self._main_trees.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
         """What is known of which file includes which, and of the names in files that do not see the one edited."""

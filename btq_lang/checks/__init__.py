@@ -40,9 +40,9 @@ from btq_lang.checks import (
     unused,
 )
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, shifted
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.project import configured
-from btq_lang.record import Record, replace
+from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.scan import line_start
 from btq_lang.syntax import (
@@ -59,8 +59,7 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
-from btq_lang.text import Span
-from btq_lang.workspace import Facts, File, Workspace
+from btq_lang.workspace import Facts, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -281,7 +280,7 @@ def _told(view: View, entry: Entry, found: Iterable[Diagnostic], workspace: Work
     """All that is to be told of an entry, as it counts in the file."""
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
-    return [_placed(shifted(diagnostic, entry.start), workspace) for diagnostic in found]
+    return [_placed(diagnostic, entry.start, workspace) for diagnostic in found]
 
 
 def _known(view: View, workspace: Workspace, answers: Answers) -> list[Diagnostic]:
@@ -342,25 +341,32 @@ def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
     return line_start(text, entry.start, entry.start + diagnostic.span.start)
 
 
-def _placed(diagnostic: Diagnostic, workspace: Workspace) -> Diagnostic:
-    """The diagnostic with every place counted from the start of its file."""
-    if not diagnostic.related and not any(change.place.anchor for fix in diagnostic.fixes for change in fix.changes):
-        return diagnostic
+def _placed(one: Diagnostic, by: int, workspace: Workspace) -> Diagnostic:
+    """A diagnostic of an entry that begins at `by`, with every place counted from the start of its file.
 
-    def resolve(place: Place) -> Place:
-        if place.anchor is None or place.path is None:
-            return place
-        return Place(_absolute(workspace.files[place.path], place), place.path)
+    After an edit this is asked of all that stands behind it, so it is made in one go.
+    """
+    related: tuple[Related, ...] = ()
+    fixes: tuple[Fix, ...] = ()
+    if one.related:
+        related = tuple([Related(_absolute(each.place, by, workspace), each.message) for each in one.related])
+    if one.fixes:
+        fixes = tuple(
+            [
+                Fix(
+                    fix.title,
+                    tuple([Change(_absolute(each.place, by, workspace), each.text) for each in fix.changes]),
+                    fix.safe,
+                )
+                for fix in one.fixes
+            ]
+        )
+    return Diagnostic(one.rule, one.span.shifted(by), one.message, related, one.notes, fixes, one.tags, one.severity)
 
-    return replace(
-        diagnostic,
-        related=tuple(Related(resolve(related.place), related.message) for related in diagnostic.related),
-        fixes=tuple(
-            Fix(fix.title, tuple(Change(resolve(change.place), change.text) for change in fix.changes), fix.safe)
-            for fix in diagnostic.fixes
-        ),
-    )
 
-
-def _absolute(file: File, place: Place) -> Span:
-    return place.span.shifted(file.start_of(place.anchor))
+def _absolute(place: Place, by: int, workspace: Workspace) -> Place:
+    if place.anchor is None:
+        return place if place.path is not None else Place(place.span.shifted(by))
+    if place.path is None:
+        return place
+    return Place(place.span.shifted(workspace.files[place.path].start_of(place.anchor)), place.path)

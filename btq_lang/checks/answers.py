@@ -106,7 +106,8 @@ class Answers:
         self._draw_stale(view)
         for table, before in self._tables.items():
             now = self._tables[table] = self._made(view, table)
-            for item in before.keys() | now.keys():
+            others = [item for item, value in now.items() if value is not before.get(item)]
+            for item in (*others, *(before.keys() - now.keys())):  # the answers are those of `before`
                 question = table, item
                 if question in self._answers and not _is_same(now.get(item), self._answers[question].value):
                     self._answers[question] = _Answer(now.get(item))

@@ -36,6 +36,9 @@ class Demanded:
         claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
             a span the one that takes as long), and where to tell of it.
         noted: what was asked of other trees.
+        ways_up: what was found out of the ways from trees to the mission's root; kept while no SubTree node becomes
+            another one.
+        ends_at: of SubTree nodes on these ways, what a failure below them ends at.
     """
 
     tree: TreeNodes
@@ -50,6 +53,15 @@ class Demanded:
         self.budgets: Budgets = view.budgets
         self.noted: dict[Question, object] = {}
         self._answers: dict[Question, object] = {}
+        mission = self.requirements.mission
+        ways = (
+            mission.tree if mission is not None else None,
+            [tree.calls for tree in self.requirements.nodes.trees if tree.calls],
+        )
+        known = view.resolved.ways_up
+        self.ways_up: dict[str | None, Any] = known[1] if known[0] == ways else {}
+        self.ends_at: dict[SourceNode, Any] = {}
+        view.resolved.ways_up = ways, self.ways_up
 
     def look_at(self, tree: TreeNodes) -> None:
         """What follows is about the nodes of this tree."""

@@ -41,12 +41,14 @@ def _all_demands(view: View) -> ByItem:
     found: list[ByItem] = []
     guards: list[Guard] = []
     table = memory.table("demands of trees", demanded)
-    for tree in demanded.requirements.nodes.trees:
-        applied = demanded.requirements.in_tree(tree)
-        if applied or tree.timeouts:
-            made_of = demanded.budgets.in_tree(tree)  # another one where what is applied is another
-            known = table.take(tree, made_of) or table.put(tree, made_of, _of_tree(demanded, tree))
+    held = demanded.requirements.by_tree
+    trees = [tree for tree in demanded.requirements.nodes.trees if tree.timeouts or id(tree.item) in held]
+    budgets = [*map(demanded.budgets.in_tree, trees)]  # another one where what is applied is another
+    for tree, made_of, kept in zip(trees, budgets, table.take_all(trees, budgets), strict=True):
+        known = kept or table.take(tree, made_of) or table.put(tree, made_of, _of_tree(demanded, tree))
+        if known[0]:
             found.append(known[0])
+        if known[1]:
             guards += known[1]
     table = memory.table("demands by themselves", demanded)
     for requirement in demanded.requirements.all.values():

@@ -36,7 +36,7 @@ _Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
 
 def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that is empty: nothing can refer to it; or a text for people that is."""
-    if view.is_xml or not _has_empty(view.text):
+    if view.is_xml or not (view.keeps_answers or _has_empty(view.text)):
         return
     for what, word in _names(entry.item):
         if word is not None and (word.text == "" or word.raw == "{}"):

@@ -49,9 +49,10 @@ def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> I
     if not here:
         return
     table = memory.table("entries", demanded)
+    trees = demanded.requirements.nodes.trees
     entries: list[_Entries] = [
-        table.take(tree) or table.put(tree, None, _entries_of(demanded, tree))
-        for tree in demanded.requirements.nodes.trees
+        known or table.take(tree) or table.put(tree, None, _entries_of(demanded, tree))
+        for tree, known in zip(trees, table.take_all(trees, [None] * len(trees)), strict=True)
     ]
     yield from _never_written(demanded, here, entries, guards, memory.table("near", demanded))
     yield from _of_text(demanded, here, entries)

@@ -49,7 +49,14 @@ def _above(demanded: Demanded, tree: str | None) -> Swallower | None:
 
 def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
-    found = demanded.requirements
+    if tree not in demanded.ways_up:
+        demanded.ways_up[tree] = _end_of_ways(demanded, tree)
+    answer: Swallower | None = demanded.ways_up[tree]
+    return answer
+
+
+def _end_of_ways(demanded: Demanded, tree: str | None) -> Swallower | None:
+    found, ends_at = demanded.requirements, demanded.ends_at
     first: Swallower | None = None
     seen: set[int] = set()
     waiting = list(_callers(found, tree))
@@ -59,7 +66,9 @@ def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
         if id(at) in seen:
             continue
         seen.add(id(at))
-        end = _in_tree(at)
+        if at not in ends_at:
+            ends_at[at] = _in_tree(at)
+        end = ends_at[at]
         first = first or end
         if end is None:
             callers = _callers(found, at.tree)

@@ -60,6 +60,8 @@ class View:
         project: what holds for all files.
         text: that of the file, for who looks up what stands at the offsets of an item.
         is_xml: the file is XML that the engine loads as it is: no build comes between.
+        keeps_answers: what was found is kept, so after an edit few items are looked at, and it does not pay to look at
+            the whole text first.
         model_ports: the ports of models, by the model's id, as far as somebody asked.
     """
 
@@ -67,6 +69,7 @@ class View:
         self._workspace = workspace
         self._file = workspace.files[path]
         self._answers = answers
+        self.keeps_answers = answers is not None
         self._given: dict[object, Any] = {}
         self.path = path
         self.project = workspace.project

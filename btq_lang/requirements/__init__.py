@@ -41,7 +41,9 @@ from btq_lang.workspace import File, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, Final
+    from typing import Any, Final, TypeAlias
+
+_About: TypeAlias = "tuple[object, object, tuple[object, ...]]"
 
 __all__ = ["Memory", "Problem", "Requirements", "requirements"]
 
@@ -126,35 +128,34 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
         problems += known[1]
     qualities = {key: quality for tree in nodes.trees if tree.qualities for key, quality in tree.qualities.items()}
     table = memory.table("requirements", reader)
-    for file, symbol in _counting(files, Kind.REQUIREMENT):
-        quality = qualities.get(id(symbol.target))
-        known = table.take(symbol, quality) or _make(
-            table, symbol, quality, _read_requirement, reader, file, symbol, quality
-        )
-        reader.requirements[symbol.name] = known[0]
-        problems += known[1]
-    table = memory.table("uses", reader)
-    found: list[Uses] = []
-    for file in files:
-        for entry in file.parsed.entries:
-            item = entry.item
-            if isinstance(item, Tree | Apply):
-                within = nodes.within(item) if isinstance(item, Tree) else None
-                known = table.take(item, within) or _make(table, item, within, uses_in, reader, file.path, entry)
-                found.append(known[0])
-                problems += known[1]
-    uses = _by_requirement(found, memory)
+    defined = _counting(files, Kind.REQUIREMENT)
+    enclosing = [qualities.get(id(symbol.target)) for _, symbol in defined]
+    about: list[_About] = [
+        (symbol, quality, (file, symbol, quality)) for (file, symbol), quality in zip(defined, enclosing, strict=True)
+    ]
+    read = _all(table, reader, _read_requirement, about)
+    reader.requirements.update(
+        {symbol.name: requirement for (_, symbol), (requirement, _) in zip(defined, read, strict=True)}
+    )
+    problems += [problem for _, told in read for problem in told]
+    about = [
+        (entry.item, nodes.within(entry.item) if type(entry.item) is Tree else None, (file.path, entry))
+        for file in files
+        for entry in file.parsed.entries
+        if type(entry.item) is Tree or type(entry.item) is Apply
+    ]
+    attached = _all(memory.table("uses", reader), reader, uses_in, about)
+    found: list[Uses] = [uses for uses, _ in attached]
+    problems += [problem for _, told in attached for problem in told]
+    of_each = _by_requirement(found, memory)
     table = memory.table("held", reader)
+    pairs = [(each, of_each.get(name, ())) for name, each in reader.requirements.items()]
+    holding = _all(table, reader, _held_by, [(each, uses, (table, each, uses)) for each, uses in pairs])
+    problems += [problem for _, told in holding for problem in told]
     applied: list[Applied] = []
     by_tree: dict[int, list[Applied]] = {}
     traces: list[Trace] = []
-    for name, requirement in reader.requirements.items():
-        of_it = uses.get(name, ())
-        known = table.take(requirement, of_it) or _make(
-            table, requirement, of_it, held_by, reader, requirement, of_it, table.before(requirement)
-        )
-        held: Held = known[0]
-        problems += known[1]
+    for held, _ in holding:
         applied += held.applied
         traces += held.traces
         for tree, each in held.by_tree:
@@ -180,6 +181,22 @@ def _make(
     reader.problems = {}
     made = make(reader, *about)
     return table.put(owner, made_of, (made, tuple(reader.problems.values())))
+
+
+def _all(
+    table: Table, reader: Reader, make: Callable[..., object], wanted: list[_About]
+) -> list[tuple[Any, tuple[Problem, ...]]]:
+    """What a table has, made where it is another one than before.
+
+    Args:
+        wanted: each owner, what else it is made of, and with what `make` is called behind the reader.
+    """
+    found = table.take_all([owner for owner, _, _ in wanted], [made_of for _, made_of, _ in wanted])
+    for index, known in enumerate(found):
+        if known is None:
+            owner, made_of, about = wanted[index]
+            found[index] = table.take(owner, made_of) or _make(table, owner, made_of, make, reader, *about)
+    return found
 
 
 def _read_signal(reader: Reader, file: File, symbol: Symbol) -> Signal:
@@ -210,6 +227,10 @@ def _read_requirement(reader: Reader, file: File, symbol: Symbol, quality: str |
     from btq_lang.requirements.classic import with_constraints  # a requirement that has clauses needs none of it
 
     return with_constraints(reader, requirement, written.text)
+
+
+def _held_by(reader: Reader, table: Table, requirement: Requirement, uses: tuple[Use, ...]) -> Held:
+    return held_by(reader, requirement, uses, table.before(requirement))
 
 
 def _by_requirement(found: list[Uses], memory: Memory) -> dict[str, tuple[Use, ...]]:
@@ -245,14 +266,15 @@ def _as_before(by_tree: dict[int, list[Applied]], memory: Memory) -> dict[int, t
     return memory.by_tree
 
 
-def _counting(files: Iterable[File], kind: Kind) -> Iterator[tuple[File, Symbol]]:
+def _counting(files: Iterable[File], kind: Kind) -> list[tuple[File, Symbol]]:
     """The definitions that count, of names of a kind: the first one of each."""
-    seen: set[str] = set()
+    found: dict[str, tuple[File, Symbol]] = {}
     for file in files:
+        known = file.names.found
         for name in file.names.by_kind[kind]:
-            if name not in seen:
-                seen.add(name)
-                yield file, file.names.found[kind, name][0][1]
+            if name not in found:
+                found[name] = file, known[kind, name][0][1]
+    return [*found.values()]
 
 
 def _ordered_contexts(reader: Reader, files: Iterable[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:

@@ -6,7 +6,8 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
+from itertools import repeat
 
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
@@ -14,7 +15,7 @@ from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, Protocol, TypeAlias, TypeVar
+    from typing import Any, Final, Protocol, TypeAlias, TypeVar
 
     from btq_lang.requirements.attach import Uses
     from btq_lang.requirements.budgets import _TreeBudgets
@@ -44,6 +45,7 @@ class Memory:
         uses: what each entry attaches, in their order; and all of it by the requirement.
         by_tree: what holds for nodes, by the tree that they stand in.
         budgets: those of the nodes of each tree.
+        ways_up: how trees run each other, and what was found out of that alone, by the names of trees.
     """
 
     def __init__(self) -> None:
@@ -51,6 +53,7 @@ class Memory:
         self.uses: tuple[list[Uses], dict[str, tuple[Use, ...]]] = ([], {})
         self.by_tree: dict[int, tuple[Applied, ...]] = {}
         self.budgets: dict[int, _TreeBudgets] = {}
+        self.ways_up: tuple[object, dict[str | None, Any]] = (None, {})
         self._tables: dict[str, Table] = {}
         self._tables_before: dict[str, Table] = {}
 
@@ -112,6 +115,31 @@ class Table:
         self._asker.noted = {}
         return None
 
+    def take_all(self, owners: Sequence[object], made_of: Sequence[object]) -> list[Any]:
+        """As `take`, of all owners that the table will have, each with what else it is made of.  None stands for what
+        is to be made; before that, `take` must be asked for it.
+
+        After most edits the owners are the same ones in the same order, and of thousands one is another.
+        """
+        known, changed = self._made_before, self._changed
+        rows = known.values() if len(known) == len(owners) else repeat(None)
+        found: list[Any] = []
+        for owner, part, row in zip(owners, made_of, rows, strict=False):
+            if row is None or row[0] is not owner:
+                row = known.get(id(owner))
+            if (
+                row is not None
+                and row[0] is owner
+                and (row[1] is part or is_same(part, row[1]))
+                and (not changed or changed.isdisjoint(row[2]))
+            ):
+                found.append(row[3])
+            else:
+                row = _TO_BE_MADE  # it keeps the place, for the order
+                found.append(None)
+            self.made[id(owner)] = row
+        return found
+
     def put(self, owner: object, made_of: object, made: T) -> T:
         """What is made for an owner stands here from now on."""
         self.made[id(owner)] = owner, made_of, tuple(self._asker.noted), made
@@ -143,5 +171,6 @@ def is_same(now: Any, before: Any) -> bool:
     return kind in _PLAIN and bool(now == before)
 
 
+_TO_BE_MADE: Final = (None, None, (), None)
 _LIGHT = (Use, Applied, Target, Argument, Place)  # made anew where what they say is as before
 _PLAIN = (str, int, frozenset, Span, Value)
