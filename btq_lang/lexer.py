@@ -91,6 +91,28 @@ def tokens(text: str) -> tuple[Token, ...]:
     return tuple(found)
 
 
+def pieces(text: str) -> list[tuple[int, int, str]]:
+    """Kind, start and text of all tokens but blanks and what begins nothing: half of what `tokens` has, and quickly."""
+    lexer = Lexer(text)
+    comments = lexer.comments
+    found: list[tuple[int, int, str]] = []
+    told = 0
+    while lexer.open_line():
+        lexer.scan()
+        of_line = [*zip(lexer.kinds, lexer.starts, lexer.raws, strict=True)]
+        if told < len(comments):
+            of_line += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+            of_line.sort(key=_start_of)
+            told = len(comments)
+        found += of_line
+    found += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+    return found
+
+
+def _start_of(piece: tuple[int, int, str]) -> int:
+    return piece[1]
+
+
 class Lexer:
     """A place in a text, and the logical line that begins there.
 

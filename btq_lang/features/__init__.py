@@ -13,7 +13,7 @@ TYPE_CHECKING = False  # type checkers read it as True
 if TYPE_CHECKING:
     from btq_lang.features.actions import code_actions
     from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
-    from btq_lang.features.colours import Colours, colours, delta
+    from btq_lang.features.colours import Colours, colours, delta, making
     from btq_lang.features.completion import complete
     from btq_lang.features.documentation import documentation as documented
     from btq_lang.features.documentation import include_edits
@@ -61,6 +61,7 @@ __all__ = [
     "include_edits",
     "inlay_hints",
     "linked_ranges",
+    "making",
     "moved_files",
     "path_of_node",
     "prepare_calls",
@@ -75,7 +76,7 @@ __all__ = [
 _HOMES = {
     "actions": ("code_actions",),
     "calls": ("Call", "TreeItem", "called", "callers", "prepare_calls"),
-    "colours": ("Colours", "colours", "delta"),
+    "colours": ("Colours", "colours", "delta", "making"),
     "completion": ("complete",),
     "documentation": ("documented", "include_edits"),
     "hints": ("code_lenses", "inlay_hints"),
@@ -108,6 +109,8 @@ def __getattr__(name: str) -> object:
     home = next((home for home, names in _HOMES.items() if name in names), None)
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found: object = getattr(import_module(f"{__name__}.{home}"), _CALLED.get(name, name))
-    globals()[name] = found
+    module = import_module(f"{__name__}.{home}")
+    # All of them: of a module with the name of a function, Python has put itself where that is looked for.
+    globals().update({each: getattr(module, _CALLED.get(each, each)) for each in _HOMES[home]})
+    found: object = globals()[name]
     return found

@@ -15,7 +15,7 @@ from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
-from btq_lang.lexer import tokens as tokens_of
+from btq_lang.lexer import pieces
 from btq_lang.mentions import Mention, What
 from btq_lang.parser import Parsed
 from btq_lang.record import Record
@@ -34,7 +34,6 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
-    Token,
 )
 from btq_lang.workspace import File, Workspace
 
@@ -122,21 +121,23 @@ def tokens_of_stretch(file: File, stretch: Stretch, known: Known) -> list[Semant
     found: list[SemanticToken] = []
     index = 0
     before = ""
-    for token in tokens_of(text):
-        while index < len(named) and named[index][0].end <= token.start:
+    for kind, start, raw in pieces(text):
+        end = start + len(raw)
+        while index < len(named) and named[index][0].end <= start:
             index += 1
         inside: list[tuple[Span, Mention]] = []
-        while index < len(named) and named[index][0].end <= token.end:
+        while index < len(named) and named[index][0].end <= end:
             place, mention = named[index]
-            inside.append((Span(max(place.start, token.start), place.end), mention))
+            inside.append((place if place.start >= start else Span(start, place.end), mention))
             index += 1
-        if index < len(named) and named[index][0].start < token.end and token.kind in (NAME, STRING):
+        if index < len(named) and named[index][0].start < end and kind in (NAME, STRING):
             # A path of a quality or a compound unit: several tokens, one name.
-            inside.append((Span(token.start, token.end), named[index][1]))
-        for one in _of_token(known, token, inside, before):
-            found += _lines(one, text)
-        if token.kind in _WORDS:
-            before = token.text
+            inside.append((Span(start, end), named[index][1]))
+        if inside or kind in _COLOURED:
+            for one in _of_token(known, kind, Span(start, end), raw, inside, before):
+                found += _lines(one, text) if kind in _OVER_LINES else (one,)
+        if kind in _WORDS:
+            before = raw
     return found
 
 
@@ -169,17 +170,18 @@ def _width(text: str, encoding: Encoding) -> int:
     return len(text) + sum(character > "\uffff" for character in text)
 
 
-def _of_token(known: Known, token: Token, inside: list[tuple[Span, Mention]], before: str) -> list[SemanticToken]:
-    span = Span(token.start, token.end)
-    if inside and token.kind in (NAME, STRING, SYMBOL) and inside[0][0] == span:
+def _of_token(
+    known: Known, kind: int, span: Span, raw: str, inside: list[tuple[Span, Mention]], before: str
+) -> list[SemanticToken]:
+    if inside and kind in (NAME, STRING, SYMBOL) and inside[0][0] == span:
         named = _of_mention(known, inside[0][1])
         return [SemanticToken(span, *named)] if named else []
-    plain = _PLAIN.get(token.kind)
-    if token.kind == NAME and token.text in KEYWORDS and before != "=":
+    plain = _PLAIN.get(kind)
+    if kind == NAME and raw in KEYWORDS and before != "=":
         plain = "keyword"
-    elif token.kind == NAME and before == ":":
+    elif kind == NAME and before == ":":
         plain = "type"
-    elif token.kind == NAME and before == "=":
+    elif kind == NAME and before == "=":
         plain = "string"
     found: list[SemanticToken] = []
     at = span.start
@@ -240,6 +242,7 @@ def _lines(token: SemanticToken, text: str) -> Iterable[SemanticToken]:
 _WORDS = frozenset((NAME, OPERATOR, STRING, NUMBER, QUANTITY, SYMBOL, BRACED))
 _NUMBERS = {type_: number for number, type_ in enumerate(TYPES)}
 _BITS = {modifier: 1 << number for number, modifier in enumerate(MODIFIERS)}
+_OVER_LINES = frozenset((COMMENT, STRING, BRACED, QUANTITY))  # what may go over a line end, or have one in it
 _PLAIN = {
     COMMENT: "comment",
     STRING: "string",
@@ -248,6 +251,7 @@ _PLAIN = {
     SYMBOL: "operator",
     BRACED: "variable",
 }
+_COLOURED = frozenset((NAME, *_PLAIN))  # where no word names anything
 _TYPES = {
     What.TREE: "class",
     What.REQUIREMENT: "interface",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from lsprotocol import types
 
 from btq_lang import features
@@ -21,13 +23,28 @@ def register(server: Server) -> None:
         found = server.tokens[place[1]] = str(server.count), features.colours(*place, convert.encoding)
         return found
 
+    async def made(document: types.TextDocumentIdentifier) -> None:
+        """Make what the tokens consist of for the first time, and listen meanwhile; after an edit, go on with what is
+        there then."""
+        place, is_done = server.at(document), False
+        while place is not None and not is_done:
+            for _ in features.making(*place, convert.encoding):
+                await asyncio.sleep(0)
+                if server.at(document) != place:
+                    break
+            else:
+                is_done = True
+            place = server.at(document)
+
     def whole(found: tuple[str, features.Colours] | None) -> Json:
         return Json(f'{{"resultId": "{found[0]}", "data": {found[1].as_json}}}') if found else Json('{"data": []}')
 
     legend = types.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
-    def full(params: types.SemanticTokensParams) -> Json:
+    async def full(params: types.SemanticTokensParams) -> Json:
+        if convert.path(params.text_document.uri) not in server.tokens:
+            await made(params.text_document)
         return whole(colours(params.text_document))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
