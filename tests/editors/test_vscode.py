@@ -224,11 +224,31 @@ def test_a_snippet_writes_a_requirement(code: Workbench) -> None:
     )
 
 
-def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench) -> None:
+@pytest.mark.parametrize("served", [True, False])
+def test_checking_all_missions_finds_what_is_wrong_in_files_that_are_not_open(code: Workbench, served: bool) -> None:
+    """Each mistake stands there once: what the server tells, the task does not tell again."""
+    if not served:
+        code.settings(**{**ENVIRONMENT, "btq.checkClosedFiles": False})
     code.write("unopened.btq", WRONG)
     code.command("btq: Check All Missions")
     code.task_ends()
     assert "btq unknown-node" in " ".join(code.problems_of("unopened.btq", 1))
+    code.settings(**ENVIRONMENT)
+
+
+def test_a_task_takes_nothing_from_the_problems_and_knows_which_rules_are_off(code: Workbench) -> None:
+    code.write("opened.btq", WRONG)
+    code.open("opened.btq")
+    code.problems_of("opened.btq", 1)
+    code.command("btq: Check All Missions")
+    code.task_ends()
+    code.problems_of("opened.btq", 1)
+    code.settings(**{**ENVIRONMENT, "btq.rules": {"unknown-node": "off"}})
+    code.no_problems_of("opened.btq")
+    code.command("btq: Check All Missions")
+    code.see(".single-terminal-tab .codicon-check")
+    code.no_problems_of("opened.btq")
+    code.settings(**ENVIRONMENT)
 
 
 @pytest.mark.parametrize("gone", ["robot", "robot/mission.btq"])
@@ -520,6 +540,16 @@ def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
     # VS Code ticks the step in a new session; in this one, where the command was run before, not always.
     code.task_ends()
     code.focus_nothing()
+
+
+def test_a_project_outside_the_open_folders_gets_its_window(code: Workbench, tmp_path: Path) -> None:
+    (tmp_path / "robot").mkdir()
+    with code.empty_window() as window:
+        window.command("btq: New Project")
+        window.choose_empty(tmp_path / "robot")
+        window.see(".tab.active:has-text('mission.btq')")
+        window.see(".explorer-folders-view .monaco-list-row:has-text('skills.btq')")
+    assert {path.name for path in (tmp_path / "robot").iterdir()} == {"btq.toml", "mission.btq", "skills.btq"}
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])

@@ -54,6 +54,20 @@ class Workbench:
             path.unlink(missing_ok=True)
         self._written.clear()
 
+    @contextmanager
+    def empty_window(self) -> Iterator[Workbench]:
+        """Another window, in which no folder is open."""
+        assert self.page.context.browser is not None, "a page of a browser"
+        page = self.page.context.browser.new_page(viewport=self.page.viewport_size)
+        page.set_default_timeout(_WAIT)
+        page.goto(f"{self.origin}/?ew=true")
+        page.wait_for_selector(".monaco-workbench .part.editor", timeout=_WAIT)
+        try:
+            yield Workbench(page, self.origin, self.folder, self._machine_settings, self.programs)
+        finally:
+            page.goto("about:blank")
+            page.close()
+
     def open(self, name: str) -> None:
         """Open a file by its path, in an editor alone."""
         self.keys("Control+p")
@@ -81,11 +95,22 @@ class Workbench:
         self.page.locator(".part.statusbar").click(position={"x": 400, "y": 10})
 
     def command(self, title: str) -> None:
-        """Run a command of the palette."""
-        self.keys("F1")
-        self._quick_input().fill(f">{title}")
-        self.see(f".quick-input-list .monaco-list-row.focused:has-text({_quoted(title)})")
-        self.keys("Enter")
+        """Run a command of the palette.
+
+        What the palette has is settled when it opens: who is early, before an extension is awake, asks again.
+        """
+        from playwright.sync_api import TimeoutError as Timeout
+
+        row = self.page.locator(f".quick-input-list .monaco-list-row.focused:has-text({_quoted(title)})").first
+        for _ in range(8):
+            self.keys("F1")
+            self._quick_input().fill(f">{title}")
+            with suppress(Timeout):
+                row.wait_for(state="attached", timeout=_WAIT / 8)
+                self.keys("Enter")
+                return
+            self.keys("Escape")
+        raise AssertionError(f"no command {title}")
 
     def choose(self, label: str) -> None:
         """Take an entry of the list that is open."""

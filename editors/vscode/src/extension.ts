@@ -15,7 +15,7 @@ import {
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
-import { runTask, Tasks } from "./tasks";
+import { Tasks } from "./tasks";
 import { TreeView } from "./treeView";
 import { type Ask, XmlView } from "./xml";
 
@@ -40,6 +40,9 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   const xml = new XmlView(context, ask);
   const tree = new TreeView(context, ask);
   const overview = new OverviewView(context, ask);
+  const tasks = new Tasks(line, () => {
+    return (client?.isRunning() ?? false) && vscode.workspace.getConfiguration("btq").get("checkClosedFiles", true);
+  });
 
   // One start at a time, in the order asked for: two servers would answer everything twice.
   const restart = (): Promise<void> => {
@@ -54,7 +57,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("btq.showLog", () => log.show()),
     vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
     vscode.commands.registerCommand("btq.newProject", () => newProject(context)),
-    vscode.commands.registerCommand("btq.check", async () => runTask("check", await line())),
+    vscode.commands.registerCommand("btq.check", () => tasks.run("check")),
     // What the server's code lenses run: positions come as the protocol has them.
     vscode.commands.registerCommand("btq.showReferences", async (uri: string, at: Position, places: Location[]) => {
       const converter = client?.protocol2CodeConverter;
@@ -63,13 +66,13 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
       const here = converter.asPosition(at);
       await vscode.commands.executeCommand("editor.action.showReferences", vscode.Uri.parse(uri), here, found);
     }),
-    vscode.commands.registerCommand("btq.build", async () => runTask("build", await line())),
+    vscode.commands.registerCommand("btq.build", () => tasks.run("build")),
     vscode.commands.registerCommand("btq.showTree", () => tree.show()),
     vscode.commands.registerCommand("btq.saveTree", orSay(() => tree.save())),
     vscode.commands.registerCommand("btq.showXml", () => xml.show()),
     vscode.commands.registerCommand("btq.openOverview", orSay(() => overview.show())),
     vscode.commands.registerCommand("btq.copyNodePath", orSay(() => copyNodePath(ask))),
-    vscode.tasks.registerTaskProvider("btq", new Tasks(line)),
+    vscode.tasks.registerTaskProvider("btq", tasks),
     vscode.workspace.onDidSaveTextDocument(async (document) => {
       if (document.languageId === "btq" && vscode.workspace.getConfiguration("btq", document).get("buildOnSave")) {
         await buildSaved(document, await line(), log);
@@ -83,6 +86,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.workspace.onDidGrantWorkspaceTrust(restart),
   );
   await onInterpreterChange(context, restart);
+  await openNewMission(context);
   await restart();
 }
 
@@ -244,11 +248,26 @@ async function newProject(context: vscode.ExtensionContext): Promise<void> {
     void vscode.window.showErrorMessage(said);
     return;
   }
-  if (!vscode.workspace.getWorkspaceFolder(folder)) {
-    vscode.workspace.updateWorkspaceFolders(vscode.workspace.workspaceFolders?.length ?? 0, 0, { uri: folder });
+  const mission = vscode.Uri.joinPath(folder, "mission.btq");
+  if (vscode.workspace.getWorkspaceFolder(folder)) {
+    await vscode.window.showTextDocument(mission);
+    return;
   }
-  await vscode.window.showTextDocument(vscode.Uri.joinPath(folder, "mission.btq"));
+  // The window of the folder starts this extension anew: it opens the mission there.
+  await context.globalState.update(NEW_MISSION, mission.toString());
+  const isFree = !vscode.workspace.workspaceFolders?.length;
+  await vscode.commands.executeCommand("vscode.openFolder", folder, { forceReuseWindow: isFree, forceNewWindow: !isFree });
 }
+
+/** Opens the mission of a project that was begun for this window. */
+async function openNewMission(context: vscode.ExtensionContext): Promise<void> {
+  const mission = vscode.Uri.parse(context.globalState.get(NEW_MISSION, ""));
+  if (!vscode.workspace.getWorkspaceFolder(mission)) return;
+  await context.globalState.update(NEW_MISSION, undefined);
+  await vscode.window.showTextDocument(mission);
+}
+
+const NEW_MISSION = "newMission";
 
 /** The XML of what was saved, beside it; what is wrong with the mission is shown already. */
 async function buildSaved(

@@ -30,8 +30,10 @@ export async function findServer(extensionPath: string, active: string | undefin
   const [command, ...args] = settings.get<string[]>("server.command", []);
   const setting = settings.get<string>("interpreter", "");
   if (command) {
-    const python = await firstRecent([setting, active, ...NAMES]);
-    return { command, args, origin: "the setting btq.server.command", btq: python ? [python.path, bundled] : ["btq"] };
+    const beside = path.join(path.dirname(command), process.platform === "win32" ? "btq.exe" : "btq");
+    const python = existsSync(beside) ? undefined : await firstRecent([setting, active, ...NAMES]);
+    const btq = existsSync(beside) ? [beside] : python ? [python.path, bundled] : ["btq"];
+    return { command, args, origin: "the setting btq.server.command", btq };
   }
   const strategy = settings.get<string>("importStrategy");
   const chosen = await firstRecent([setting, active]);
