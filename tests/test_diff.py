@@ -461,3 +461,28 @@ def test_revisions_that_there_are_not(repository: Path, tmp_path: Path) -> None:
     code, _, told = btq("--git", "HEAD", cwd=tmp_path)
     assert code == 2
     assert "not a git repository" in told
+
+
+def test_the_side_file_of_a_revision_is_read(repository: Path) -> None:
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b")
+    mission = repository / "m.btq"
+    for limit in (30, 20):
+        mission.write_text(f"QualityReq rq1\n    takes at most {limit} s\nBehaviorTree Main\n    Go satisfies rq1\n")
+        subprocess.run(
+            [sys.executable, "-m", "btq_lang", "build", "m.btq"], cwd=repository, check=True, capture_output=True
+        )
+        if limit == 30:
+            subprocess.run([*git, "add", "m.btq", "m.xml", "m.qreq.json"], cwd=repository, check=True)
+            subprocess.run([*git, "commit", "-q", "-m", "built"], cwd=repository, check=True)
+    changed = "    - takes at most 30 s\n    + takes at most 20 s\n\n1 requirement changed\n"
+    assert btq("--git", "HEAD", "m.xml", cwd=repository) == (
+        1,
+        f"HEAD:m.xml -> m.xml\n~ requirement rq1 changed  m.qreq.json:m.btq:1\n{changed}",
+        "",
+    )
+    subprocess.run([*git, "commit", "-q", "-a", "-m", "built again"], cwd=repository, check=True)
+    assert btq("--git", "HEAD~1..HEAD", "m.xml", cwd=repository) == (
+        1,
+        f"HEAD~1:m.xml -> HEAD:m.xml\n~ requirement rq1 changed  HEAD:m.qreq.json:m.btq:1\n{changed}",
+        "",
+    )

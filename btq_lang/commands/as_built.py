@@ -12,29 +12,70 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.commands.files import Files, Group
+from btq_lang.commands.files import Files
 from btq_lang.loader import absolute, find_project, read, shown
 from btq_lang.parser import parse
 from btq_lang.project import include_candidates
 from btq_lang.record import Record
 from btq_lang.syntax import Include
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    class Source(Protocol):
+        """Where files come from: the disk, or a revision."""
+
+        def is_file(self, path: str) -> bool:
+            """Whether there is such a file."""
+
+        def text(self, path: str) -> str | None:
+            """What it says; None where it cannot be read."""
+
+        def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+            """A file with all that it includes, where the known texts count instead of those there."""
 
 
-def as_built(path: str) -> tuple[Group, str, Callable[[str], str]] | None:
+class Disk:
+    """The files as they are now."""
+
+    def is_file(self, path: str) -> bool:
+        return os.path.isfile(path)
+
+    def text(self, path: str) -> str | None:
+        return read(path)[0]
+
+    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+        files = Files()
+        files.overlay.update(known)
+        groups, problems = files.groups(known)
+        group = next((group for group in groups if path in group.given), None)
+        return None if problems or group is None else group.workspace
+
+
+def as_built(
+    path: str, source: Source, called: Callable[[str], str] = shown
+) -> tuple[Workspace, str, Callable[[str], str]] | None:
     """The mission of an XML file; None: there is no side file, or it is of something else.
+
+    Args:
+        path: of the XML.
+        source: where it and its side file are read.
+        called: how people call a file of that.
 
     Returns:
         The mission with all that it includes, its path in there, where no file needs to be, and how its paths are
         shown: those that stand in the side file behind that one's.
     """
     side = side_path(path)
-    if path == side or not path.endswith(".xml") or not os.path.isfile(side):
+    if path == side or not path.endswith(".xml") or not source.is_file(side):
         return None
-    made = _made(path)
+    made = _made(path, source)
     if made is None or made.source == path:
         return None
     target = f"{os.path.splitext(path)[0]}.btq"
-    files = Files()
+    known: dict[str, str] = {}
     sources: dict[str, str] = {}
     waiting = [(made, path, target)]
     for made, xml, place in waiting:
@@ -43,17 +84,16 @@ def as_built(path: str) -> tuple[Group, str, Callable[[str], str]] | None:
             (place, made.text),
             *((absolute(os.path.join(folder, each)), it) for each, it in made.others),
         ):
-            files.overlay[name] = text
+            known[name] = text
             sources[name] = made.source
-        for built, included in _missing(made, xml, place):
-            below = _made(built) if included not in files.overlay else None
+        for built, included in _missing(made, xml, place, source):
+            below = _made(built, source) if included not in known else None
             if below is not None:
                 waiting.append((below, built, included))
-    groups, problems = files.groups(files.overlay)
-    group = next((group for group in groups if target in group.given), None)
-    if problems or group is None:
+    workspace = source.workspace(target, known)
+    if workspace is None:
         return None
-    return group, target, lambda each: f"{shown(sources[each])}:{shown(each)}" if each in sources else shown(each)
+    return workspace, target, lambda each: f"{called(sources[each])}:{shown(each)}" if each in sources else called(each)
 
 
 class _Made(Record):
@@ -72,11 +112,11 @@ class _Made(Record):
     source: str
 
 
-def _made(path: str) -> _Made | None:
+def _made(path: str, source: Source) -> _Made | None:
     """What an XML file was made of, by its side file or, where it has nothing to say beyond its XML, by that."""
     side = side_path(path)
-    xml, _ = read(path)
-    said = read(side)[0] if os.path.isfile(side) else None
+    xml = source.text(path)
+    said = source.text(side) if source.is_file(side) else None
     if xml is None:
         return None
     done = import_xml(xml, for_people=False)
@@ -89,7 +129,7 @@ def _made(path: str) -> _Made | None:
     return _Made(done.text if is_generated(xml) else xml, (), includes, path)
 
 
-def _missing(made: _Made, xml: str, place: str) -> Iterator[tuple[str, str]]:
+def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tuple[str, str]]:
     """The XML of what a mission includes and what is not there, built into another folder, and where it would be."""
     includes = tuple(_includes(made.text)) if place.endswith(".btq") else ()
     if len(includes) != len(made.includes):
@@ -100,7 +140,7 @@ def _missing(made: _Made, xml: str, place: str) -> Iterator[tuple[str, str]]:
             continue
         places = include_candidates(project, place, said)
         built = absolute(os.path.join(os.path.dirname(xml), named))
-        if not any(map(os.path.isfile, places)) and os.path.isfile(built):
+        if not any(map(source.is_file, places)) and source.is_file(built):
             yield built, places[0]
 
 

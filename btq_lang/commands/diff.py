@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator
 
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated
 from btq_lang.btcpp.undeclared import made_models
-from btq_lang.commands.as_built import as_built
+from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, Group
-from btq_lang.commands.git import GitTrouble, Revisions, revisions
+from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
 from btq_lang.garbage import collecting_seldom
@@ -120,16 +120,21 @@ def _sides(path: str) -> dict[str, Side]:
     """The mission of a file, with all that it includes; or those of a folder, each by itself, by their names in it."""
     is_folder = os.path.isdir(path)
     found: dict[str, Side] = {}
-    built = None if is_folder else as_built(path)
+    built = None if is_folder else _built_on_disk(path)
     if built is not None:
-        group, mission, place = built
-        return {"": Side(shown(path), group.workspace, group.workspace.closure(mission), place)}
+        return {"": built}
     for group in _groups([path]):
         for each in group.given:
             paths = (each,) if is_folder else group.workspace.closure(each)
             name = each.removeprefix(f"{path}/") if is_folder else ""
             found[name] = Side(shown(each), group.workspace, paths, shown)
     return found
+
+
+def _built_on_disk(path: str) -> Side | None:
+    """What a built XML file was made of, where its side file says so."""
+    built = as_built(path, Disk())
+    return None if built is None else Side(shown(path), built[0], built[0].closure(built[1]), built[2])
 
 
 def _groups(paths: list[str]) -> tuple[Group, ...]:
@@ -154,7 +159,7 @@ def _of_revisions(options: Namespace) -> Iterator[Comparison]:
             if sides == (NOWHERE, NOWHERE):
                 where = known.names[known.new] if known.new is not None else "here"
                 raise Trouble(f"{shown(path)}: no such file in {known.names[known.old]} or {where}")
-            yield compared(*sides)
+            yield _without_made_models(compared(*sides))
             continue
         for before, after in known.changed(path):
             yield compared(_revised(known, known.old, before, False), _revised(known, known.new, after, False))
@@ -167,12 +172,18 @@ def _revised(known: Revisions, revision: str | None, path: str | None, with_incl
     if revision is None:
         if not os.path.exists(path):
             return NOWHERE
+        side = _built_on_disk(path) if with_includes else None
+        if side is not None:
+            return side
         group = _groups([path])[0]
         return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
+    name = _named(known.names[revision])
+    built = as_built(path, Commit(known, revision), name) if with_includes else None
+    if built is not None:
+        return Side(name(path), built[0], built[0].closure(built[1]), built[2])
     workspace = known.workspace(revision, path)
     if workspace is None:
         return NOWHERE
-    name = _named(known.names[revision])
     return Side(name(path), workspace, workspace.closure(path) if with_includes else (path,), name)
 
 

@@ -51,33 +51,40 @@ class Revisions:
                 pairs.append(pair)
         return pairs
 
-    def workspace(self, commit: str, path: str) -> Workspace | None:
-        """A file of a commit with all that it includes there; None where the commit has no such file."""
+    def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
+        """A file of a commit with all that it includes there; None where the commit has no such file.
+
+        Args:
+            known: texts that count instead of those of the commit, by path.
+        """
+        known = known or {}
         project = find_project(path).project
         files: dict[str, File] = {}
         waiting = [path]
         for each in waiting:
-            text = self._text(commit, each)
+            text = known[each] if each in known else self.text(commit, each)
             if text is None or each in files:
                 continue
             files[each] = file_of(each, text)
             for include in files[each].includes:
                 if include.path is not None:
                     found = include_candidates(project, each, include.path.text)
-                    waiting += [candidate for candidate in found if self._has(commit, candidate)][:1]
+                    waiting += [one for one in found if one in known or self.has(commit, one)][:1]
         return Workspace(files, project) if path in files else None
 
     def had_folder(self, path: str) -> bool:
         """Whether a path is a folder of one of the revisions, and perhaps no more."""
         return any(self._kind(commit, path) == "tree" for commit in (self.old, self.new) if commit is not None)
 
-    def _text(self, commit: str, path: str) -> str | None:
-        if not self._has(commit, path):
+    def text(self, commit: str, path: str) -> str | None:
+        """What a file of a commit says; None where there is none."""
+        if not self.has(commit, path):
             return None
         data = _git_bytes(self._root, "cat-file", "blob", f"{commit}:{self._inside(path)}")
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
-    def _has(self, commit: str, path: str) -> bool:
+    def has(self, commit: str, path: str) -> bool:
+        """Whether a commit has a file."""
         return self._kind(commit, path) == "blob"
 
     def _kind(self, commit: str, path: str) -> str:
@@ -92,6 +99,23 @@ class Revisions:
     def _outside(self, path: str) -> str:
         """A path of git's, as it is asked for: relative to the current folder, whatever links lead there."""
         return absolute(os.path.relpath(f"{self._root}/{path}", os.path.realpath(".")))
+
+
+class Commit:
+    """The files of one commit."""
+
+    def __init__(self, known: Revisions, commit: str) -> None:
+        self._known: Final = known
+        self._commit: Final = commit
+
+    def is_file(self, path: str) -> bool:
+        return self._known.has(self._commit, path)
+
+    def text(self, path: str) -> str | None:
+        return self._known.text(self._commit, path)
+
+    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+        return self._known.workspace(self._commit, path, known)
 
 
 def revisions(asked: str, path: str) -> Revisions:
