@@ -29,12 +29,14 @@ ZERO: Final = 0x30
 NINE: Final = 0x39
 EQUALS: Final = 0x3D
 QUESTION: Final = 0x3F
+BACKSLASH: Final = 0x5C
 UNDERSCORE: Final = 0x5F
 SMALL_A: Final = 0x61
 SMALL_S: Final = 0x73
 SMALL_T: Final = 0x74
 SMALL_Z: Final = 0x7A
 LEFT_BRACE: Final = 0x7B
+RIGHT_BRACE: Final = 0x7D
 ASCII: Final = 0x80  # the first that is none
 
 

@@ -576,7 +576,8 @@ class Lexer:
         text = self.text
         if ord(text[start]) != HASH and text[start : start + 2] not in ("//", "/*"):
             return start
-        if start > 0 and text[start - 1] not in " \t\r\n(),\ufeff" and not text.startswith("*/", start - 2):
+        before = text[start - 1 : start]
+        if before not in " \t\r\n()," and before != "\ufeff" and not text.startswith("*/", start - 2):
             return start
         if self.raws and self.raws[-1] == "=":
             return start
@@ -584,7 +585,7 @@ class Lexer:
 
     def _read_comment(self, start: int) -> int:
         text = self.text
-        closes = text.startswith("/*", start)
+        closes = text[start : start + 2] == "/*"
         if closes and start < self._no_comment_end:
             closing = text.find("*/", start + 2)
             if closing >= 0:

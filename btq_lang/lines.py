@@ -10,14 +10,14 @@ from __future__ import annotations
 from btq_lang import patterns
 from btq_lang.blocks import MAX_DEPTH, Block
 from btq_lang.lexer import Lexer
-from btq_lang.patterns import NO_NODE, role_of, value_kind
+from btq_lang.patterns import NO_NODE, blank, pair_of, role_of, value_kind
 from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
 from btq_lang.tokens import NAME, NODE_CLAUSES
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    import re
+    from typing import Any
 
 
 def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node | None]:
@@ -39,6 +39,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     children = block.children
     node: Node | None = None
     found: list[NodeClause] | None
+    kind: Any  # like all that `blank` makes
     at = lexer.line_start
     behind = -1
     while True:
@@ -48,7 +49,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             if between is None or (match := read_line(text, between.end())) is None:
                 break
             at = between.end()
-        indent, first, second, third, bracket, end = match.group(1, 2, 3, 4, 11, 12)
+        indent, first, second, third, key, value, key2, value2, key3, value3, bracket, end = match.groups()
         if indent != column:
             if indent.startswith(column):
                 if node is None:
@@ -78,7 +79,10 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             if third is not None:
                 break
             category = None
-            kind: Word | None = Word(role, start, first)
+            kind = blank(Word)
+            kind.kind = role
+            kind.start = start
+            kind.raw = first
             label = None if second is None else Word(value_kind(second[0], NAME), start + len(first) + 1, second)
         elif role == NO_NODE:
             if first not in NODE_CLAUSES or children or second == "QualityReq":
@@ -98,24 +102,32 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                 kind = Word(value_kind(second[0], NAME), at, second)
                 if third is not None:
                     label = Word(value_kind(third[0], NAME), at + len(second) + 1, third)
+        pairs: tuple[Pair, ...] = ()
+        if key is not None:
+            at_of = match.start
+            pair = pair_of(key, at_of(5) - base, value, at_of(6) - base)
+            if key2 is None:
+                pairs = (pair,)
+            else:
+                pairs = (pair, pair_of(key2, at_of(7) - base, value2, at_of(8) - base))
+                if key3 is not None:
+                    pairs += (pair_of(key3, at_of(9) - base, value3, at_of(10) - base),)
         at = match.end()
-        if end and bracket is None:
-            node = Node(start, match.start(12) - base, category, kind, label, (), (), ())
-        elif end and bracket:
-            node = Node(start, match.start(12) - base, category, kind, label, tuple(_pairs(match, base)), (), ())
+        clauses: tuple[NodeClause, ...] = ()
+        if end and bracket != "":
+            node_end = match.start(12) - base
         else:
             try:
                 found = []
                 node_end = match.end(11)
-                pairs: list[Pair] = []
                 if bracket is None:
                     node_end = at
                     if text[at] not in " ":
                         break
-                else:
-                    pairs = _pairs(match, base)
-                    if not bracket:
-                        at = node_end = attributes(text, node_end, indent, base, pairs, found)
+                elif not bracket:
+                    further = [*pairs]
+                    at = node_end = attributes(text, node_end, indent, base, further, found)
+                    pairs = tuple(further)
                 if text[at] == "\n":
                     at += 1
                     node_end -= base
@@ -125,24 +137,17 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                     node_end = found[-1].end if len(found) > known else node_end - base
             except (Unusual, IndexError):
                 break
-            node = Node(start, node_end, category, kind, label, tuple(pairs), tuple(found), ())
+            clauses = tuple(found)
+        made = blank(Node)
+        made.start = start
+        made.end = node_end
+        made.category = category
+        made.kind = kind
+        made.label = label
+        made.attributes = pairs
+        made.clauses = clauses
+        made.children = ()
+        node = made
         behind = at
-        children.append(node)
+        children.append(made)
     return behind, node
-
-
-def _pairs(line: re.Match[str], base: int) -> list[Pair]:
-    """The pairs that stand on a line"""
-    key, value, key2, value2, key3, value3 = line.group(5, 6, 7, 8, 9, 10)
-    if key is None:
-        return []
-    start = line.start
-    word = Word(value_kind(value[0], NAME), start(6) - base, value)
-    found = [Pair(Word(NAME, start(5) - base, key), word)]
-    if key2 is not None:
-        word = Word(value_kind(value2[0], NAME), start(8) - base, value2)
-        found.append(Pair(Word(NAME, start(7) - base, key2), word))
-        if key3 is not None:
-            word = Word(value_kind(value3[0], NAME), start(10) - base, value3)
-            found.append(Pair(Word(NAME, start(9) - base, key3), word))
-    return found

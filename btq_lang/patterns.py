@@ -37,7 +37,8 @@ from btq_lang.tokens import (
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from collections.abc import Callable
+    from typing import Any, Final
 
 
 def read_attributes(
@@ -53,12 +54,7 @@ def read_attributes(
         if line is not None and not line.startswith(blanks):
             break
         if key is not None:
-            pairs.append(
-                Pair(
-                    Word(NAME, match.start(2) - base, key),
-                    Word(value_kind(value[0], NAME), match.start(3) - base, value),
-                )
-            )
+            pairs.append(pair_of(key, match.start(2) - base, value, match.start(3) - base))
             at = match.end()
         elif closing is not None:
             return match.end(), True
@@ -134,6 +130,20 @@ def read_tokens(text: str, at: int, kinds: list[int], starts: list[int], raws: l
     return at
 
 
+def pair_of(key: str, start: int, value: str, value_start: int) -> Pair:
+    """`key = value` of two words that a pattern has found"""
+    pair = blank(Pair)
+    pair.key = word = blank(Word)
+    word.kind = NAME
+    word.start = start
+    word.raw = key
+    pair.value = word = blank(Word)
+    word.kind = value_kind(value[0], NAME)
+    word.start = value_start
+    word.raw = value
+    return pair  # type: ignore[no-any-return]  # see `blank`
+
+
 def _path(start: int, raw: str) -> QualityPath:
     words = []
     for name in raw.split("."):
@@ -146,10 +156,11 @@ def _path(start: int, raw: str) -> QualityPath:
 
 _NAME: Final = r"[A-Za-z_][A-Za-z0-9_]*"  # `\w` means more letters and takes the engine five times as long
 _STRING: Final = r"\"[^\"\\\r\n]*\"|'[^'\\\r\n]*'"
-_LABEL: Final = rf" (?!\(|satisfi|tags)({_NAME}|{_STRING})"
+_LABEL: Final = rf" (?!satisfi|tags)({_NAME}|{_STRING})"
 # A number may have a unit; before a comma, a bracket, the line's end or the next key it has none.
 _VALUE: Final = rf"{_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=)"
-_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})(?:(?=\))|,?(?: |\r?\n\1[ \t]*))"
+_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})"
+_NEXT: Final = rf",?(?: |\r?\n\1[ \t]*){_PAIR}"
 _REMARK: Final = r"(?:\#|//)[^\r\n]*"
 _COMMENT: Final = rf"{_REMARK}|/\*[^*]*(?:\*+[^*/][^*]*)*\*+/[ \t]*"
 _LISTED: Final = rf"(?!satisfi|tags|parameters|Quality){_NAME}(?:-\w+)*"
@@ -187,8 +198,8 @@ def _compile() -> None:
     #     12 the end of the line with the comment before it, empty where the line goes on
     read_line = re.compile(
         rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME})(?:{_LABEL}(?:{_LABEL}|)|)"
-        rf"(?: ?\((?:(?:\r?\n\1[ \t]*|){_PAIR}(?:{_PAIR}(?:{_PAIR}|)|)|)(\)|)|)"
-        rf"((?: +{_REMARK}|)\r?\n|)"
+        rf"(?: ?\((?:(?:\r?\n\1[ \t]*|){_PAIR}(?:{_NEXT}(?:{_NEXT}|)|),?|)(\)|(?=[ \r\n])|(?<=\())|)"
+        rf"(\n|\r\n| +{_REMARK}\r?\n|)"
     ).match
     # Blank lines and comments between two lines.
     read_between = re.compile(rf"(?:[ \t]*(?:{_COMMENT}|)\r?\n)+").match
@@ -249,6 +260,10 @@ def _definition() -> re.Pattern[str]:
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
+# An instance without its values: who sets them one by one pays half of what calling the class costs, whose `__init__`
+# a call of its own is.  For words, pairs and nodes alone, of which a file has thousands; the type is Any, for only
+# `__init__` may set what is final.
+blank: Final[Callable[[type], Any]] = object.__new__
 value_kind: Final = (dict.fromkeys("\"'", STRING) | dict.fromkeys("-0123456789", NUMBER) | {"{": BRACED}).get
 CATEGORY: Final = -1
 NO_NODE: Final = -2  # a line may begin with it and perhaps be no node, or end brackets

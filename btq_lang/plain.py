@@ -15,6 +15,7 @@ import re
 
 from btq_lang.characters import (
     APOSTROPHE,
+    BACKSLASH,
     CLOSING,
     COMMA,
     DOT,
@@ -103,10 +104,18 @@ def plain_node(text: str, start: i64, blanks: str, base: i64) -> tuple[Node | No
         code: i64 = ord(text[at])
         if code == LINE_FEED:
             return Node(start - base, end - base, category, kind, label, (), (), ()), at + 1
-        pairs: list[Pair] = []
+        pair: Pair | None = None
+        if code == OPENING:
+            pair, at = _pair(text, at + 1, base)
+            if pair is not None and ord(text[at]) == CLOSING and ord(text[at + 1]) == LINE_FEED:  # spares the lists
+                end = at + 1
+                return Node(start - base, end - base, category, kind, label, (pair,), (), ()), end + 1
+        pairs: list[Pair] = [] if pair is None else [pair]
         clauses: list[NodeClause] = []
         if code == OPENING:
-            at = end = attributes(text, at + 1, blanks, base, pairs, clauses)
+            if pair is not None and ord(text[at]) == COMMA:
+                at += 1
+            at = end = attributes(text, at, blanks, base, pairs, clauses)
         if ord(text[at]) == LINE_FEED:
             at += 1
         else:
@@ -142,9 +151,9 @@ def _head(text: str, start: i64, base: i64) -> tuple[Word | None, Word | None, W
     end = start + len(kind.raw)
     at = _behind_word(text, end)
     second = _label(text, at, base)
-    if kind.raw not in _NO_KINDS:
+    if len(kind.raw) > _LONGEST or kind.raw not in _NO_KINDS:
         return None, kind, second, end if second is None else at + len(second.raw)
-    if kind.raw not in CATEGORIES:
+    if kind.raw not in _CATEGORIES:
         raise Unusual
     if second is None:
         return kind, None, None, end
@@ -182,7 +191,7 @@ def _label(text: str, start: i64, base: i64) -> Word | None:
     if code in (OPENING, LINE_FEED, RETURN, HASH, SLASH):
         return None
     word = _name(text, start, base)
-    return None if word.raw in NODE_CLAUSES else word
+    return None if word.raw in _CLAUSES else word
 
 
 def _behind_word(text: str, end: i64) -> i64:
@@ -239,10 +248,19 @@ def _string(text: str, start: i64, quote: i64) -> str:
     """STRING without a backslash, none of whose lines may be the start of an item"""
     if quote != QUOTE and quote != APOSTROPHE:
         raise Unusual
-    raw = text[start : text.find(text[start], start + 1) + 1]
-    if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
-        raise Unusual
-    return raw
+    if not COMPILED:
+        raw = text[start : text.find(text[start], start + 1) + 1]
+        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+            raise Unusual
+        return raw
+    end = start + 1
+    while (code := ord(text[end])) != quote:
+        end += 1
+        if code == BACKSLASH:
+            raise Unusual
+        if code in (LINE_FEED, RETURN) and ord(text[end]) not in (SPACE, TAB, LINE_FEED, RETURN):  # as _OUTER_LINE
+            raise Unusual
+    return text[start : end + 1]
 
 
 # ---- what stands in brackets: everything returns where it ends ------------------------------------------------------
@@ -263,19 +281,30 @@ def attributes(text: str, at: i64, blanks: str, base: i64, pairs: list[Pair], cl
             continue
         if not begins_name(code):
             raise Unusual
-        end = name_end(text, at)
-        key = text[at:end]
-        start = _behind_equals(text, end)
-        if start < 0:
-            at = _clause(text, at, key, blanks, base, clauses)
-        elif code < SMALL_A and key in _NO_NAMES:
-            raise Unusual
+        pair, end = _pair(text, at, base)
+        if pair is None:
+            end = _clause(text, at, text[at : name_end(text, at)], blanks, base, clauses)
         else:
-            value = _value(text, start, base)
-            pairs.append(Pair(Word(NAME, at - base, key), value))
-            at = start + len(value.raw)
+            pairs.append(pair)
+        at = end
         if ord(text[at]) == COMMA:
             at += 1
+
+
+def _pair(text: str, at: i64, base: i64) -> tuple[Pair | None, i64]:
+    """Attribute, and where it ends; None where no `key =` stands"""
+    code: i64 = ord(text[at])
+    if not begins_name(code):
+        return None, at
+    end = name_end(text, at)
+    start = _behind_equals(text, end)
+    if start < 0:
+        return None, at
+    key = text[at:end]
+    if code < SMALL_A and key in _NO_NAMES:
+        raise Unusual
+    value = _value(text, start, base)
+    return Pair(Word(NAME, at - base, key), value), start + len(value.raw)
 
 
 def _behind_equals(text: str, at: i64) -> i64:
@@ -295,6 +324,12 @@ def _gap(text: str, at: i64, blanks: str | None) -> i64:
         return at
     if blanks is None:
         return blanks_end(text, at, len(text))
+    if COMPILED and code == LINE_FEED:  # most: a line in brackets that says something, deep enough
+        end = at + 1 + len(blanks)
+        if text[at + 1 : end] == blanks:
+            end = _behind_blanks(text, end)
+            if ord(text[end]) not in (LINE_FEED, RETURN, HASH, SLASH):
+                return end
     line = -1
     while True:
         start, end = line_opening(text, at, blanks)
@@ -344,7 +379,7 @@ def _next_line(text: str, at: i64) -> i64:
 
 def _clause(text: str, start: i64, word: str, blanks: str | None, base: i64, clauses: list[NodeClause]) -> i64:
     """ "satisfices" Quality { "," Quality } | "satisfies" ReqUse { "," ReqUse } | "tags" Name { "," Name }"""
-    if word not in NODE_CLAUSES:
+    if word not in _CLAUSES:
         raise Unusual
     if not COMPILED and blanks is None and (read := read_list(text, start, base)) is not None:
         clauses.append(read)
@@ -395,7 +430,7 @@ def _next_element(text: str, at: i64, word: str, blanks: str | None) -> i64:
     if not comma:
         return -1
     if blanks is not None and (
-        code == CLOSING or name in NODE_CLAUSES or name == "parameters" or _behind_equals(text, at + len(name)) >= 0
+        code == CLOSING or name in _CLAUSES or name == "parameters" or _behind_equals(text, at + len(name)) >= 0
     ):
         return -1
     return at
@@ -468,7 +503,11 @@ def _requirement(text: str, start: i64, blanks: str | None, base: i64) -> tuple[
     return Requirement(start - base, end - base, name, True, (), None, description, ()), end
 
 
+# Under names of this module, for where it is compiled those of another are looked up every time.
+_CLAUSES: Final = NODE_CLAUSES
+_CATEGORIES: Final = CATEGORIES
 _NO_KINDS: Final = CATEGORIES | NODE_CLAUSES | DIRECTIONS | {"xml"}
+_LONGEST: Final = max(map(len, _NO_KINDS))  # of those; to look a word up costs more than to know its length
 # NAMEs that are none, all with a capital: two are symbols, and a line that begins with one of the others ends all
 # brackets.
 _NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))

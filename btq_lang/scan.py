@@ -12,14 +12,20 @@ from __future__ import annotations
 import re
 
 from btq_lang.characters import (
+    APOSTROPHE,
     BANG,
     DOT,
     EQUALS,
+    LEFT_BRACE,
     LINE_FEED,
     MINUS,
     NINE,
     QUESTION,
+    QUOTE,
     RETURN,
+    RIGHT_BRACE,
+    SMALL_A,
+    SMALL_Z,
     SPACE,
     TAB,
     ZERO,
@@ -63,7 +69,10 @@ def word_end(text: str, start: i64, size: i64) -> i64:
     """Behind letters, digits and `_`."""
     if not COMPILED:
         return _WORD(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
-    while start < size and goes_on(ord(text[start])):
+    while start < size:
+        code: i64 = ord(text[start])
+        if (code < SMALL_A or code > SMALL_Z) and not goes_on(code):  # nearly all are small letters
+            break
         start += 1
     return start
 
@@ -112,15 +121,18 @@ def _behind(text: str, start: i64, word: str) -> i64:
 
 def line_end(text: str, start: i64) -> i64:
     """Where the line of text ends."""
-    if COMPILED:
-        size: i64 = len(text)
-        while start < size:
-            code: i64 = ord(text[start])
-            if code in (LINE_FEED, RETURN):
-                break
-            start += 1
-        return start
-    return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    if not COMPILED:
+        return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    size: i64 = len(text)
+    near: i64 = text.find("\n", start, start + _USUAL_LINE)  # no further: the next may be anywhere
+    if near >= 0 and text.find("\r", start, near) < 0:
+        return near
+    while start < size:
+        code: i64 = ord(text[start])
+        if code in (LINE_FEED, RETURN):
+            break
+        start += 1
+    return start
 
 
 def line_start(text: str, lower: i64, position: i64) -> i64:
@@ -156,8 +168,21 @@ def string_end(text: str, start: i64, quote: str) -> i64:
 
 def braced_end(text: str, start: i64) -> i64:
     """Behind the BRACED that begins at `start`; `start` where none does."""
-    braced = _BRACED(text, start)
-    return braced.end() if braced else start
+    if not COMPILED:
+        braced = _BRACED(text, start)
+        return braced.end() if braced else start
+    size: i64 = len(text)
+    if start == size or ord(text[start]) != LEFT_BRACE:
+        return start
+    end = start + 1
+    while end < size:
+        code: i64 = ord(text[end])
+        end += 1
+        if code == RIGHT_BRACE:
+            return end
+        if code in (LEFT_BRACE, QUOTE, APOSTROPHE, RETURN, LINE_FEED):
+            break
+    return start
 
 
 def number_at(text: str, start: i64) -> tuple[i64, i64]:
@@ -274,6 +299,7 @@ def unit_run(text: str, start: i64) -> i64:
     return end
 
 
+_USUAL_LINE: Final = 200  # characters that a comment seldom has
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
