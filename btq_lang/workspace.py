@@ -572,7 +572,6 @@ class Workspace:
         self._closures: dict[str, tuple[str, ...]] = {}
         self._main_trees: dict[str, Definition | None] = {}
         self._referred: dict[str, dict[Span, tuple[Reference, ...]]] = {}
-        self._main_trees: dict[str, Definition | None] = {}
 
     @classmethod
     def of(cls, texts: Mapping[str, str], project: Project | None = None) -> Workspace:
