@@ -252,6 +252,21 @@ def test_the_health_check_says_what_is_missing(neovim: Neovim) -> None:
     assert "no-such-server was not found" in neovim.run({"main.txt": ""}, script)
 
 
+def test_a_server_that_is_not_there_is_told_once(neovim: Neovim) -> None:
+    script = """
+    local said = {}
+    vim.notify = function(text) table.insert(said, text) end
+    vim.g.btq_no_lsp = nil
+    vim.g.btq_cmd = { 'no-such-server' }
+    require('btq').setup()
+    vim.cmd('edit main.btq')
+    vim.cmd('edit other.btq')
+    return said
+    """
+    found = neovim.run({"main.txt": "", "main.btq": WRONG, "other.btq": WRONG}, script, lsp=False)
+    assert found == ["btq: no-such-server was not found; :checkhealth btq says more"]
+
+
 @pytest.mark.parametrize(
     ("typed", "lines"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -102,6 +103,51 @@ def test_the_page_follows_the_text_and_the_cursor_and_leads_back(
         page.close()
         neovim.process.kill()
         neovim.process.wait(30)
+
+
+RELOAD = """
+local said, sent, over = 0, '', false
+vim.notify = function() said = said + 1 end
+local start, tell = vim.fn.jobstart, vim.fn.chansend
+vim.fn.jobstart = function(command, options)
+  options.on_exit = function() over = true end
+  return start(command, options)
+end
+vim.fn.chansend = function(job, text)
+  sent = text
+  return tell(job, text)
+end
+vim.cmd('BtqPreview')
+vim.wait(40000, function() return said > 0 end)
+vim.fn.writefile({ 'BehaviorTree Main', '    Reloaded' }, 'main.btq')
+vim.cmd('edit!')
+local kept = not vim.wait(500, function() return over end)
+local told = sent
+vim.cmd('bdelete')
+print(vim.fn.json_encode({ kept, told, (vim.wait(40000, function() return over end)) }))
+"""
+
+
+def test_a_reload_is_followed_and_closing_the_buffer_ends_it(nvim: Path, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "reload.lua").write_text(RELOAD)
+    scratch = {f"XDG_{name}_HOME": str(tmp_path / name) for name in ("STATE", "CACHE", "DATA")}
+    setup = [
+        f"set rtp^={ROOT / 'editors' / 'nvim'}",
+        "let g:btq_no_lsp = v:true",
+        f"let g:btq_program = ['{sys.executable}', '-m', 'btq_lang']",
+    ]
+    options = [word for line in setup for word in ("--cmd", line)]
+    run = subprocess.run(
+        [nvim, "--headless", "--clean", *options, "main.btq", "-c", "luafile reload.lua", "-c", "qall!"],
+        cwd=tmp_path,
+        env={**os.environ, **scratch, "HOME": str(tmp_path), "PYTHONPATH": str(ROOT), "BROWSER": "true"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    (said,) = re.findall(r"^\[.*\]", run.stdout + run.stderr, re.MULTILINE)
+    assert json.loads(said) == [True, '{"text": "BehaviorTree Main\\n    Reloaded\\n"}\n', True]
 
 
 def test_a_mission_that_is_not_saved_and_a_program_that_is_not_there_are_told(nvim: Path, tmp_path: Path) -> None:

@@ -44,28 +44,36 @@ function M.setup()
     vim.fn.setqflist({}, ' ', { title = command.title, items = places })
     vim.cmd('botright copen')
   end
-  if vim.lsp.config and vim.lsp.enable then -- 0.11 and newer
+  local starts_by_itself = vim.lsp.config and vim.lsp.enable -- 0.11 and newer
+  if starts_by_itself then
     vim.lsp.config('btq', { cmd = M.command(), capabilities = capabilities(), filetypes = { 'btq' }, root_markers = MARKERS })
     vim.lsp.enable('btq')
-    return
   end
   vim.api.nvim_create_autocmd('FileType', {
     group = vim.api.nvim_create_augroup('btq', { clear = true }),
     pattern = 'btq',
     desc = 'start the language server of btq',
     callback = function(event)
-      M.attach(event.buf)
+      if M.found() and not starts_by_itself then
+        M.attach(event.buf)
+      end
     end,
   })
+end
+
+--- Whether the server's program is there; the first time that it is not is told, for no version of Neovim tells it.
+function M.found()
+  local program = M.command()[1]
+  if vim.fn.executable(program) == 1 then
+    return true
+  end
+  vim.notify_once('btq: ' .. program .. ' was not found; :checkhealth btq says more', vim.log.levels.WARN)
+  return false
 end
 
 --- Attach the server of the buffer's project; only for Neovim 0.7 to 0.10, newer ones do it themselves.
 function M.attach(buffer)
   local command = M.command()
-  if vim.fn.executable(command[1]) ~= 1 then
-    vim.notify_once('btq: ' .. command[1] .. ' was not found; :checkhealth btq says more', vim.log.levels.WARN)
-    return
-  end
   local file = vim.api.nvim_buf_get_name(buffer)
   local root = M.root(file)
   if vim.lsp.start then -- 0.8 to 0.10

@@ -73,8 +73,13 @@ function M.follow(buffer, job)
       end
     end, PAUSE)
   end)
+  on('BufReadPost', text)
   on('BufUnload', function()
-    vim.fn.jobstop(job)
+    vim.schedule(function() -- a reload unloads, too, and has loaded again by then
+      if not vim.api.nvim_buf_is_loaded(buffer) then
+        vim.fn.jobstop(job)
+      end
+    end)
   end)
   text()
   cursor()
