@@ -166,7 +166,9 @@ def load(
     return Loaded(texts, readable, tuple(damaged), tuple(absent), tuple(problems))
 
 
-def collect(paths: Iterable[str], project: Project) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
+def collect(
+    paths: Iterable[str], project: Project, suffixes: tuple[str, ...] = SUFFIXES
+) -> tuple[tuple[str, ...], tuple[LoadProblem, ...]]:
     """The files that paths stand for, each once: a file is itself, a folder is all btq files below it, sorted.
 
     Left out below a folder: hidden files and folders, `build`, `node_modules`, and what the project excludes.  Links to
@@ -176,7 +178,7 @@ def collect(paths: Iterable[str], project: Project) -> tuple[tuple[str, ...], tu
     problems: list[LoadProblem] = []
     for path in map(absolute, paths):
         if os.path.isdir(path):
-            files.update(dict.fromkeys(sorted(_files_below(path, project, problems))))
+            files.update(dict.fromkeys(sorted(_files_below(path, project, problems, suffixes))))
         else:
             files[path] = None
     return tuple(files), tuple(problems)
@@ -271,7 +273,7 @@ def _upwards(folder: str) -> Iterator[str]:
         folder = above
 
 
-def _files_below(top: str, project: Project, problems: list[LoadProblem]) -> Iterator[str]:
+def _files_below(top: str, project: Project, problems: list[LoadProblem], suffixes: tuple[str, ...]) -> Iterator[str]:
     excluded = excluder(project)
     folders = [top]
     links: list[str] = []
@@ -293,7 +295,7 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem]) -> Ite
             if _is_folder(entry):
                 if entry.name not in _SKIPPED_FOLDERS and not excluded(path + "/"):
                     (links if entry.is_symlink() else folders).append(path)
-            elif entry.name.endswith(SUFFIXES) and not excluded(path):
+            elif entry.name.endswith(suffixes) and not excluded(path):
                 if _is_file(path):
                     yield path
                 elif entry.is_symlink() and not os.path.exists(path):

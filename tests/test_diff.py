@@ -486,3 +486,48 @@ def test_the_side_file_of_a_revision_is_read(repository: Path) -> None:
         f"HEAD~1:m.xml -> HEAD:m.xml\n~ requirement rq1 changed  HEAD:m.qreq.json:m.btq:1\n{changed}",
         "",
     )
+
+
+INCLUDED = '<root BTCPP_format="4"><BehaviorTree ID="X"><{}/></BehaviorTree></root>\n'
+
+
+def titles(out: str) -> list[str]:
+    """The files whose changes are told."""
+    return [line for line in out.splitlines() if line[:1].isalpha()]
+
+
+def test_a_change_of_included_xml_is_seen_from_its_folder(repository: Path) -> None:
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b")
+    subprocess.run([*git, "checkout", "-q", "."], cwd=repository, check=True)
+    (repository / "q.btq").write_text('include "b1.xml"\nBehaviorTree Q\n    SubTree X\n')
+    (repository / "b1.xml").write_text(INCLUDED.format("Go"))
+    (repository / "package.xml").write_text("<package><name>a</name></package>\n")
+    subprocess.run([*git, "add", "-A"], cwd=repository, check=True)
+    subprocess.run([*git, "commit", "-q", "-m", "xml"], cwd=repository, check=True)
+    (repository / "b1.xml").write_text(INCLUDED.format("Stop"))
+    (repository / "package.xml").write_text("<package><name>b</name></package>\n")
+    code, out, told = btq("--git", "HEAD", cwd=repository)
+    assert (code, titles(out), told) == (1, ["HEAD:b1.xml -> b1.xml"], "")
+    subprocess.run([*git, "commit", "-q", "-a", "-m", "other xml"], cwd=repository, check=True)
+    code, out, told = btq("--git", "HEAD~1..HEAD", cwd=repository)
+    assert (code, titles(out), told) == (1, ["HEAD~1:b1.xml -> HEAD:b1.xml"], "")
+
+
+def test_two_folders_of_xml(tmp_path: Path) -> None:
+    for folder, node in (("old", "Go"), ("new", "Stop")):
+        (tmp_path / folder / "sub").mkdir(parents=True)
+        (tmp_path / folder / "sub" / "x.xml").write_text(INCLUDED.format(node))
+        (tmp_path / folder / "same.xml").write_text(INCLUDED.format("Go"))
+        (tmp_path / folder / "package.xml").write_text(f"<package><name>{node}</name></package>\n")
+    code, out, told = btq("old", "new", cwd=tmp_path)
+    assert (code, titles(out), told) == (1, ["old/sub/x.xml -> new/sub/x.xml"], "")
+
+
+def test_built_xml_is_no_change_of_a_folder(tmp_path: Path) -> None:
+    for folder, node in (("old", "Go"), ("new", "Stop")):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "m.btq").write_text(f"BehaviorTree Main\n    {node}\n")
+        command = [sys.executable, "-m", "btq_lang", "build", "m.btq"]
+        subprocess.run(command, cwd=tmp_path / folder, check=True, capture_output=True)
+    code, out, told = btq("old", "new", cwd=tmp_path)
+    assert (code, titles(out), told) == (1, ["old/m.btq -> new/m.btq"], "")

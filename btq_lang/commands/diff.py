@@ -8,7 +8,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 
-from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated, is_written_mission
 from btq_lang.btcpp.undeclared import made_models
 from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, Group
@@ -16,7 +16,7 @@ from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
 from btq_lang.garbage import collecting_seldom
-from btq_lang.loader import LoadProblem, absolute, shown
+from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
 from btq_lang.record import replace
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.rules import Severity
@@ -123,7 +123,8 @@ def _sides(path: str) -> dict[str, Side]:
     built = None if is_folder else _built_on_disk(path)
     if built is not None:
         return {"": built}
-    for group in _groups([path]):
+    xml = _xml_below(path) if is_folder else ()
+    for group in _groups([path, *xml]):
         for each in group.given:
             paths = (each,) if is_folder else group.workspace.closure(each)
             name = each.removeprefix(f"{path}/") if is_folder else ""
@@ -135,6 +136,13 @@ def _built_on_disk(path: str) -> Side | None:
     """What a built XML file was made of, where its side file says so."""
     built = as_built(path, Disk())
     return None if built is None else Side(shown(path), built[0], built[0].closure(built[1]), built[2])
+
+
+def _xml_below(folder: str) -> tuple[str, ...]:
+    """The XML below a folder that is compared: what somebody wrote; what a build wrote, its .btq says."""
+    paths, problems = collect([folder], find_project(folder).project, (".xml",))
+    _raise(problems)
+    return tuple(path for path in paths if is_written_mission(read(path)[0] or ""))
 
 
 def _groups(paths: list[str]) -> tuple[Group, ...]:

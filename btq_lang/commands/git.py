@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import subprocess
 
-from btq_lang.loader import SUFFIXES, absolute, file_of, find_project
+from btq_lang.btcpp.marks import is_written_mission
+from btq_lang.loader import SUFFIXES, absolute, file_of, find_project, read
 from btq_lang.project import include_candidates
 from btq_lang.workspace import File, Workspace
 
@@ -36,7 +37,10 @@ class Revisions:
         self._root: Final = root
 
     def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
-        """The missions below a folder whose text changed: where they were and are; None where they were or are not."""
+        """The missions below a folder whose text changed: where they were and are; None where they were or are not.
+
+        XML is one that somebody wrote, be it by itself or for others to include; what a build wrote, its .btq says.
+        """
         commits = [self.old] if self.new is None else [self.old, self.new]
         run = ["diff", "--name-status", "--find-renames", "-z", *commits, "--", self._inside(folder) or "."]
         words = _git(self._root, *run).split("\0")
@@ -47,7 +51,7 @@ class Revisions:
             target = self._outside(words[at + 2]) if status in ("R", "C") else path
             at += 3 if status in ("R", "C") else 2
             pair = (None if status in ("A", "C") else path, None if status == "D" else target)
-            if any(each is not None and each.endswith(SUFFIXES) for each in pair):
+            if any(each is not None and each.endswith(SUFFIXES) for each in pair) or self._is_xml(*pair):
                 pairs.append(pair)
         return pairs
 
@@ -82,6 +86,15 @@ class Revisions:
             return None
         data = _git_bytes(self._root, "cat-file", "blob", f"{commit}:{self._inside(path)}")
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
+
+    def _is_xml(self, before: str | None, after: str | None) -> bool:
+        """Whether XML that somebody wrote was or is a mission."""
+        texts: list[str | None] = []
+        if before is not None and before.endswith(".xml"):
+            texts.append(self.text(self.old, before))
+        if after is not None and after.endswith(".xml"):
+            texts.append(read(after)[0] if self.new is None else self.text(self.new, after))
+        return any(text is not None and is_written_mission(text) for text in texts)
 
     def has(self, commit: str, path: str) -> bool:
         """Whether a commit has a file."""
