@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 
 from btq_lang.catalog.nodes import lookup
@@ -20,7 +21,9 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
     """What to change after a character was typed: the blanks that the line of the offset begins with.
 
     A new line goes one level deeper behind what opens a block, a tree, a requirement, a control or a decorator, and in
-    brackets; else it stands as the line above.  A `)` that begins a line stands as the line that opened the brackets.
+    brackets; else it stands as the line above.  A level is a tab where the file is indented with tabs, whatever the
+    editor would rather: the language takes no mixture.  A `)` that begins a line stands as the line that opened the
+    brackets.
     """
     text = workspace.files[path].text
     start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
@@ -32,12 +35,14 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
             return ()
         wanted = line_blanks(text, place.words[0].start)
     elif place.words and place.depth:
-        wanted = line_blanks(text, place.words[0].start) + STEP
+        wanted = _deeper(text, line_blanks(text, place.words[0].start))
     else:
         above = _line_above(workspace, path, start)
         if not above:
             return ()
-        wanted = line_blanks(text, above[0].start) + (STEP if _opens(workspace, path, above) else "")
+        wanted = line_blanks(text, above[0].start)
+        if _opens(workspace, path, above):
+            wanted = _deeper(text, wanted)
     line = text[start:]
     blanks = line[: len(line) - len(line.lstrip(" \t"))]
     return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
@@ -56,6 +61,12 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
     text = workspace.files[path].text
     same = all(one.path == path and text[one.span.start : one.span.end] == wanted.name for one in places)
     return tuple(one.span for one in places) if same and len(places) > 1 else ()
+
+
+def _deeper(text: str, blanks: str) -> str:
+    """One level below a line that begins with these; if with none, in the characters of the first line with some."""
+    indented = _INDENTED.search(text) if not blanks else None
+    return blanks + ("\t" if "\t" in (indented[1] if indented else blanks) else STEP)
 
 
 def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:
@@ -89,4 +100,5 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     return isinstance(target, Model) and target.category.raw in ("Control", "Decorator")
 
 
+_INDENTED = re.compile(r"[\r\n]([ \t])[ \t]*[^\s]")
 _OPENERS = frozenset(("BehaviorTree", "TreeNodesModel"))

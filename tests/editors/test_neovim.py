@@ -285,6 +285,40 @@ def test_enter_indents(neovim: Neovim, typed: str, lines: str) -> None:
     assert neovim.run({"main.btq": ""}, script, lsp=False) == lines.split("|")
 
 
+def test_a_file_with_tabs_goes_on_with_tabs(neovim: Neovim) -> None:
+    script = """
+    vim.fn.cursor(2, 1)
+    vim.api.nvim_feedkeys('oDock', 'x', false)
+    return { btq.lines(), vim.bo.expandtab }
+    """
+    tabs = neovim.run({"main.btq": "BehaviorTree Main\n\t->\n"}, script, lsp=False)
+    assert tabs == [["BehaviorTree Main", "\t->", "\t\tDock"], False]
+    blanks = neovim.run({"main.btq": "BehaviorTree Main\n    ->\n\tPick\n"}, script, lsp=False)
+    assert blanks == [["BehaviorTree Main", "    ->", "        Dock", "\tPick"], True]
+
+
+@pytest.mark.parametrize("setting", ["btq_program", "btq_cmd"])
+def test_make_runs_the_program_that_is_set(neovim: Neovim, setting: str) -> None:
+    """It is in a folder with a blank, and none is on the PATH; by the server's setting it is found beside that."""
+    folder = neovim.folder / "my programs"
+    folder.mkdir()
+    for name in ("btq", "btq-lsp"):
+        (folder / name).write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m btq_lang "$@"\n')
+        (folder / name).chmod(0o755)
+    value = json.dumps([str(folder / ("btq" if setting == "btq_program" else "btq-lsp"))])
+    script = f"""
+    vim.g.{setting} = vim.fn.json_decode('{value}')
+    vim.cmd('edit main.btq')
+    vim.cmd('silent make!')
+    local found = vim.tbl_filter(function(item) return item.valid == 1 end, vim.fn.getqflist())
+    return vim.tbl_map(function(item) return {{ item.lnum, item.col, item.type, item.text }} end, found)
+    """
+    text = "BehaviorTree Main\n    Dock (t = 30 sek)\n"
+    (found, *_) = neovim.run({"main.txt": "", "main.btq": text}, script, lsp=False)
+    assert found[:3] == [2, 18, "e"]
+    assert re.match(r"\[unknown-unit\] `sek` is no unit", found[3])
+
+
 def test_every_kind_of_word_has_its_colour(neovim: Neovim) -> None:
     text = (ROOT / "examples" / "laboratory" / "mission.btq").read_text(encoding="utf-8")
     places = [

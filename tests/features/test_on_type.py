@@ -35,6 +35,10 @@ from feature_asserts import check_linked, check_typed
             "BehaviorTree Main\n    Pick (\n        a = 1\n    )",
         ),
         ("BehaviorTree Main\n    Pick (a = 1)$0", "BehaviorTree Main\n    Pick (a = 1)"),
+        # In the characters of the lines above, or of the first that is indented.
+        ("BehaviorTree Main\n\t->\n\t    $0", "BehaviorTree Main\n\t->\n\t\t"),
+        ("BehaviorTree Main\n\tPick (\n        $0", "BehaviorTree Main\n\tPick (\n\t\t"),
+        ("BehaviorTree A\n\tPick\nBehaviorTree B\n    $0", "BehaviorTree A\n\tPick\nBehaviorTree B\n\t"),
         # Not inside texts.
         ('BehaviorTree Main\n    Pick (a = "x\n$0y")\n', 'BehaviorTree Main\n    Pick (a = "x\ny")\n'),
     ],

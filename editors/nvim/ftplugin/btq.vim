@@ -1,4 +1,4 @@
-" How a mission is edited: comments, words, indentation by four blanks, and `:make` for `btq check`.
+" How a mission is edited: comments, words, indentation in the characters of the file, and `:make` for `btq check`.
 if exists('b:did_ftplugin')
   finish
 endif
@@ -7,15 +7,22 @@ let b:did_ftplugin = 1
 setlocal commentstring=#\ %s
 setlocal comments=:#,://,s1:/*,mb:*,ex:*/
 setlocal formatoptions-=t formatoptions+=croql
-setlocal expandtab shiftwidth=4 softtabstop=4
+" Four blanks, or the tabs that the file is indented with: the language takes either, and no mixture.
+if getline(match(getline(1, 1000), '^\s\+\S') + 1) =~# '^\t'
+  setlocal noexpandtab shiftwidth=0 softtabstop=0
+else
+  setlocal expandtab shiftwidth=4 softtabstop=4
+endif
 " A hyphen joins words: performance-efficiency is one name.
 setlocal iskeyword+=-
 setlocal suffixesadd=.btq,.xml
 setlocal include=^\\s*include\\s\\+[\"']
 
-if executable('btq')
-  setlocal makeprg=btq\ check\ --output-format\ concise\ %:S
-  setlocal errorformat=%f:%l:%c:\ %trror[%m,%f:%l:%c:\ %tarning[%m,%f:%l:%c:\ %tnfo[%m,%f:%l:%c:\ %tint[%m,%-G%.%#
+let s:program = has('nvim') ? luaeval("require('btq').program()") : get(g:, 'btq_program', ['btq'])
+if executable(s:program[0])
+  let s:words = map(copy(s:program), {_, word -> word =~# '^[[:alnum:]_./-]\+$' ? word : shellescape(word, 1)})
+  let &l:makeprg = join(s:words) . ' check --output-format concise %:S'
+  setlocal errorformat=%f:%l:%c:\ %trror%m,%f:%l:%c:\ %tarning%m,%f:%l:%c:\ %tnfo%m,%f:%l:%c:\ %tint%m,%-G%.%#
 endif
 
 if has('nvim')
