@@ -44,6 +44,7 @@ class Element:
     """An element.
 
     Attributes:
+        attributes: many elements share theirs, so an element is given others, and these stay as they are.
         children: what stands in it, in order.
         source, start, end: the file it was read from, and its start tag there; -1 where it was made.
         close: where its end tag ends, likewise.
@@ -61,7 +62,7 @@ class Element:
         end: int = -1,
     ) -> None:
         self.tag = tag
-        self.attributes: Final = list(attributes) if attributes else []
+        self.attributes = tuple(attributes) if attributes else ()
         self.children: Final = list(children) if children else []
         self.source: Final = source
         self.start: Final = start

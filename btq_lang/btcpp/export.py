@@ -135,7 +135,7 @@ def _document(source: Source, trees: Trees, included_as: IncludedAs, guessed: di
     end = source.written(source.comments.get(len(source.file.text), NO_COMMENTS).before)
     has_block = any(entry.in_root for entry in entries)
     (behind if has_block else contents).extend(end)
-    root.attributes.extend(_root_attributes(source, head))
+    root.attributes = tuple(_root_attributes(source, head))
     return Document([*before, root, *behind])
 
 

@@ -15,7 +15,7 @@ from btq_lang.text import Span
 
 def may_be_generated(text: str) -> bool:
     """Whether XML can hold a mark at all: most does not, and need not be looked through."""
-    return DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text
+    return "btq" in text and (DESCRIPTION_MARK in text or "by btq" in text or f"{MARK}=" in text)
 
 
 def without_generated(document: Document, changes: list[Change]) -> int:
@@ -62,7 +62,7 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
         if isinstance(child, Element) and child.get(MARK) is not None:
             inside = unwrapped(child, holding)
             if inside is None:  # now it is somebody's
-                child.attributes[:] = [each for each in child.attributes if each.name not in (MARK, MOVED)]
+                child.attributes = tuple(each for each in child.attributes if each.name not in (MARK, MOVED))
             else:
                 found.append(Span(child.start + 1, child.start + 1 + len(child.tag)))
                 waiting += reversed(inside)
@@ -73,13 +73,14 @@ def _take_out(parent: Element, holding: set[Element], found: list[Span]) -> None
 
 def _cut(element: Element, index: int) -> tuple[Span, ...]:
     """Leave the user's part of a `_description`; where there was more."""
-    attribute = element.attributes[index]
+    attribute, kept = element.attributes[index], [*element.attributes]
     start, value_start = element.place(attribute)
     own = own_description(attribute.raw)
     if own == attribute.raw:
         return ()
     if own is None:
-        del element.attributes[index]
+        del kept[index]
     else:
-        element.attributes[index] = Attribute(attribute.name, own, (start, value_start))
+        kept[index] = Attribute(attribute.name, own, (start, value_start))
+    element.attributes = tuple(kept)
     return (Span(start, value_start + len(attribute.raw) + 1),)

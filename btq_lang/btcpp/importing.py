@@ -31,12 +31,15 @@ if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
     IncludedAs: TypeAlias = Callable[[str], str]
-    # A word of a line, and what it was made of: an element's tag (the first word of its line), the value of one of its
-    # attributes, what stands between two places.
-    Piece: TypeAlias = tuple[str, Element | Attribute | tuple[int, int] | None]
-    # A line: which one it is and where on it the words begin, the words, the pairs in brackets with what they were made
-    # of, and what is between them.
-    Mark: TypeAlias = tuple[int, int, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
+    # A word of a line, and what it was made of: the value of one of the element's attributes, what stands between two
+    # places; None: the element's tag, if it is the first.
+    Piece: TypeAlias = tuple[str, Attribute | tuple[int, int] | None]
+    # A line: which one it is and where on it the words begin, the element it is for, the words, the pairs in brackets
+    # with what they were made of, and what is between them.
+    Mark: TypeAlias = tuple[int, int, Element | None, Sequence[Piece], Sequence[str], Sequence[Attribute] | None, str]
+    # What a node says: the line without its indentation (empty: to be looked at each time), the words, the attributes
+    # in brackets and how they are spelt.
+    Said: TypeAlias = tuple[str, Sequence[Piece], Sequence[Attribute], Sequence[str]]
 
 
 class Imported(Record):
@@ -110,9 +113,8 @@ class _Writer:
     def __init__(self, source: str, for_people: bool, included_as: IncludedAs) -> None:
         self.source: Final = source
         self.symbols: Final = for_people
-        # What stands in brackets, in pieces and on one line, by the attributes: those that are alike in many elements
-        # are read once.
-        self.groups: Final[dict[tuple[Attribute, ...], tuple[list[str], str]]] = {}
+        # By tag and attributes: many nodes are alike, and those share their attributes.
+        self.said: Final[dict[tuple[str, tuple[Attribute, ...]], Said]] = {}
         self.columns: Final = _COLUMNS if for_people else len(source) * 10
         self.included_as: Final = included_as
         self.out: Final[list[str]] = []
@@ -138,15 +140,15 @@ class _Writer:
     def root(self, root: Element, level: int) -> None:
         """ "Root" [ Name ] [ Attributes ], and its items below it: in a block, only if something stands behind it"""
         attributes = root.attributes
-        head: list[Piece] = [("Root", root)]
+        head: list[Piece] = [("Root", None)]
         if len(attributes) == 2 and _is(attributes[0], "BTCPP_format", "4") and _is_main_tree(attributes[1]):
             head.append((name(attributes[1].raw), attributes[1]))
-            self.line(0, head)
+            self.line(0, root, head)
         elif attributes and _is_main_tree(attributes[0]):
             head.append((name(attributes[0].raw), attributes[0]))
-            self.line(0, head, attributes[1:])
+            self.line(0, root, head, attributes[1:])
         else:
-            self.line(0, head, attributes)
+            self.line(0, root, head, attributes)
         above = ""  # the kind of the line above
         for child in root.children:
             if isinstance(child, Text):
@@ -167,14 +169,14 @@ class _Writer:
         """BehaviorTree, include, TreeNodesModel; anything else as it is."""
         attributes = element.attributes
         first = attributes[0] if attributes else None
-        tag = (element.tag, element)
+        tag = (element.tag, None)
         if element.tag == "BehaviorTree":
             identity = self.first(element, "ID")
             if identity is None:
-                self.line(level, [tag], attributes)
+                self.line(level, element, [tag], attributes)
             else:
                 others = [each for each in attributes if each is not identity]
-                self.line(level, [tag, (name(identity.raw), identity)], others)
+                self.line(level, element, [tag, (name(identity.raw), identity)], others)
             self.nodes(element, level + 1)
         elif element.tag == "include" and (path := self.first(element, "path")) and not element.children:
             others = [each for each in attributes if each is not path]
@@ -184,9 +186,9 @@ class _Writer:
                 span = Span(start, start + len(path.raw))
                 self.changes.append(Change(span, f"includes `{named}`"))
             said = string_of(named) if named != path.value else string(path.raw)
-            self.line(level, [tag, (said, path)], others)
+            self.line(level, element, [tag, (said, path)], others)
         elif element.tag == "TreeNodesModel" and first is None:
-            self.line(level, [tag])
+            self.line(level, element, [tag])
             self.models(element, level + 1)
         else:
             self.verbatim(element, level)
@@ -206,12 +208,25 @@ class _Writer:
 
     def nodes(self, parent: Element, level: int) -> None:
         """All nodes below an element, with the comments between them; not by recursion, for trees are deep."""
+        known, marks, out = self.said, self.marks, self.out
         stack = [iter(parent.children)]
         above: Element | None = parent  # what the line above says
         while stack:
+            indent = _INDENT * level
+            room = self.columns - len(indent)
             for child in stack[-1]:
                 if isinstance(child, Element):
-                    self.node(child, level)
+                    key = child.tag, child.attributes
+                    said = known.get(key)
+                    if said is None:
+                        said = known[key] = self.node(child)
+                    line, head, attributes, pairs = said
+                    if 0 < len(line) <= room:
+                        if marks is not None:
+                            marks.append((len(out), len(indent), child, head, pairs, attributes, " "))
+                        out.append(indent + line)
+                    else:
+                        self.line(level, child, head, attributes)
                     above = child
                     if child.children:
                         stack.append(iter(child.children))
@@ -230,24 +245,17 @@ class _Writer:
                 level -= 1
                 above = None
 
-    def node(self, element: Element, level: int) -> None:
-        """Kind [ Label ] [ Attributes ]"""
-        attributes = element.attributes
-        tag = element.tag
+    def node(self, element: Element) -> Said:
+        """Kind [ Label ] [ Attributes ]: from the tag and the attributes alone"""
+        attributes, tag = element.attributes, element.tag
         index = 0
         head: list[Piece]
         is_explicit = tag in _CATEGORIES
         if not is_explicit:
             has_code = tag not in _MAY_BE_PLACEHOLDERS or element.get("code") is not None
-            word = kind(tag, False, has_code, self.symbols)
-            head = [(word, element)]
-            if not attributes:  # a third of all nodes
-                if self.marks is not None:
-                    self.marks.append((len(self.out), level * len(_INDENT), head, (), None, ""))
-                self.out.append(f"{_INDENT * level}{word}\n")
-                return
+            head = [(kind(tag, False, has_code, self.symbols), None)]
         else:
-            head = [(tag, element)]
+            head = [(tag, None)]
             if attributes and attributes[0].name == "ID":
                 index = 1
                 raw = attributes[0].raw
@@ -257,7 +265,12 @@ class _Writer:
         if index < len(attributes) and attributes[index].name == "name" and (index or not is_explicit):
             head.append((name(attributes[index].raw), attributes[index]))
             index += 1
-        self.line(level, head, attributes[index:] if index else attributes)
+        in_brackets = attributes[index:]
+        pairs = [pair(each.name, each.raw) for each in in_brackets]
+        line = " ".join([word for word, _ in head])
+        if pairs:
+            line += f" ({' '.join(pairs)})"
+        return "" if "\n" in line or self.has_returns else f"{line}\n", head, in_brackets, pairs
 
     # ---- models ----
 
@@ -277,11 +290,11 @@ class _Writer:
 
     def model(self, element: Element, identity: Attribute, level: int) -> None:
         """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ], and its ports below"""
-        head: list[Piece] = [(element.tag, element), (name(identity.raw), identity)]
+        head: list[Piece] = [(element.tag, None), (name(identity.raw), identity)]
         children = element.children
         others = [each for each in element.attributes if each is not identity]
         text = _text_of(children[0]) if children and _is_description(children[0]) else None
-        self.line(level, head, others, text)
+        self.line(level, element, head, others, text)
         was_metadata = False
         for child in children[text is not None :]:
             if isinstance(child, Text):
@@ -294,7 +307,7 @@ class _Writer:
                 self.port(child, level + 1)
             elif child.tag == "MetadataFields" and not was_metadata and _is_metadata(child):
                 for part in child.elements:
-                    self.line(level + 1, [("metadata", part)], part.attributes)
+                    self.line(level + 1, part, [("metadata", None)], part.attributes)
             else:
                 self.verbatim(child, level + 1)
             was_metadata = child.tag == "MetadataFields"
@@ -302,7 +315,7 @@ class _Writer:
     def port(self, element: Element, level: int) -> None:
         """( "input" | "output" | "inout" ) [ NAME ] [ ":" … ] [ "=" Value ] [ Attributes ] [ STRING ]"""
         attributes = element.attributes
-        head: list[Piece] = [(_DIRECTIONS[element.tag], element)]
+        head: list[Piece] = [(_DIRECTIONS[element.tag], None)]
         count = len(attributes)
         index = 0
         if index < count and attributes[index].name == "name" and is_name(attributes[index].raw):
@@ -317,16 +330,22 @@ class _Writer:
             head.append((value(attributes[index].raw), attributes[index]))
             index += 1
         text = "".join(part.text for part in element.children if isinstance(part, Text)) or None
-        self.line(level, head, attributes[index:], text)
+        self.line(level, element, head, attributes[index:], text)
 
     # ---- lines ----
 
     def line(
-        self, level: int, head: list[Piece], attributes: Sequence[Attribute] | None = None, text: str | None = None
+        self,
+        level: int,
+        element: Element | None,
+        head: Sequence[Piece],
+        attributes: Sequence[Attribute] | None = None,
+        text: str | None = None,
     ) -> None:
         """One line: words, then attributes in brackets and a string; broken as the formatter breaks it.
 
         Args:
+            element: whose line it is; its tag is the first word.
             attributes: None: there are no brackets; empty ones are for `Root ()` alone.
         """
         indent = _INDENT * level
@@ -337,12 +356,8 @@ class _Writer:
         pairs: list[str] = []
         between = " "
         if attributes:
-            key = tuple(attributes)
-            known = self.groups.get(key)
-            if known is None:
-                pairs = [pair(each.name, each.raw) for each in attributes]
-                known = self.groups[key] = pairs, " ".join(pairs)
-            pairs, group = known
+            pairs = [pair(each.name, each.raw) for each in attributes]
+            group = " ".join(pairs)
             line = f"{out} ({group}){behind}\n"
             if len(line) > self.columns or line.count("\n") > 1:  # it may be too long
                 columns = self.columns
@@ -352,20 +367,21 @@ class _Writer:
                 ):
                     between = f"\n{indent}{_INDENT}"
                     line = f"{out} ({between}{between.join(pairs)}\n{indent}){behind}\n"
-            if self.has_returns:
-                self.lost_returns(head[0][1], attributes)
+            if self.has_returns and element is not None:
+                self.lost_returns(element, attributes)
         elif attributes is not None and head[0][0] == "Root":
             line = f"{out} ()\n"
         else:
             line = f"{out}{behind}\n"
         if self.marks is not None:
-            self.marks.append((len(self.out), len(indent), head, pairs, attributes, between))
+            self.marks.append((len(self.out), len(indent), element, head, pairs, attributes, between))
         self.out.append(line)
 
     def verbatim(self, element: Element, level: int) -> None:
         """xml STRING: the element as it stands in the XML."""
         said = self.source[element.start : element.close]
-        self.line(level, [("xml", (element.start, element.end)), (string_of(said), (element.end, element.close))])
+        origins = (element.start, element.end), (element.end, element.close)
+        self.line(level, None, [("xml", origins[0]), (string_of(said), origins[1])])
 
     def comment_line(self, content: Content, level: int) -> None:
         """A comment on a line of its own."""
@@ -381,11 +397,14 @@ class _Writer:
         self.out[-1] = f"{above}  {said}\n"
 
     def place_comment(self, content: Comment, said: str, line: int, column: int) -> None:
-        span = Span(content.start, content.start + len(content.text) + len("<!---->"))
+        if self.marks is None and "*/" not in content.text:
+            return
+        end = content.start + len(content.text) + len("<!---->")
         if self.marks is not None:
-            self.marks.append((line, column, [(said, span)], (), None, ""))
+            self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
-            self.changes.append(Change(span, "`*/` in a comment is written `* /`, or its last blank goes"))
+            message = "`*/` in a comment is written `* /`, or its last blank goes"
+            self.changes.append(Change(Span(content.start, end), message))
 
     def blank_line(self) -> None:
         self.out.append("\n")
@@ -407,9 +426,9 @@ class _Writer:
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
         self.changes.append(Change(span, f"text that the engine ignores is left out: {shown}"))
 
-    def lost_returns(self, element: object, attributes: Sequence[Attribute]) -> None:
+    def lost_returns(self, element: Element, attributes: Sequence[Attribute]) -> None:
         for each in attributes:
-            if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw and isinstance(element, Element):
+            if "\r" in each.value.replace("\r\n", "") and "\r" not in each.raw:
                 start = element.place(each)[1]
                 span = Span(start, start + len(each.raw))
                 self.changes.append(Change(span, f"a carriage return in `{each.name}` is written as a line end"))
@@ -419,18 +438,17 @@ def located(marks: Sequence[Mark], lines: Sequence[str]) -> list[tuple[int, int,
     """What in the lines was made of what in the XML: pieces for `Places`."""
     places: list[tuple[int, int, int, int]] = []
     starts = [0, *accumulate(map(len, lines))]
-    for line, column, head, pairs, attributes, between in marks:
+    for line, column, element, head, pairs, attributes, between in marks:
         at = starts[line] + column
-        element = head[0][1]  # whose attributes these are
+        if element is not None:
+            places.append((at, at + len(head[0][0]), element.start + 1, element.start + 1 + len(element.tag)))
         for word, origin in head:
-            if isinstance(origin, Element):
-                places.append((at, at + len(word), origin.start + 1, origin.start + 1 + len(origin.tag)))
-            elif isinstance(origin, tuple):
+            if isinstance(origin, tuple):
                 places.append((at, at + len(word), *origin))
-            elif origin is not None and isinstance(element, Element) and (start := element.place(origin)[1]) >= 0:
+            elif origin is not None and element is not None and (start := element.place(origin)[1]) >= 0:
                 places.append((at, at + len(word), start, start + len(origin.raw)))
             at += len(word) + 1
-        if not attributes or not isinstance(element, Element):
+        if not attributes or element is None:
             continue
         at += len("(") + (len(between) if between != " " else 0)
         for said, attribute in zip(pairs, attributes, strict=True):

@@ -12,6 +12,7 @@ Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement:
 from __future__ import annotations
 
 import re
+from itertools import chain
 
 from btq_lang.btcpp.document import (
     ATTRIBUTE,
@@ -35,7 +36,12 @@ from btq_lang.text import LINE_END, Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, NoReturn
+    from collections.abc import Iterator
+    from typing import Final, NoReturn, TypeAlias
+
+    # Its name, its attributes (None: it closes an element), whether it opens none, how long it is, whether there may be
+    # text behind it.
+    Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]
 
 MAX_DEPTH: Final = 498  # open elements; the engine gives up at the next one
 
@@ -92,98 +98,130 @@ class _Reader:
         self.text: Final = text
         self.is_strict: Final = is_strict  # no attribute stands twice: that has been looked at
         self.open: Final[list[Element]] = []
+        self.attributes: Final[dict[str, tuple[Attribute, ...]]] = {}  # by their text: many nodes say the same
         self.is_marked = False  # there was a DOCTYPE, or the like
         self.has_prefixes = False  # names like `xsi:type`, perhaps: not all tools take all of them
 
     def contents(self) -> list[Content]:
-        """{ Element | Comment | Text | Declaration | DOCTYPE }: what stands at the top of the document."""
-        text, opened, is_strict = self.text, self.open, self.is_strict
-        known: dict[str, list[Attribute]] = {}  # attributes by their text: many nodes say the same
+        """{ Element | Comment | Text | Declaration | DOCTYPE }: what stands at the top of the document.
+
+        The text is cut at every `<`, and what a piece says is looked up by its text: most tags of a mission stand
+        there more than once.
+        """
+        text, opened = self.text, self.open
+        known: dict[str, Tag] = {}
         top: list[Content] = []
         contents = top  # of the innermost open element
-        at = 1 if text.startswith("\ufeff") else 0
-        while True:
-            for tag in _TAGS(text, at):
-                name, pairs, slash, closing = tag.groups()
-                if closing is not None:
-                    if not opened:  # the engine reads no further
-                        return top
-                    if closing != opened[-1].tag:
-                        self.mismatched(tag, closing)
-                    opened.pop().close = at = tag.end()
-                    contents = opened[-1].children if opened else top
+        pieces = chain.from_iterable(_pieces(text))
+        behind = 1 if text.startswith("\ufeff") else 0  # where the last thing ended
+        following = len(next(pieces))  # where the next `<` stands
+        self.characters(behind, following, contents)
+        for piece in pieces:
+            start = following
+            following += len(piece) + 1
+            if start < behind:  # this `<` stands in a comment, or in a value
+                continue
+            said = piece.rstrip(_BLANKS)
+            tag = known.get(said)
+            if tag is None:
+                end = start + 1 + len(said)
+                match = _TAG(text, start)
+                if match is None:
+                    behind = self.other(start, behind, contents, is_first=not top)
+                    if behind != end:
+                        self.characters(behind, text.find("<", behind), contents)
                     continue
-                if name is None:
-                    break
-                attributes = None
-                if pairs:
-                    attributes = known.get(pairs)
-                    if attributes is None:
-                        attributes = known[pairs] = [Attribute(key, raw) for key, _, raw in _ATTRIBUTES(pairs)]
-                        if ":" in pairs and any(":" in each.name for each in attributes):
-                            self.has_prefixes = True
-                start, at = text.find("<", at), tag.end()
-                element = Element(name, attributes, None, text, start, at)
-                if not is_strict and len({each.name for each in element.attributes}) < len(element.attributes):
-                    self.twice(element)
-                if ":" in name:
-                    self.has_prefixes = True
+                tag = self.tag(match, start, end)
+                if match.end() <= end:
+                    known[said] = tag
+            name, attributes, is_leaf, length, has_text = tag
+            behind = start + length
+            if attributes is None:
+                if not opened:  # the engine reads no further
+                    return top
+                element = opened.pop()
+                if name != element.tag:
+                    self.mismatched(element, Span(start, behind), name)
+                element.close = behind
+                contents = opened[-1].children if opened else top
+            else:
+                element = Element(name, attributes, None, text, start, behind)
                 contents.append(element)
-                if not slash:
+                if not is_leaf:
                     opened.append(element)
                     contents = element.children
                     if len(opened) > MAX_DEPTH:
-                        raise _Broken(Diagnostic("nested-too-deep", Span(start, at), _TOO_DEEP))
-            behind, at = at, self.behind_text(at, contents)
-            if at == len(text):
-                break
-            if text.startswith("<!--", at):
-                at = self.comment(at, behind, contents)
-            elif text.startswith("<!", at):
-                at = self.marked(at, contents)
-            elif text.startswith("<?", at):
-                at = self.declaration(at, is_first=not top)
-            elif at == behind:
-                self.broken_tag(at)
+                        raise _Broken(Diagnostic("nested-too-deep", Span(start, behind), _TOO_DEEP))
+            if has_text:
+                self.characters(behind, text.find("<", behind), contents)
         if opened:
             self.unclosed(opened[-1])
         return top
 
-    def behind_text(self, at: int, contents: list[Content]) -> int:
-        """Where the next `<` stands, or the end."""
+    def tag(self, match: re.Match[str], start: int, end_of_piece: int) -> Tag:
+        """A tag; there may be text behind it unless it is all of its piece."""
+        name, pairs, slash, closing = match.groups()
+        end = match.end()
+        has_text = end != end_of_piece
+        if closing is not None:
+            return closing, None, False, end - start, has_text
+        attributes = self.attributes.get(pairs)
+        if attributes is None:
+            attributes = self.attributes[pairs] = tuple([Attribute(key, raw) for key, _, raw in _ATTRIBUTES(pairs)])
+            if ":" in pairs and any(":" in each.name for each in attributes):
+                self.has_prefixes = True
+        if ":" in name:
+            self.has_prefixes = True
+        if not self.is_strict and len({each.name for each in attributes}) < len(attributes):
+            self.twice(name, Span(start, end))
+        return name, attributes, slash == "/", end - start, has_text
+
+    def other(self, start: int, behind: int, contents: list[Content], is_first: bool) -> int:
+        """What begins with `<` and is no tag; where it ends.
+
+        Args:
+            behind: where the last thing ended.
+            is_first: nothing stands before it.
+        """
         text = self.text
-        start = text.find("<", at)
-        between = text[at:start] if start >= 0 else text[at:]
-        if between.strip(_BLANKS):
-            self.characters(between, at, start, contents)
-        return start if start >= 0 else len(text)
+        if text.startswith("<!--", start):
+            return self.comment(start, behind, contents)
+        if text.startswith("<!", start):
+            return self.marked(start, contents)
+        if text.startswith("<?", start):
+            return self.declaration(start, is_first)
+        self.broken_tag(start)
 
-    def characters(self, between: str, at: int, end: int, contents: list[Content]) -> None:
-        """Text between tags; behind the last one the engine cannot end it."""
-        if end < 0 and not self.open:
-            begin = at + len(between) - len(between.lstrip(_BLANKS))
-            span = Span(begin, at + len(between.rstrip(_BLANKS)))
-            if any(isinstance(content, Element) for content in contents):
-                self.broken(span, "text behind the document element", "remove it")
-        if end >= 0:
-            contents.append(Text(unescape(_line_ends(between)), at))
+    def characters(self, start: int, end: int, contents: list[Content]) -> None:
+        """Text between tags, if it is not blank; behind the last one the engine cannot end it."""
+        if end < 0:
+            end = len(self.text)
+        between = self.text[start:end]
+        said = between.strip(_BLANKS)
+        if not said:
+            return
+        is_last = end == len(self.text)
+        if is_last and not self.open and any(isinstance(content, Element) for content in contents):
+            begin = start + between.index(said)
+            self.broken(Span(begin, begin + len(said)), "text behind the document element", "remove it")
+        if not is_last:
+            contents.append(Text(unescape(_line_ends(between)), start))
 
-    def mismatched(self, tag: re.Match[str], closing: str) -> NoReturn:
+    def mismatched(self, element: Element, span: Span, closing: str) -> NoReturn:
         """`</b>` where another element is open."""
-        element = self.open[-1]
         note = f"write </{element.tag}>"
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
         related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> is open since here"),)
         message = f"</{closing}> stands where </{element.tag}> is expected"
-        start = self.text.rfind("<", 0, tag.start(4))
-        raise _Broken(Diagnostic(RULE, Span(start, tag.end()), message, related, (note,)))
+        raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
     def comment(self, start: int, behind: int, contents: list[Content]) -> int:
         """ "<!--" … "-->"; behind: where the last thing ended"""
         text = self.text
         end = self.closing("-->", start + 4, start, "this comment has no -->")
-        beside = behind > 0 and LINE_END.search(text, behind, start) is None
+        between = text[behind:start]
+        beside = behind > 0 and "\n" not in between and "\r" not in between
         contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
         return end + 3
 
@@ -222,16 +260,16 @@ class _Reader:
     def broken(self, span: Span, message: str, note: str) -> NoReturn:
         raise _Broken(Diagnostic(RULE, span, message, notes=(note,)))
 
-    def twice(self, element: Element) -> NoReturn:
+    def twice(self, tag: str, span: Span) -> NoReturn:
         """Two values for one attribute."""
         first: dict[str, Span] = {}
-        for match in attribute_matches(self.text, element.start, element.end):
+        for match in attribute_matches(self.text, span.start, span.end):
             name = match[1]
             if name in first:
                 break
             first[name] = Span(*match.span(1))
         related = (Related(Place(first[name]), "it has a value already"),)
-        message = f"the attribute `{name}` stands twice in <{element.tag}>"
+        message = f"the attribute `{name}` stands twice in <{tag}>"
         raise _Broken(Diagnostic(RULE, Span(*match.span(1)), message, related, ("keep one of them",)))
 
     def unclosed(self, element: Element) -> NoReturn:
@@ -267,18 +305,27 @@ class _Reader:
             at = end + 1
 
 
+def _pieces(text: str) -> Iterator[list[str]]:
+    """A text cut at every `<`, a part of it at a time: so less memory is touched."""
+    start = 0
+    while (end := text.find("<", start + _PART)) >= 0:
+        yield text[start:end].split("<")
+        start = end + 1
+    yield text[start:].split("<")
+
+
 def _line_ends(text: str) -> str:
     return LINE_END.sub("\n", text) if "\r" in text else text
 
 
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} elements inside each other: the engine reads no more"
+_PART: Final = 32_000
 _BLANKS: Final = " \t\n\v\f\r"
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"
-# No two parts of it can match the same characters, so there is one way to match: the time is linear.  Where no tag
-# stands it matches nothing, so that no search goes on to the next one.
-_TAGS: Final = re.compile(
-    rf"{SPACE}<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)|"
-).finditer
+# No two parts of it can match the same characters, so there is one way to match: the time is linear.
+_TAG: Final = re.compile(
+    rf"<(?:{SPACE}({WORD})(?!{IN_WORD}){_PAIRS}{SPACE}(/?)>|/({WORD})(?!{IN_WORD})(?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*{SPACE}>)"
+).match
 _ATTRIBUTES: Final = ATTRIBUTE.findall
 _NAME: Final = re.compile(WORD).match
 _SPACE: Final = re.compile(SPACE).match

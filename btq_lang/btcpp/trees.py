@@ -244,7 +244,5 @@ class Trees:
         raw = description(self._source, entry, part.clauses, own, self._said_elsewhere.get(id(part), ()))
         if raw is None:
             return
-        if index is None:
-            attributes.append(Attribute("_description", raw))
-        else:
-            attributes[index] = Attribute("_description", raw)
+        at = len(attributes) if index is None else index
+        element.attributes = (*attributes[:at], Attribute("_description", raw), *attributes[at + 1 :])

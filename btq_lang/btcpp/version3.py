@@ -45,11 +45,11 @@ def translated(root: Element, changes: list[Change]) -> None:
     """Say it as version 4 does, in place."""
     span = Span(root.start + 1, root.end - 1)
     kept = [each for each in root.attributes if each.name != "BTCPP_format"]
-    if any(each.name == "BTCPP_format" for each in root.attributes):
+    if len(kept) < len(root.attributes):
         changes.append(Change(span, 'BTCPP_format="3" is now "4"'))
     else:
         changes.append(Change(span, 'BTCPP_format="4" is added'))
-    root.attributes[:] = [Attribute("BTCPP_format", "4"), *kept]
+    root.attributes = (Attribute("BTCPP_format", "4"), *kept)
     for element in _walk(root):
         if element.tag in _MAY_BE_OLD:
             _Translator(element, changes).translate()
@@ -78,19 +78,19 @@ class _Translator:
             identity = known.replacement
         elif known is not None and known.word in _GONE:
             self.tell(f"{known.why}: kept as it is")
-        for index, attribute in enumerate(element.attributes):
+        for attribute in element.attributes:
             port = OLD_PORTS.get((identity or "", attribute.name))
             if port is not None:
                 self.tell(f"{attribute.name} of {identity} is now {port}", attribute)
-                element.attributes[index] = self.changed(attribute, name=port)
+                self.replace(attribute, self.changed(attribute, name=port))
 
     def rename(self, is_explicit: bool, new: str) -> None:
         element = self.element
         if is_explicit:
-            for index, attribute in enumerate(element.attributes):
+            for attribute in element.attributes:
                 if attribute.name == "ID":
                     self.tell(f"{attribute.raw} is now {new}", attribute)
-                    element.attributes[index] = self.changed(attribute, raw=new)
+                    self.replace(attribute, self.changed(attribute, raw=new))
         else:
             self.tell(f"{element.tag} is now {new}")
             element.tag = new
@@ -121,7 +121,7 @@ class _Translator:
             else:
                 self.tell(f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute)
                 found.append(self.changed(attribute, raw=f"{{{attribute.raw}}}"))
-        element.attributes[:] = found
+        element.attributes = tuple(found)
 
     def subtree_model(self) -> None:
         """Version 4 asks for every port of a SubTree's model; these two are no ports any more."""
@@ -131,6 +131,9 @@ class _Translator:
                 message = f"the port {child.get('name')} of a SubTree's model is left out: version 4 would ask for it"
                 self.changes.append(Change(Span(child.start, child.end), message))
                 element.children.remove(child)
+
+    def replace(self, attribute: Attribute, other: Attribute) -> None:
+        self.element.attributes = tuple(other if each is attribute else each for each in self.element.attributes)
 
     def changed(self, attribute: Attribute, name: str | None = None, raw: str | None = None) -> Attribute:
         """An attribute with another name or value, in its place."""

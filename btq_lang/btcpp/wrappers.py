@@ -90,9 +90,8 @@ def wrapped(element: Element, wrappers: Sequence[Wrapper]) -> Element:
     for wrapper in reversed(ordered):
         made = _around(made, wrapper)
     if moved:
-        made.attributes.extend(attribute for _, attribute in moved)
         said = " ".join(f"{attribute.name}:{index}" for index, attribute in moved)
-        made.attributes.append(Attribute(MOVED, said))
+        made.attributes = (*made.attributes, *(attribute for _, attribute in moved), Attribute(MOVED, said))
     return made
 
 
@@ -134,8 +133,7 @@ def _moved(element: Element) -> list[tuple[int, Attribute]]:
     if not may_be_skipped(names):
         return []
     moved = [(index, each) for index, each in enumerate(element.attributes) if each.name in _PRECONDITIONS]
-    for index, _ in reversed(moved):
-        del element.attributes[index]
+    element.attributes = tuple(each for each in element.attributes if each.name not in _PRECONDITIONS)
     return moved
 
 
@@ -194,7 +192,9 @@ def _give_back(outermost: Element, node: Element) -> None:
         name, _, index = said.partition(":")
         if name in own and index.isdecimal() and node.get(name) is None:
             place = outermost.place(own[name])
-            node.attributes.insert(int(index), Attribute(name, own[name].raw, place))
+            at = int(index)
+            given_back = Attribute(name, own[name].raw, place)
+            node.attributes = (*node.attributes[:at], given_back, *node.attributes[at:])
 
 
 _PRECONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")
