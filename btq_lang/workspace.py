@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.project import Project, include_candidates
 from btq_lang.record import Record
@@ -240,7 +240,11 @@ class File:
     Attributes:
         text: in this language, whatever the file on the disk is written in.
         origin: that file, where it is written in another one.
+        known_errors: what was last found wrong with it for those that include it, behind the project and the files
+            that this rests on.
     """
+
+    known_errors: tuple[Project, tuple[File, ...], tuple[tuple[Place, str], ...]] | None = None
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
         self.path = path

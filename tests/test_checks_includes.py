@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 
 from btq_lang.checks import check
+from btq_lang.diagnostics import Diagnostic
 from btq_lang.loader import open_workspace
 from btq_lang.project import Project
 from btq_lang.rules import Severity
+from btq_lang.text import Span
+from btq_lang.workspace import Workspace
 
 
 def test_includes_that_are_found() -> None:
@@ -93,9 +97,88 @@ def test_what_a_check_of_the_included_file_finds_is_told_there_alone() -> None:
 
 
 def test_included_xml_that_cannot_be_read() -> None:
-    text = '//- main.btq\ninclude "nav.xml"\n//- nav.xml\n<root>\n'
-    (found,) = check(workspace_of(split_files(text)), "main.btq")
-    assert (found.rule, found.related) == ("include-with-errors", ())
+    (found,) = _of_xml(nav="<root>\n")
+    ((place, told),) = [(related.place, related.message) for related in found.related]
+    assert found.rule == "include-with-errors"
+    assert (place.path, place.span, told) == ("nav.xml", Span(0, 6), "here")
+
+
+_TREE = '<root BTCPP_format="4">{include}\n  <BehaviorTree ID="Nav">{node}</BehaviorTree>\n</root>\n'
+_GOOD = _TREE.format(include="", node="<AlwaysSuccess/>")
+
+
+def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
+    """What is told of a mission that includes `nav.xml`."""
+    texts = {f"{name}.xml": text for name, text in xml.items()}
+    texts["main.btq"] = 'include "nav.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Nav\n'
+    return check(workspace_of(texts), main)
+
+
+@pytest.mark.parametrize(
+    ("text", "at", "message"),
+    [
+        (_TREE.format(include="", node="<Sequence/>"), "Sequence", "`Sequence` takes 1 or more children, it has none"),
+        (
+            _TREE.format(include="", node='<SubTree ID="Main"/>'),  # no more in sight of the XML than of a .btq file
+            "Main",
+            "there is no tree `Main` in this file or in those it includes",
+        ),
+        (_TREE.format(include='<include path="gone.xml"/>', node="<A/>"), "gone.xml", "there is no file `gone.xml`"),
+        (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a blank"),
+    ],
+)
+def test_what_the_engine_would_refuse_in_included_xml_is_told_where_it_is_included(
+    text: str, at: str, message: str
+) -> None:
+    found = next(each for each in _of_xml(nav=text) if each.rule == "include-with-errors")
+    assert found.message == f"`nav.xml` has 1 error: {message}"
+    assert found.notes == ("no file that includes it can be built",)
+    ((place, told),) = [(related.place, related.message) for related in found.related]
+    assert (place.path, told) == ("nav.xml", "here")
+    assert text[place.span.start : place.span.end].strip('"') == at
+
+
+def test_of_several_errors_in_included_xml_the_first_is_told_and_how_to_see_the_others() -> None:
+    (found,) = _of_xml(nav=_TREE.format(include="", node='<Sequence><Fallback/><Delay delay_msec="x"/></Sequence>'))
+    assert found.message.startswith("`nav.xml` has 3 errors: `Fallback` takes 1 or more children")
+    assert [related.message for related in found.related] == ["the first one"]
+    assert found.notes == ("no file that includes it can be built", "`btq check nav.xml` shows them all")
+
+
+def test_warnings_in_included_xml_are_told_there_alone() -> None:
+    text = _TREE.format(include="", node="<Fallback><AlwaysSuccess/><AlwaysFailure/></Fallback>")
+    assert _of_xml(nav=text) == ()
+    assert [each.rule for each in _of_xml(main="nav.xml", nav=text)] == ["unreachable-child"]
+
+
+def test_xml_that_xml_includes_counts() -> None:
+    nav = _TREE.format(include='<include path="more.xml"/>', node="<AlwaysSuccess/>")
+    more = _TREE.format(include="", node="<Sequence/>").replace("Nav", "More")
+    for path, which in (("main.btq", "`more.xml`, which it includes,"), ("nav.xml", "`more.xml`")):
+        (found,) = _of_xml(main=path, nav=nav, more=more)
+        assert found.message == f"{which} has 1 error: `Sequence` takes 1 or more children, it has none"
+
+
+def test_xml_that_includes_itself_in_a_circle() -> None:
+    nav = _TREE.format(include='<include path="more.xml"/>', node="<AlwaysSuccess/>")
+    more = _TREE.format(include='<include path="nav.xml"/>', node="<AlwaysSuccess/>").replace("Nav", "More")
+    (found,) = _of_xml(nav=nav, more=more)
+    assert found.message == "`nav.xml` has 1 error: this file includes `more.xml`, which includes this file again"
+
+
+def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_project_is_another() -> None:
+    nav = _TREE.format(include='<include path="more.xml"/>', node='<SubTree ID="More"/>')
+    good, bad = _GOOD.replace("Nav", "More"), _GOOD.replace("Nav", "Other")
+    workspace = workspace_of({"main.btq": 'include "nav.xml"\n', "nav.xml": nav, "more.xml": good})
+    assert check(workspace, "main.btq") == ()
+    known = workspace.files["nav.xml"].known_errors
+    edited = workspace.with_file("main.btq", 'include "nav.xml"\n\n')
+    assert check(edited, "main.btq") == ()
+    assert edited.files["nav.xml"].known_errors is known
+    other = Workspace({**edited.files, "more.xml": workspace_of({"more.xml": bad}).files["more.xml"]}, edited.project)
+    assert [each.rule for each in check(other, "main.btq")] == ["include-with-errors"]
+    ignoring = other.with_project(Project(ignore=("unknown-tree",)))
+    assert check(ignoring, "main.btq") == ()
 
 
 def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(tmp_path: Path) -> None:

@@ -321,6 +321,20 @@ def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+def test_an_error_in_included_xml_is_told_once(btq: Run, tmp_path: Path) -> None:
+    tree = '<root BTCPP_format="4">\n<BehaviorTree ID="Old"><Sequence/></BehaviorTree>\n</root>\n'
+    (tmp_path / "old.xml").write_text(tree)
+    (tmp_path / "m.btq").write_text('include "old.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Old\n')
+    message = "`Sequence` takes 1 or more children, it has none"
+    at_include = f"m.btq:1:9: error[include-with-errors] `old.xml` has 1 error: {message}\n"
+    itself = f"old.xml:2:25: error[child-count] {message}\n"
+    for paths, told in ((["m.btq"], at_include), (["."], at_include), (["m.btq", "old.xml"], itself)):
+        done = btq("check", "--output-format", "concise", *paths)
+        assert (done.returncode, done.stdout) == (1, f"{told}Found 1 error\n")
+    shown = btq("check", "m.btq").stdout
+    assert "\nnote: here\n --> old.xml:2:25\n" in shown
+
+
 def test_an_output_that_cannot_be_written_is_trouble(tmp_path: Path) -> None:
     command = f"{sys.executable} -m btq_lang explain > /dev/full"
     done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)

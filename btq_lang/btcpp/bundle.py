@@ -31,7 +31,8 @@ def bundle(
     """
     paths = workspace.closure(path)
     exports = [
-        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE) for each in paths
+        export(workspace, each, target=target, verbatim=verbatim, included_as=lambda _: _IN_BUNDLE, is_bundled=True)
+        for each in paths
     ]
     main = exports[-1].document
     root = Element("root", main.root.attributes)

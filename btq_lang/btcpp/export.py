@@ -55,6 +55,7 @@ def export(
     target: str | None = None,
     verbatim: bool = False,
     included_as: IncludedAs | None = None,
+    is_bundled: bool = False,
 ) -> Export:
     """A file of a workspace as XML.
 
@@ -63,12 +64,13 @@ def export(
         verbatim: write exactly what the file says: no repairs, and nothing that the file does not say.
         included_as: what an `<include>` says for an included file, given its path in the workspace; None: its path
             relative to this file, with `.xml` in the place of `.btq`.
+        is_bundled: included XML is written, too.
 
     Raises:
         KeyError: there is no such file.
     """
     with NotCollecting():
-        source = Source(workspace, path, target or workspace.project.target, verbatim)
+        source = Source(workspace, path, target or workspace.project.target, verbatim, is_bundled)
         trees = Trees(source)
         guessed: dict[str, str] = {}
         name = included_as or (lambda target: xml_path(workspace, path, target))

@@ -15,6 +15,7 @@ from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.comments import NO_COMMENTS, Comments, comments
 from btq_lang.comments import Comment as SourceComment
 from btq_lang.record import Record
+from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Verbatim, Word
 from btq_lang.text import Span
 from btq_lang.workspace import File, Scope, Workspace
@@ -46,14 +47,16 @@ class Source:
     Attributes:
         target: the version of the engine that it is written for.
         verbatim: exactly what the file says is written, and nothing else.
+        is_bundled: XML that the file includes is written, too, and does not stay as it is.
         comments: where the file's comments belong, by the element.
     """
 
-    def __init__(self, workspace: Workspace, path: str, target: str, verbatim: bool) -> None:
+    def __init__(self, workspace: Workspace, path: str, target: str, verbatim: bool, is_bundled: bool) -> None:
         self.workspace: Final = workspace
         self.path: Final = path
         self.target: Final = target
         self.verbatim: Final = verbatim
+        self.is_bundled: Final = is_bundled
         self.file: Final[File] = workspace.files[path]
         self.scope: Final[Scope] = workspace.scope(path)
         self.comments: Final[Mapping[int, Comments]] = comments(self.file.parsed)
@@ -76,8 +79,13 @@ class Source:
         known = self._tree_ids.get(name)
         if known is None:
             refused = not self.verbatim and model_name_problem(name, self.target) is not None
-            known = self._tree_ids[name] = legal_name(name) if refused else name
+            known = self._tree_ids[name] = legal_name(name) if refused and not self._stays(name) else name
         return known
+
+    def _stays(self, tree: str) -> bool:
+        """Whether a tree is in XML that nobody writes, so that its name cannot be mended."""
+        found = None if self.is_bundled else self.scope.find(Kind.TREE, tree)
+        return found is not None and found.path != self.path and found.path in self.workspace.origins
 
     def spelt_tree(self, name: Word) -> str:
         """A tree's name as the value of an attribute."""

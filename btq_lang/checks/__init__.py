@@ -236,12 +236,15 @@ class Found(Record):
     has_places_elsewhere: bool
 
 
-def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tuple[Diagnostic, ...]:
+def check(
+    workspace: Workspace, path: str, answers: Answers | None = None, *, is_alone: bool = False
+) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
     Args:
         path: one of the workspace's files.
         answers: what earlier checks of the file have left here, to ask no more than an edit asks for.
+        is_alone: say nothing of what is wrong in the files that it includes.
 
     Returns:
         Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
@@ -257,7 +260,10 @@ def check(workspace: Workspace, path: str, answers: Answers | None = None) -> tu
     if answers is None:
         found = []
         for entry in file.parsed.entries:
-            of_entry = [diagnostic for each in checks_of(entry) for diagnostic in each(view, entry)]
+            checks = checks_of(entry)
+            if is_alone:
+                checks = tuple(each for each in checks if each is not includes.include_with_errors)
+            of_entry = [diagnostic for each in checks for diagnostic in each(view, entry)]
             if of_entry or entry.diagnostics:
                 found += _told(view, entry, of_entry, workspace)
     else:

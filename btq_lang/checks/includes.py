@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
+from operator import is_
 
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
@@ -11,7 +12,7 @@ from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replac
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.text import Span
-from btq_lang.workspace import File
+from btq_lang.workspace import Workspace, is_btq
 
 
 def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -58,39 +59,65 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An included file that cannot be read as it stands, or one that includes such a file."""
+    """An included file that cannot be read or loaded as it stands, or one that includes such a file."""
     include = entry.item
     target = view.workspace.included_by(view.path, include) if isinstance(include, Include) else None
     if target is None or not isinstance(include, Include) or include.path is None:
         return
     for path in reversed(view.workspace.closure(target)):
-        errors = _errors(view.workspace.files[path]) if path != view.path else []
+        errors = _errors(view.workspace, path) if path != view.path else ()
         if not errors:
             continue
         place, message = errors[0]
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
         which = f"`{shown}`" if path == target else f"`{shown}`, which it includes,"
+        notes: tuple[str, ...] = ("no file that includes it can be built",)
+        if len(errors) > 1 and not is_btq(path):  # a folder's XML is checked only where it is named
+            notes += (f"`btq check {shown}` shows them all",)
         yield Diagnostic(
             "include-with-errors",
             include.path.span,
             f"{which} has {len(errors)} error{'s' if len(errors) > 1 else ''}: {message}",
-            related=(Related(place, "the first one" if len(errors) > 1 else "here"),) if place is not None else (),
-            notes=("no file that includes it can be built",),
+            related=(Related(place, "the first one" if len(errors) > 1 else "here"),),
+            notes=notes,
         )
         return
 
 
-def _errors(file: File) -> list[tuple[Place | None, str]]:
-    """What keeps a file from being read, without what a check of its own would find; no places in XML, whose text is
-    not known here."""
-    if file.origin is not None:
-        return [(None, each.message) for each in file.origin.diagnostics if each.effective_severity is Severity.ERROR]
-    return [
-        (Place(problem.span, file.path, entry.item), problem.message)
-        for entry in file.parsed.entries
-        for problem in entry.diagnostics
-        if problem.effective_severity is Severity.ERROR
-    ]
+def is_told_beside(workspace: Workspace, diagnostic: Diagnostic, checked: Container[str]) -> bool:
+    """Whether a diagnostic says of an included XML file no more than what is told of it, as it is checked, too."""
+    if diagnostic.rule != "include-with-errors":
+        return False
+    path = diagnostic.related[0].place.path or ""
+    return path in checked and path in workspace.origins
+
+
+def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:
+    """What keeps a file from being read, without what a check of its own would find; of XML, which no build writes and
+    which is seldom checked itself, all that is wrong with it."""
+    file = workspace.files[path]
+    if file.origin is None:
+        return tuple(
+            (Place(problem.span, file.path, entry.item), problem.message)
+            for entry in file.parsed.entries
+            for problem in entry.diagnostics
+            if problem.effective_severity is Severity.ERROR
+        )
+    # They rest on the project and on the files that the file sees, and most edits touch none of these.
+    seen = tuple(workspace.files[each] for each in workspace.closure(path))
+    if file.known_errors is not None:
+        project, rested_on, known = file.known_errors
+        if project == workspace.project and len(rested_on) == len(seen) and all(map(is_, rested_on, seen)):
+            return known
+    from btq_lang.checks import check  # it is what calls this
+
+    errors = tuple(
+        (Place(each.span, path), each.message)
+        for each in check(workspace, path, is_alone=True)
+        if each.effective_severity is Severity.ERROR
+    )
+    file.known_errors = workspace.project, seen, errors
+    return errors
 
 
 def include_fix(view: View, path: str) -> Fix:

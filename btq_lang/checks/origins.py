@@ -27,10 +27,12 @@ def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic
     for each in found:
         if origin is not None and each.rule in _OF_SPELLING:
             continue
-        related = tuple(
-            Related(Place(on_origin(near.place.span, near.place.path), near.place.path), near.message)
-            for near in each.related
-        )
+        related = each.related
+        if each.rule not in _OF_SHOWN:
+            related = tuple(
+                Related(Place(on_origin(near.place.span, near.place.path), near.place.path), near.message)
+                for near in related
+            )
         fixes = tuple(
             fix for fix in each.fixes if not any((change.place.path or path) in foreign for change in fix.changes)
         )
@@ -40,3 +42,6 @@ def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic
 
 # What can only be wrong with the spelling of a .btq file.
 _OF_SPELLING = frozenset(("string-over-items", "unknown-escape"))
+
+# What tells of diagnostics that have left here already.
+_OF_SHOWN = frozenset(("include-with-errors",))

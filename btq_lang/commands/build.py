@@ -15,9 +15,10 @@ from btq_lang.btcpp.marks import generated_mark, is_generated
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
+from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.commands.left_over import left_over
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
@@ -25,7 +26,7 @@ from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace import File, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -180,10 +181,18 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
     """Tell what keeps the files from being built."""
     findings = []
     for group in groups:
-        for path in _sources(group):
-            file = group.workspace.files[path]
-            found = file.parsed.diagnostics if options.verbatim else check(group.workspace, path)
-            findings += [Finding(path, file.text, each) for each in found if each.effective_severity is Severity.ERROR]
+        workspace = group.workspace
+        sources = _sources(group)
+        included = dict.fromkeys(each for path in sources for each in workspace.closure(path) if each not in sources)
+        made = _missions(group) if options.bundle else sources
+        replaced = () if options.output else tuple(map(xml_name, made))  # what stands there now is written over
+        for path in (*sources, *(each for each in included if each not in replaced)):
+            found = _read(workspace.files[path]) if options.verbatim else check(workspace, path)
+            findings += [
+                Finding(path, workspace.files[path].source, each)
+                for each in found
+                if each.effective_severity is Severity.ERROR and not is_told_beside(workspace, each, included)
+            ]
     if not findings:
         return False
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
@@ -193,6 +202,11 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
         sys.stdout.write(piece)
     print("nothing was written", file=sys.stderr)
     return True
+
+
+def _read(file: File) -> tuple[Diagnostic, ...]:
+    """What is wrong with how a file is written, whatever it means."""
+    return file.parsed.diagnostics if file.origin is None else file.origin.diagnostics
 
 
 def _tell(remarks: tuple[Remark, ...], word: str, groups: tuple[Group, ...]) -> int:

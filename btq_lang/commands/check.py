@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 
 from btq_lang.checks import check
+from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.commands.options import CheckOptions
 from btq_lang.diagnostics import Diagnostic
@@ -61,15 +62,16 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
         mended = 0 if trouble else mended  # what could not be written is not mended
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
+    checked = tuple(path for group in groups for path in group.given)
     findings: list[Finding] = []
     for group in groups:
         for path, found in _found(group, options.jobs):
             text = group.workspace.files[path].source
+            found = tuple(each for each in found if not is_told_beside(group.workspace, each, checked))
             if path in group.damaged:  # what cannot be read there is told already: the bytes
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
     texts = {path: file.source for group in groups for path, file in group.workspace.files.items()}
-    checked = tuple(path for group in groups for path in group.given)
     nothing = nothing_below(options.paths, groups)
     report = Report(tuple(findings), texts, checked, tuple(map(_trouble, problems)), nothing)
     _print(with_paths(report, shown), options, mended)
