@@ -277,6 +277,8 @@ def test_import_writes_over_nothing(btq: Run, tmp_path: Path) -> None:
     done = btq("import", "x.xml", "a/x.xml", "-o", "made")
     assert done.returncode == 2
     assert "btq: a/x.xml: not imported: x.xml becomes made/x.btq, too\n" in done.stderr
+    assert not (tmp_path / "made").exists()
+    assert btq("import", "x.xml", "-o", "made").returncode == 0
     assert (tmp_path / "made" / "x.btq").read_text() == (
         "Root (BTCPP_format = 4)\n\nBehaviorTree Main\n    SubTree Pick\n"
     )

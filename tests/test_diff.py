@@ -531,3 +531,37 @@ def test_built_xml_is_no_change_of_a_folder(tmp_path: Path) -> None:
         subprocess.run(command, cwd=tmp_path / folder, check=True, capture_output=True)
     code, out, told = btq("old", "new", cwd=tmp_path)
     assert (code, titles(out), told) == (1, ["old/m.btq -> new/m.btq"], "")
+
+
+def test_includes_of_xml_and_of_what_was_imported(tmp_path: Path) -> None:
+    for place, tree in (("x", "X"), ("a/x", "A"), ("b/x", "B")):
+        (tmp_path / place).parent.mkdir(exist_ok=True)
+        (tmp_path / f"{place}.xml").write_text(INCLUDED.format("Go").replace('ID="X"', f'ID="{tree}"'))
+    paths = ("x.xml", "a/x.xml", "b/x.xml")
+    includes = "".join(f'<include path="{path}"/>' for path in paths)
+    tree = '<BehaviorTree ID="Main"><Go/></BehaviorTree>'
+    (tmp_path / "main.xml").write_text(f'<root BTCPP_format="4">{includes}{tree}</root>\n')
+    command = [sys.executable, "-m", "btq_lang", "import", "main.xml", *paths]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    assert btq("main.xml", "main.btq", cwd=tmp_path) == (0, "", "")
+    assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
+
+
+def test_of_files_that_become_one_none_is_imported(tmp_path: Path) -> None:
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "x.xml").write_text(INCLUDED.format("Go"))
+    (tmp_path / "main.xml").write_text('<root BTCPP_format="4"><include path="a/x.xml"/></root>\n')
+    command = [sys.executable, "-m", "btq_lang", "import", "main.xml", "a/x.xml", "b/x.xml", "-o", "fl"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    told = "btq: b/x.xml: not imported: a/x.xml becomes fl/x.btq, too\n0 files imported\n"
+    assert (run.returncode, run.stdout, run.stderr) == (2, "", told)
+    assert not (tmp_path / "fl").exists()
+
+
+def test_a_btq_file_is_not_imported(tmp_path: Path) -> None:
+    (tmp_path / "x.btq").write_text("BehaviorTree Main\n    Go\n")
+    command = [sys.executable, "-m", "btq_lang", "import", "x.btq", "--force"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    told = "btq: x.btq: not imported: this is no XML file, by its name\n0 files imported\n"
+    assert (run.returncode, run.stdout, run.stderr) == (2, "", told)

@@ -44,6 +44,8 @@ def run(options: Namespace) -> int:
         job = _job(path, targets, options, problems)
         if job is not None:
             jobs.append(job)
+    if len([job for job in jobs if _is_second(job, jobs, problems)]) > 0:  # all of them are told
+        jobs = []  # the others may include what would be missing
     jobs = [job for job in jobs if not _clashes(job, jobs, options.force, problems)]
     _show_findings(jobs, options)
     good = [job for job in jobs if job.done.is_complete]
@@ -70,6 +72,9 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
+    if targets[path] == path:
+        problems.append(LoadProblem(path, "not imported: this is no XML file, by its name"))
+        return None
     text, problem = read(path)
     if text is None or problem is not None:  # what is no UTF-8 would lose something
         problems.extend([problem] if problem else [])
@@ -125,14 +130,21 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
     return replace(job, losses=(f"{nodes} carried requirements or qualities: {advice}",))
 
 
+def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> bool:
+    """Whether another file becomes the one that this one does."""
+    if job.target is None:
+        return False
+    first = next(other for other in jobs if other.target == job.target)
+    if first is job:
+        return False
+    problems.append(LoadProblem(job.path, f"not imported: {shown(first.path)} becomes {shown(job.target)}, too"))
+    return True
+
+
 def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadProblem]) -> bool:
     """Whether a file would be lost by writing this one."""
     if job.target is None:
         return False
-    same = next(other for other in jobs if other.target == job.target)
-    if same is not job:
-        problems.append(LoadProblem(job.path, f"not imported: {shown(same.path)} becomes {shown(job.target)}, too"))
-        return True
     for other in jobs:
         known = {
             other.path: other.xml,
@@ -143,7 +155,7 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
             if known.get(path, text) != text:
                 problems.append(LoadProblem(job.path, f"not imported: {shown(other.path)} has another {shown(path)}"))
                 return True
-    if job.target == job.path or (os.path.lexists(job.target) and not force):
+    if os.path.lexists(job.target) and not force:
         problems.append(LoadProblem(job.target, "is there already: --force writes it anew"))
         return True
     return False

@@ -69,15 +69,24 @@ def item_changes(
 
 def _leave_out_built(before: dict[tuple[str, object], Item], after: dict[tuple[str, object], Item]) -> None:
     """Leave out an include of a mission and the one of its XML: a build names one for the other."""
-    gone = {_stem(item): key for key, item in before.items() if item.thing == "include" and key not in after}
-    came = {_stem(item): key for key, item in after.items() if item.thing == "include" and key not in before}
-    for stem in gone.keys() & came.keys():
-        if before[gone[stem]].name.endswith(".xml") != after[came[stem]].name.endswith(".xml"):
-            del before[gone[stem]], after[came[stem]]
+    for stem in (_path, _name):  # beside each other first: files of one name may be in several folders
+        came: dict[tuple[str, bool], list[tuple[str, object]]] = {}
+        for key, item in after.items():
+            if item.thing == "include" and key not in before:
+                came.setdefault((stem(item), item.name.endswith(".xml")), []).append(key)
+        gone = [key for key, item in before.items() if item.thing == "include" and key not in after]
+        for key in gone:
+            others = came.get((stem(before[key]), not before[key].name.endswith(".xml")))
+            if others:
+                del before[key], after[others.pop(0)]
 
 
-def _stem(item: Item) -> str:
-    return item.name.rpartition("/")[2].rpartition(".")[0]
+def _path(item: Item) -> str:
+    return item.name.rpartition(".")[0]
+
+
+def _name(item: Item) -> str:
+    return _path(item).rpartition("/")[2]
 
 
 def _told(item: Item, added: bool) -> Iterator[Detail]:
