@@ -93,6 +93,40 @@ def test_the_colours_of_emacs(tmp_path: Path, environment: dict[str, str]) -> No
     ]
 
 
+def test_an_apostrophe_in_a_comment_of_any_form_opens_no_string_in_emacs(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    there(shutil.which("emacs"), "Emacs", "more_from_apt")
+    (tmp_path / "main.btq").write_text(
+        "# it's one\n// it's two\n/* it's\n   three # no end */\nBehaviorTree Main\n"
+        "    Dock (a = 'four // five')  // it's six\n    Charge (b = 1/2)\n"
+    )
+    (tmp_path / "recipe.el").write_text(recipe("elisp").partition("(with-eval-after-load")[0])
+    (tmp_path / "test.el").write_text(
+        """
+        (load (expand-file-name "recipe.el"))
+        (find-file "main.btq")
+        (font-lock-ensure)
+        (dolist (word '("one" "two" "three" "no end" "BehaviorTree" "four" "five" "six" "b =" "2)"))
+          (goto-char (point-min))
+          (search-forward word)
+          (princ (format "%s: %s\n" word (get-text-property (match-beginning 0) 'face))))
+        """
+    )
+    assert run(["emacs", "-q", "--batch", "-l", "test.el"], tmp_path, environment).splitlines() == [
+        "one: font-lock-comment-face",
+        "two: font-lock-comment-face",
+        "three: font-lock-comment-face",
+        "no end: font-lock-comment-face",
+        "BehaviorTree: font-lock-keyword-face",
+        "four: font-lock-string-face",
+        "five: font-lock-string-face",
+        "six: font-lock-comment-face",
+        "b =: font-lock-variable-name-face",
+        "2): nil",
+    ]
+
+
 def test_vim_with_ale(tmp_path: Path, environment: dict[str, str]) -> None:
     there(shutil.which("vim"), "Vim", "more_from_apt")
     ale = there("/usr/share/vim-ale", "ALE", "more_from_apt")
