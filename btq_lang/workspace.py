@@ -240,11 +240,11 @@ class File:
     Attributes:
         text: in this language, whatever the file on the disk is written in.
         origin: that file, where it is written in another one.
-        known_errors: what was last found wrong with it for those that include it, behind the project and the files
-            that this rests on.
+        known_errors: what was last found wrong with it for those that include it, behind the project, the files and
+            the names of trees that this rests on.
     """
 
-    known_errors: tuple[Project, tuple[File, ...], tuple[tuple[Place, str], ...]] | None = None
+    known_errors: tuple[Project, tuple[File, ...], frozenset[str], tuple[tuple[Place, str], ...]] | None = None
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
         self.path = path

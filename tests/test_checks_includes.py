@@ -119,9 +119,9 @@ def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
     [
         (_TREE.format(include="", node="<Sequence/>"), "Sequence", "`Sequence` takes 1 or more children, it has none"),
         (
-            _TREE.format(include="", node='<SubTree ID="Main"/>'),  # no more in sight of the XML than of a .btq file
-            "Main",
-            "there is no tree `Main` in this file or in those it includes",
+            _TREE.format(include="", node='<SubTree ID="Gone"/>'),
+            "Gone",
+            "there is no tree `Gone` in this file or in those it includes",
         ),
         (_TREE.format(include='<include path="gone.xml"/>', node="<A/>"), "gone.xml", "there is no file `gone.xml`"),
         (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a blank"),
@@ -164,6 +164,26 @@ def test_xml_that_includes_itself_in_a_circle() -> None:
     more = _TREE.format(include='<include path="nav.xml"/>', node="<AlwaysSuccess/>").replace("Nav", "More")
     (found,) = _of_xml(nav=nav, more=more)
     assert found.message == "`nav.xml` has 1 error: this file includes `more.xml`, which includes this file again"
+
+
+def test_the_trees_of_included_xml_may_run_those_of_the_files_that_include_it() -> None:
+    """The engine reads all files before it makes a tree."""
+    nav = _TREE.format(include="", node='<SubTree ID="More"/>')
+    files = {"main.btq": 'include "nav.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Nav\n', "nav.xml": nav}
+    beside = {**files, "main.btq": f'include "more.xml"\n{files["main.btq"]}', "more.xml": _GOOD.replace("Nav", "More")}
+    above = {**files, "main.btq": f"{files['main.btq']}BehaviorTree More\n    AlwaysSuccess\n"}
+    for complete in (beside, above):
+        workspace = workspace_of(complete)
+        assert [check(workspace, path) for path in complete] == [()] * len(complete)
+    workspace = workspace_of(above)
+    without = workspace.with_file("main.btq", files["main.btq"])
+    assert [each.rule for each in check(without, "main.btq")] == ["include-with-errors"]
+
+
+def test_a_circle_through_included_xml_is_told_where_it_is_included() -> None:
+    (found,) = _of_xml(nav=_TREE.format(include="", node='<SubTree ID="Main"/>'))
+    assert found.rule == "recursive-tree"
+    assert found.message == "the tree `Main` contains itself: `Main` → `Nav` → `Main`"
 
 
 def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_project_is_another() -> None:

@@ -103,11 +103,13 @@ def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:
             for problem in entry.diagnostics
             if problem.effective_severity is Severity.ERROR
         )
-    # They rest on the project and on the files that the file sees, and most edits touch none of these.
+    # They rest on the project, the files that the file sees, and the trees of those that see it: most edits touch none.
     seen = tuple(workspace.files[each] for each in workspace.closure(path))
+    trees = lookups.trees_of_mission(workspace, path)
     if file.known_errors is not None:
-        project, rested_on, known = file.known_errors
-        if project == workspace.project and len(rested_on) == len(seen) and all(map(is_, rested_on, seen)):
+        project, rested_on, known_trees, known = file.known_errors
+        same_files = len(rested_on) == len(seen) and all(map(is_, rested_on, seen))
+        if same_files and project == workspace.project and known_trees == trees:
             return known
     from btq_lang.checks import check  # it is what calls this
 
@@ -116,7 +118,7 @@ def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:
         for each in check(workspace, path, is_alone=True)
         if each.effective_severity is Severity.ERROR
     )
-    file.known_errors = workspace.project, seen, errors
+    file.known_errors = workspace.project, seen, trees, errors
     return errors
 
 

@@ -104,6 +104,18 @@ def trees_in_scope(workspace: Workspace, path: str) -> tuple[tuple[str, Facts], 
     return tuple([(each, tree) for each in workspace.scope(path).paths for tree in trees(workspace, each)])
 
 
+def is_tree_of_mission(workspace: Workspace, path: str, name: str) -> bool:
+    """Whether a file that is linked with this one by includes, in whatever direction, has a tree of the name."""
+    return name in trees_of_mission(workspace, path)
+
+
+def trees_of_mission(workspace: Workspace, path: str) -> frozenset[str]:
+    """The names of the trees in all files that are linked with this one by includes."""
+    mission = workspace.missions[path]
+    linked = [workspace.files[each] for each, of in workspace.missions.items() if of == mission]
+    return frozenset([name for file in linked for kind, name in file.defined_names if kind is Kind.TREE])
+
+
 def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
     """The names that a tree of the mission cannot have in XML, as its other trees and its nodes have them: by what is
     written, what has it.

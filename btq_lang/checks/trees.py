@@ -31,6 +31,8 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         if not view.scope.complete or view.has_torn_tree:
             return
+        if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
+            continue  # the engine has read all files before it makes a tree, and nobody adds an include to others' XML
         fixes = tuple(include_fix(view, path) for path in view.elsewhere(Kind.TREE, use.name)[:3])
         fixes += tuple(
             replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
