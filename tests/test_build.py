@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from btq_lang.cli import main
 
@@ -290,6 +291,20 @@ def test_repairs_are_told(btq: Btq) -> None:
         + GUESSED.format("Pick (Action)"),
     )
     assert '<root BTCPP_format="4" main_tree_to_execute="My_tree">' in btq.read("a.xml")
+
+
+def test_attributes_of_other_namespaces_are_written_where_their_prefix_is_known(btq: Btq) -> None:
+    """As in the usual header of XML that names its schema."""
+    xsi = '"xmlns:xsi" = "http://www.w3.org/2001/XMLSchema-instance"'
+    tree = 'BehaviorTree A\n    Pick ("xsi:type" = "x" "xml:lang" = "de")\n'
+    btq.write(a=f'Root A ({xsi} "xsi:noNamespaceSchemaLocation" = "bt.xsd")\n{tree}')
+    assert btq.build("--verbatim") == (0, "wrote a.xml\n", "")
+    root = etree.fromstring(btq.read("a.xml").encode())
+    assert root.attrib["{http://www.w3.org/2001/XMLSchema-instance}noNamespaceSchemaLocation"] == "bt.xsd"
+    btq.write(a=tree)
+    assert btq.build("--verbatim")[2].splitlines()[0] == (
+        "a.btq:2:11: error: `xsi:type` cannot be the name of an XML attribute"
+    )
 
 
 def test_check_compares_and_writes_nothing(btq: Btq) -> None:

@@ -10,7 +10,7 @@ from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import in_unit, spelt
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import is_xml_name
-from btq_lang.syntax import Entry, Pair, Word
+from btq_lang.syntax import Entry, Pair, Root, Word
 from btq_lang.tokens import QUANTITY
 
 
@@ -33,7 +33,7 @@ def attributes_of(
         if value is None:
             continue  # broken code, which is told
         key = pair.key.text
-        if not (key.isascii() and key.isidentifier()) and not is_xml_name(key):
+        if not (key.isascii() and key.isidentifier()) and not _is_attribute_name(source, key):
             source.problem(entry, pair.key, f"`{key}` cannot be the name of an XML attribute")
             continue
         raw = spelt(value) if value.kind != QUANTITY else _quantity(source, entry, key, value, builtin)
@@ -47,6 +47,17 @@ def only_first(attributes: list[Attribute]) -> list[Attribute]:
     for attribute in attributes:
         first.setdefault(attribute.name, attribute)
     return attributes if len(first) == len(attributes) else list(first.values())
+
+
+def _is_attribute_name(source: Source, key: str) -> bool:
+    """Whether XML knows it; of `xsi:type`, whether the file says what `xsi` is (Namespaces in XML 1.0, section 5)."""
+    prefix, colon, local = key.partition(":")
+    if not colon:
+        return is_xml_name(key)
+    roots = (entry.item for entry in source.file.parsed.entries if isinstance(entry.item, Root))
+    said = {pair.key.text for root in roots for pair in root.attributes}
+    is_known = prefix in ("xml", "xmlns") or f"xmlns:{prefix}" in said
+    return is_known and is_xml_name(prefix) and is_xml_name(local)
 
 
 def _quantity(source: Source, entry: Entry, key: str, value: Word, builtin: NodeKind | None) -> str:
