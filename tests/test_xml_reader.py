@@ -108,6 +108,7 @@ def test_what_the_engine_refuses_is_an_error(shared: Path) -> None:
         ("  \n", "1:1 error xml-syntax: this file is empty"),
         ("<!-- x -->", "1:1 error xml-syntax: there is no element in this file"),
         ("nothing", "1:1 error xml-syntax: there is no element in this file"),
+        ('<a x="\0"/>', "1:7 error xml-syntax: a NUL character: here the file ends for the engine"),
         ("<a", "1:1 error xml-syntax: <a has no >"),
         ("<a>", "1:1 error xml-syntax: <a> is never closed"),
         ("<a><b></a>", "1:7 error xml-syntax: </a> stands where </b> is expected"),

@@ -64,6 +64,10 @@ def read(text: str) -> Read:
     Args:
         text: any string at all.
     """
+    nul = text.find("\0")
+    if 0 <= nul < text.rfind(">"):
+        message = "a NUL character: here the file ends for the engine"
+        return Read(None, (Diagnostic(RULE, Span(nul, nul + 1), message, notes=("remove it",)),))
     refused = not_well_formed(text)
     reader = _Reader(text, refused is None)
     try:
