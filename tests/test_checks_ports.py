@@ -6,6 +6,7 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
 from btq_lang.checks import check
+from btq_lang.project import Project
 from btq_lang.workspace import Workspace
 
 PICK = """\
@@ -160,7 +161,10 @@ def test_a_shared_blackboard_of_version_3() -> None:
 
 
 def test_a_name_that_is_no_port_name() -> None:
-    assert_problems(tree('X ("a.b" = 1)'), '3:12 hint unknown-attribute «"a.b"» the engine does not read `a.b`')
+    text = tree('X ("a.b" = 1)')
+    assert_problems(text, '3:12 hint unknown-attribute «"a.b"» the engine does not read `a.b`')
+    told = '3:12 warning unknown-attribute «"a.b"» the engine does not read `a.b`'
+    assert_problems(text, told, project=Project(engines=("4.6",)))  # which refuses it
 
 
 # ---- duplicate-attribute ---------------------------------------------------------------------------------------------

@@ -98,12 +98,15 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 continue
             likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
             if not likely:
+                kept = "it keeps it for the node's own code, from 4.7 on"
+                refused = f"{view.project.target} takes it for a port, and refuses a node that has none of that name"
+                is_port = is_port_name(key, view.project.target)
                 yield Diagnostic(
                     "unknown-attribute",
                     pair.key.span,
                     f"the engine does not read `{key}`",
-                    notes=("it keeps it for the node's own code, from 4.7 on",),
-                    severity=Severity.HINT,
+                    notes=(refused if is_port else kept,),
+                    severity=Severity.WARNING if is_port else Severity.HINT,
                 )
             elif not (key in _OF_TODAY and _is_off(pair.value)):
                 fixes = tuple(replace_fix(f"Replace `{key}` by `{name}`", pair.key.span, name) for name in likely)
