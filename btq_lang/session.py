@@ -59,7 +59,7 @@ class Session:
         old, new = before.files[path], after.files[path]
         if old.included_paths != new.included_paths:
             return (path, *self.reload())
-        linked = set(_linked(after, path))
+        linked = set(after.linked(path))  # what is used is known in both directions
         if renamed := old.defined_names ^ new.defined_names:
             linked.update(other for other in after.files if _misses(after, other, renamed))
         return self._in_order(path, linked)
@@ -192,12 +192,6 @@ def _misses(workspace: Workspace, path: str, names: frozenset[Name]) -> bool:
 
 def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
     return frozenset().union(*(workspace.files[each].defined_names for each in workspace.closure(path)))
-
-
-def _linked(workspace: Workspace, path: str) -> list[str]:
-    """The files that see the file, and those that it sees: what is used is known in both directions."""
-    mission = workspace.missions[path]
-    return [other for other, of in workspace.missions.items() if of == mission]
 
 
 _MOST_IDLE = 100_000  # characters, of which each costs some 40 bytes when it is parsed

@@ -703,6 +703,11 @@ class Workspace:
                 found[other] = one
         return {path: first(path) for path in self.files}
 
+    def linked(self, path: str) -> list[str]:
+        """A file, those that see it, and those that it sees, over however many files."""
+        mission = self.missions[path]
+        return [other for other, of in self.missions.items() if of == mission]
+
     # ---- definitions and references ----
 
     def defined_in(self, path: str) -> tuple[Definition, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from check_asserts import split_files
 from btq_lang import rules
 from btq_lang.checks import CHECKS, checks_of
 from btq_lang.checks.view import View
-from btq_lang.syntax import Model
+from btq_lang.syntax import Entry, Model
 from btq_lang.workspace import Workspace
 
 BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -21,25 +22,26 @@ ALL = dict.fromkeys(check for checks in CHECKS.values() for check in checks)
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_is_not_registered_finds_nothing(page: Path) -> None:
-    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-        files = split_files(block[1])
-        workspace = Workspace.of(files)
-        for path in files:
-            view = View(workspace, path)
-            for entry in view.file.parsed.entries:
-                registered = CHECKS.get(type(entry.item), ())
-                others = [check for check in ALL if check not in registered]
-                assert [found for check in others for found in check(view, entry)] == []
+    for view, entry in entries(page):
+        registered = CHECKS.get(type(entry.item), ())
+        others = [check for check in ALL if check not in registered]
+        assert [found for check in others for found in check(view, entry)] == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_is_not_asked_of_a_model_finds_nothing(page: Path) -> None:
+    for view, entry in entries(page):
+        if isinstance(entry.item, Model):
+            others = [check for check in CHECKS[Model] if check not in checks_of(entry)]
+            assert [found for check in others for found in check(view, entry)] == []
+
+
+def entries(page: Path) -> Iterator[tuple[View, Entry]]:
+    """What stands in the missions of a rule's page."""
     for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
         files = split_files(block[1])
         workspace = Workspace.of(files)
         for path in files:
             view = View(workspace, path)
             for entry in view.file.parsed.entries:
-                if isinstance(entry.item, Model):
-                    others = [check for check in CHECKS[Model] if check not in checks_of(entry)]
-                    assert [found for check in others for found in check(view, entry)] == []
+                yield view, entry

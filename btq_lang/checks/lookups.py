@@ -111,9 +111,10 @@ def is_tree_of_mission(workspace: Workspace, path: str, name: str) -> bool:
 
 def trees_of_mission(workspace: Workspace, path: str) -> frozenset[str]:
     """The names of the trees in all files that are linked with this one by includes."""
-    mission = workspace.missions[path]
-    linked = [workspace.files[each] for each, of in workspace.missions.items() if of == mission]
-    return frozenset([name for file in linked for kind, name in file.defined_names if kind is Kind.TREE])
+    linked = workspace.linked(path)
+    return frozenset(
+        [name for each in linked for kind, name in workspace.files[each].defined_names if kind is Kind.TREE]
+    )
 
 
 def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
@@ -123,10 +124,10 @@ def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
     Args:
         but: the tree that a name is wanted for.
     """
-    target, mission = workspace.project.target, workspace.missions[path]
+    target = workspace.project.target
     taken = dict.fromkeys(BUILTINS, "a node of the engine")
     trees: dict[str, str] = {}
-    for each in sorted(other for other, of in workspace.missions.items() if of == mission):
+    for each in sorted(workspace.linked(path)):
         for kind, name in sorted(workspace.files[each].defined_names, key=lambda one: one[1]):
             if kind is Kind.TREE and name != but:
                 is_refused = model_name_problem(name, target) is not None

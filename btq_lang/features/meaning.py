@@ -151,8 +151,7 @@ def _paths(workspace: Workspace, wanted: Subject) -> list[str]:
     home = wanted.home.removeprefix(ROOT_BLACKBOARD).rpartition(":")[0] or wanted.home.removeprefix(ROOT_BLACKBOARD)
     if home not in workspace.files:
         return sorted(workspace.files)
-    mission = workspace.missions[home]
-    return sorted(path for path, of in workspace.missions.items() if of == mission)
+    return sorted(workspace.linked(home))
 
 
 def _spellings(wanted: Subject) -> tuple[str, ...]:
