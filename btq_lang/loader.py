@@ -13,10 +13,11 @@ import os
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from btq_lang.file import File, Origin
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
-from btq_lang.workspace import File, Origin, Workspace
+from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

@@ -19,7 +19,8 @@ from btq_lang.text import LineIndex
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks.answers import Answers
     from btq_lang.commands.files import Files
-    from btq_lang.workspace import Name, Workspace
+    from btq_lang.facts import Name
+    from btq_lang.workspace import Workspace
 
 
 class Session:

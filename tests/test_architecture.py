@@ -38,8 +38,8 @@ ROWS: tuple[frozenset[str], ...] = (
     ),
     frozenset({"catalog"}),
     frozenset(
-        {"toml_places", "project", "symbols", "constraints", "mentions", "workspace", "placeholders", "requirements"}
-        | {"graph", "entry_types"}
+        {"toml_places", "project", "symbols", "constraints", "mentions", "facts", "file", "workspace"}
+        | {"placeholders", "entry_types", "requirements", "graph"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
     frozenset(

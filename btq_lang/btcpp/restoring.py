@@ -13,6 +13,7 @@ from itertools import chain
 from btq_lang.btcpp.side_file import FORMAT, VERSION
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
+from btq_lang.file import is_btq
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
@@ -35,7 +36,6 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Edit, LineIndex, Span, apply_edits
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
-from btq_lang.workspace import is_btq
 
 
 class Restored(Record):

@@ -14,11 +14,12 @@ from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.comments import NO_COMMENTS, Comments, comments
 from btq_lang.comments import Comment as SourceComment
+from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Verbatim, Word
 from btq_lang.text import Span
-from btq_lang.workspace import File, Scope, Workspace
+from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

@@ -13,10 +13,11 @@ from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
+from btq_lang.file import File
 from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Models, Node, Tree
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

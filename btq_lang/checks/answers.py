@@ -19,8 +19,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from heapq import heappop, heappush
 
+from btq_lang.facts import Facts, Name
+from btq_lang.file import File
 from btq_lang.record import Record
-from btq_lang.workspace import Facts, File, Name, Workspace
+from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

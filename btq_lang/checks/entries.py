@@ -15,11 +15,11 @@ from btq_lang.checks.scripts import is_script
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
+from btq_lang.facts import Facts
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Pair, Port, Signal, Tree
 from btq_lang.text import Span
-from btq_lang.workspace import Facts
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

@@ -14,13 +14,13 @@ from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.facts import Facts
 from btq_lang.near import distance
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
-from btq_lang.workspace import Facts
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

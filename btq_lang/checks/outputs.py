@@ -11,9 +11,9 @@ from btq_lang.checks import lookups
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.facts import Facts
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
-from btq_lang.workspace import Facts
 
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:

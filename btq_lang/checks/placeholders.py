@@ -13,13 +13,13 @@ from btq_lang.checks.view import View
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.facts import Facts
 from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
-from btq_lang.workspace import Facts
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
+    from btq_lang.facts import Facts
     from btq_lang.syntax import Entry
-    from btq_lang.workspace import Facts
 
 
 class Results(Record):

@@ -16,7 +16,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
-    from btq_lang.workspace import Definition
+    from btq_lang.file import Definition
 
 
 class SeenNode:

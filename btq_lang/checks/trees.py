@@ -10,10 +10,10 @@ from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.file import Definition
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
-from btq_lang.workspace import Definition
 
 _MOST_NAMES = 5  # in one message
 _LAST_WINS = "the engine does not complain: it runs the last one it reads"

@@ -15,6 +15,8 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
+from btq_lang.facts import Facts
+from btq_lang.file import Definition, File
 from btq_lang.near import near
 from btq_lang.symbols import Kind, Summary, Use
 from btq_lang.syntax import (
@@ -28,7 +30,7 @@ from btq_lang.syntax import (
     Tree,
     is_name,
 )
-from btq_lang.workspace import Definition, Facts, File, Scope, Workspace
+from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

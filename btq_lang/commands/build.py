@@ -19,6 +19,7 @@ from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.commands.left_over import left_over
 from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.file import File
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
@@ -26,7 +27,7 @@ from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.text import Span
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

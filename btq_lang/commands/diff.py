@@ -15,12 +15,12 @@ from btq_lang.commands.files import Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
+from btq_lang.file import File
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
 from btq_lang.record import replace
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.rules import Severity
-from btq_lang.workspace import File
 
 
 class Trouble(Exception):

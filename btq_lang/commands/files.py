@@ -6,10 +6,11 @@ import os.path
 import sys
 from collections.abc import Iterable, Iterator
 
+from btq_lang.file import File
 from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
 from btq_lang.project import Project
 from btq_lang.record import Record
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 STDIN = "-"
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.syntax import Entry, Node, Tree
 from btq_lang.text import LINE_END, Edit, Span
 from btq_lang.tokens import COMMENT, STRING
-from btq_lang.workspace import File
 
 STEP = "    "
 

@@ -10,9 +10,10 @@ from collections.abc import Iterator, Sequence
 from operator import is_
 
 from btq_lang.features.semantic_tokens import Known, Stretch, encode, stretches, tokens_of_stretch
+from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.text import LINE_END, Encoding
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 
 class Part(Record):

@@ -7,9 +7,10 @@ from btq_lang.checks.view import View
 from btq_lang.features import describe
 from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_match
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.file import Definition
 from btq_lang.symbols import Kind
 from btq_lang.text import Edit
-from btq_lang.workspace import Definition, Workspace
+from btq_lang.workspace import Workspace
 
 
 def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:

@@ -9,13 +9,14 @@ from btq_lang.features.held import missions_of
 from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, quality_of, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
+from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.record import Record
 from btq_lang.requirements import requirements
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Claim, Requirement
 from btq_lang.text import Span
-from btq_lang.workspace import Definition, Workspace
+from btq_lang.workspace import Workspace
 
 _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 

@@ -12,13 +12,14 @@ from functools import lru_cache
 
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
+from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Model, Node, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, NAME
-from btq_lang.workspace import Definition, Workspace
+from btq_lang.workspace import Workspace
 
 ENGINE = "engine"
 STANDARD = "standard"

@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
+from btq_lang.file import File
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.record import Record
 from btq_lang.syntax import unquote
@@ -30,7 +31,7 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 
 class LineNode(Record):

@@ -16,6 +16,7 @@ from btq_lang.features.meaning import Found, edition, is_main
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.record import Record, replace
 from btq_lang.requirements.nodes import Nodes
@@ -24,7 +25,7 @@ from btq_lang.symbols import Kind
 from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES, Token
 from btq_lang.units import dimension_name, parse_unit, symbols
-from btq_lang.workspace import Definition, Workspace
+from btq_lang.workspace import Workspace
 
 
 class Proposal(Record):

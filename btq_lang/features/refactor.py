@@ -11,6 +11,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.features.block import STEP, Standing, block_of, moved, node_at, shifts
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
+from btq_lang.file import File
 from btq_lang.mentions import Mention, What
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
@@ -29,7 +30,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Edit, Span
 from btq_lang.tokens import BRACED
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 
 class Refactoring(Record):

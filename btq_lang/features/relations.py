@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from btq_lang.features.meaning import at, definition, everywhere, own_quality, quality_of, subject
 from btq_lang.features.navigation import Target, goto_definition
+from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.symbols import Kind
 from btq_lang.text import Span
-from btq_lang.workspace import Definition, Workspace
+from btq_lang.workspace import Workspace
 
 
 def goto_implementation(workspace: Workspace, path: str, offset: int) -> tuple[Target, ...]:

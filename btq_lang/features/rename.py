@@ -13,11 +13,12 @@ from btq_lang.catalog.names import instance_name_problem, is_port_name, model_na
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
 from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
+from btq_lang.file import is_btq
 from btq_lang.mentions import Mention, What
 from btq_lang.record import Record
 from btq_lang.syntax import is_name, quote
 from btq_lang.text import Edit, Span, apply_edits
-from btq_lang.workspace import Workspace, is_btq
+from btq_lang.workspace import Workspace
 
 
 class Renamable(Record):

@@ -15,6 +15,7 @@ from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
+from btq_lang.file import File
 from btq_lang.lexer import pieces
 from btq_lang.mentions import Mention, What
 from btq_lang.parser import Parsed
@@ -35,7 +36,7 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 
 class SemanticToken(Record):

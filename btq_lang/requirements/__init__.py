@@ -23,6 +23,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from operator import is_
 
+from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
@@ -37,7 +38,7 @@ from btq_lang.syntax import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.tokens import NAME
-from btq_lang.workspace import File, Workspace
+from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from math import inf
 
+from btq_lang.file import Definition
 from btq_lang.record import replace
 from btq_lang.requirements.model import (
     NO_DIMENSION,
@@ -46,7 +47,6 @@ from btq_lang.syntax import Subject as WrittenSubject
 from btq_lang.syntax import Window as WrittenWindow
 from btq_lang.text import Span as TextSpan
 from btq_lang.units import Dimension, Unit, dimension_name, parse_unit
-from btq_lang.workspace import Definition
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

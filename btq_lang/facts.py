@@ -1,0 +1,183 @@
+"""What items say by themselves, and what a file's items say together by name.
+
+One invariant: facts rest on their item alone, so they stay true for as long as it stays, wherever it moves; names and
+tallies are kept up through an edit from the items that it took away and those that it brought.  Nothing is known here
+of files, nor of what a name means.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from itertools import chain
+
+from btq_lang.symbols import Kind, Summary, Symbol, asked_for, summarize
+from btq_lang.syntax import Item, Model, Signal, Tree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from btq_lang.mentions import Mention, What
+
+Name: TypeAlias = tuple[Kind, str]
+
+
+class Facts:
+    """What an item says by itself: found out when first asked for, and true for as long as the item stays.
+
+    Attributes:
+        colours: what colours its words: of the features, who know what else it depends on.
+    """
+
+    def __init__(self, item: Item) -> None:
+        self.item = item
+        self.colours: object = None
+
+    @cached_property
+    def summary(self) -> Summary:
+        return summarize(self.item)
+
+    @cached_property
+    def asked_for(self) -> frozenset[str]:
+        return asked_for(self.item)
+
+    @cached_property
+    def mentions(self) -> tuple[Mention, ...]:
+        """Every word of it that names something."""
+        from btq_lang.mentions import mentions  # only editors ask
+
+        return mentions(self.item)
+
+    @cached_property
+    def named(self) -> Mapping[What, tuple[Mention, ...]]:
+        """What it names, by what that is: of mentions that say the same the first one."""
+        found: dict[What, dict[tuple[str, bool, bool], Mention]] = {}
+        for one in self.mentions:
+            found.setdefault(one.what, {}).setdefault((one.name, one.word.quoted, one.defines), one)
+        return {what: tuple(names.values()) for what, names in found.items()}
+
+    @cached_property
+    def kinds(self) -> frozenset[tuple[str, bool]]:
+        """What its nodes are, and whether that is quoted."""
+        from btq_lang.mentions import What  # as above
+
+        found = self.named.get(What.NODE, ())
+        return frozenset([(one.name, one.word.quoted) for one in found if not one.defines])
+
+    @cached_property
+    def mentioned(self) -> Mapping[str, list[Mention]]:
+        """Its mentions by what they say."""
+        found: dict[str, list[Mention]] = {}
+        for one in self.mentions:
+            found.setdefault(one.name, []).append(one)
+        return found
+
+    @cached_property
+    def used(self) -> Mapping[Kind, frozenset[str]]:
+        """The names that it refers to, by their kind."""
+        found: dict[Kind, set[str]] = {}
+        for use in self.summary.uses:
+            found.setdefault(use.kind, set()).add(use.name)
+        return {kind: frozenset(names) for kind, names in found.items()}
+
+    def said(self, of: Kind | str) -> frozenset[str]:
+        """The names of a kind that it refers to, or what else is said here of it by this name."""
+        names: frozenset[str] = self.used.get(of, frozenset()) if isinstance(of, Kind) else getattr(self, of)
+        return names
+
+    @cached_property
+    def node_names(self) -> frozenset[str]:
+        """Every name by which a path can name a node in it: its own, and those of kinds and instances."""
+        if not isinstance(self.item, Tree):
+            return frozenset()
+        words = [self.item.name, *(word for node in self.item.walk() for word in (node.id, node.name))]
+        return frozenset([word.text for word in words if word is not None])
+
+    @cached_property
+    def runs(self) -> frozenset[str]:
+        """The trees that it refers to; of a tree, the other ones."""
+        used = self.used.get(Kind.TREE, frozenset())
+        name = self.item.name.text if isinstance(self.item, Tree) and self.item.name is not None else ""
+        return used - {name} if used else used
+
+
+class Tally:
+    """How many items of a file say each of some names."""
+
+    def __init__(self, of: Kind | str, counts: dict[str, int]) -> None:
+        self._of = of
+        self._counts = counts
+
+    @classmethod
+    def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
+        """A tally of the names of a kind that items use, or of another set of names that their facts have."""
+        said = [each.said(of) for each in items if type(each.item) not in _SAYING_NOTHING]
+        return cls(of, dict(Counter(chain.from_iterable(said))))
+
+    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
+        """The tally after an edit that has put other items in the place of some; the same one if they say the same."""
+        changes = Counter(chain.from_iterable([each.said(self._of) for each in come]))
+        changes.subtract(chain.from_iterable([each.said(self._of) for each in gone]))
+        if not any(changes.values()):
+            return self
+        counts = dict(self._counts)
+        for name, change in changes.items():
+            counts[name] = counts.get(name, 0) + change
+            if not counts[name]:
+                del counts[name]
+        return Tally(self._of, counts)
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        return frozenset(self._counts)
+
+
+_SAYING_NOTHING = (Model, Signal)  # of others; most items are such
+
+
+class Names:
+    """The names that a file defines, each with the items and symbols that define it, in the order of the text."""
+
+    def __init__(self, found: dict[Name, list[tuple[Item, Symbol]]]) -> None:
+        self.found = found
+
+    @classmethod
+    def of(cls, facts: Iterable[Facts]) -> Names:
+        found: dict[Name, list[tuple[Item, Symbol]]] = {}
+        for each in facts:
+            for symbol in each.summary.symbols:
+                found.setdefault((symbol.kind, symbol.name), []).append((each.item, symbol))
+        return cls(found)
+
+    def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
+        """The names after an edit that has put other items in the place of some; None where that says too little: the
+        names or their order are others, or a name has several definitions."""
+        before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
+        now = [(each.item, symbol) for each in come for symbol in each.summary.symbols]
+        if before != [(symbol.kind, symbol.name) for _, symbol in now]:
+            return None
+        if any(len(self.found[key]) > 1 for key in before):
+            return None
+        if not now:
+            return self
+        after = Names({**self.found, **{(one[1].kind, one[1].name): [one] for one in now}})
+        after.__dict__.update({each: self.__dict__[each] for each in ("all", "by_kind") if each in self.__dict__})
+        return after
+
+    @cached_property
+    def all(self) -> frozenset[Name]:
+        return frozenset(self.found)
+
+    @cached_property
+    def by_kind(self) -> dict[Kind, tuple[str, ...]]:
+        names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
+        for kind, name in self.found:
+            names[kind].append(name)
+        return {kind: tuple(each) for kind, each in names.items()}
+
+    @cached_property
+    def repeated(self) -> frozenset[Name]:
+        """Those with several definitions."""
+        return frozenset([name for name, found in self.found.items() if len(found) > 1])

@@ -1,0 +1,312 @@
+"""One file as a value: its text, and what was made of it so far.
+
+One invariant: a file is a function of its path and texts; one reached by an edit equals one made afresh, and shares
+with the one before it all that the edit does not touch.  It knows no other files: what its includes say, but not what
+they bring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from itertools import chain
+
+from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.facts import Facts, Names, Tally
+from btq_lang.parser import Parsed, parse, reparse
+from btq_lang.record import Record
+from btq_lang.symbols import Kind, Summary, Symbol
+from btq_lang.syntax import Entry, Include, Item
+from btq_lang.text import LineIndex, Span, changed
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.facts import Name
+    from btq_lang.mentions import Mention, What
+    from btq_lang.places import Places
+    from btq_lang.project import Project
+
+
+class File:
+    """One file: its text, and what was made of it so far.  Two files with one path and text are equal.
+
+    Attributes:
+        text: in this language, whatever the file on the disk is written in.
+        origin: that file, where it is written in another one.
+        known_errors: what was last found wrong with it for those that include it, behind the project, the files and
+            the names of trees that this rests on.
+    """
+
+    known_errors: tuple[Project, tuple[File, ...], frozenset[str], tuple[tuple[Place, str], ...]] | None = None
+
+    def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
+        self.path = path
+        self.text = text
+        self.origin = origin
+
+    def edited(self, text: str) -> File:
+        """The file after an edit, which shares what the edit does not touch."""
+        after = File(self.path, text)
+        if self.origin is None and "parsed" in self.__dict__ and is_btq(self.path):
+            change = changed(self.text, text)
+            after.parsed = reparse(self.parsed, text, change)
+            known = self.facts
+            items = [entry.item for entry in after.parsed.entries]
+            facts = after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
+            gone = [each for item, each in known.items() if item not in facts]
+            come = [each for item, each in facts.items() if item not in known]
+            after._tallies = {of: tally.edited(gone, come) for of, tally in self._tallies.items()}
+            if "names" in self.__dict__:
+                names = self.names.edited(gone, come)
+                if names is not None:
+                    after.names = names
+            if "lines" in self.__dict__:
+                after.lines = self.lines.edited(text, change)
+        return after
+
+    @property
+    def has_tree(self) -> bool:
+        """Whether it was parsed, and is held so."""
+        return "parsed" in self.__dict__
+
+    def forget_tree(self) -> None:
+        """Let go of what was made of the text, but for the names in it: it is made again for whoever asks."""
+        names = {known: getattr(self, known) for known in _NAMES}
+        names.update({known: self.__dict__[known] for known in _RARE_NAMES if known in self.__dict__})
+        self.__dict__.clear()
+        self.__dict__.update(names)
+
+    @cached_property
+    def parsed(self) -> Parsed:
+        return parse(self.text if self.origin or is_btq(self.path) else "")
+
+    @property
+    def source(self) -> str:
+        """The text as it stands on the disk: the one that people see."""
+        return self.origin.text if self.origin else self.text
+
+    @property
+    def is_understood(self) -> bool:
+        """Whether a name that is not in this file's tree is not in the file."""
+        return self.origin.is_complete if self.origin else is_btq(self.path)
+
+    @cached_property
+    def facts(self) -> dict[int, Facts]:
+        """What is known of each item, by its id."""
+        return {id(entry.item): Facts(entry.item) for entry in self.parsed.entries}
+
+    @cached_property
+    def summaries(self) -> tuple[Summary, ...]:
+        """One for each entry."""
+        facts = self.facts
+        return tuple([facts[id(entry.item)].summary for entry in self.parsed.entries])
+
+    @cached_property
+    def lines(self) -> LineIndex:
+        return LineIndex(self.text)
+
+    @cached_property
+    def defined(self) -> tuple[Definition, ...]:
+        """What the file itself defines, in the order of its text."""
+        return tuple(
+            Definition(self.path, entry, symbol)
+            for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)
+            for symbol in summary.symbols
+        )
+
+    def first_users(self, kind: Kind) -> Mapping[str, Facts]:
+        """The names of a kind that the file refers to, each with the first item that does."""
+        if kind not in self._first_users:
+            found = self._first_users[kind] = {}
+            for each in reversed(self.facts.values()):
+                if names := each.used.get(kind):
+                    found.update(dict.fromkeys(names, each))
+        return self._first_users[kind]
+
+    @cached_property
+    def _first_users(self) -> dict[Kind, dict[str, Facts]]:
+        return {}
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        """Every name by which a path can name a node in the file."""
+        return self._said("node_names")
+
+    @property
+    def asked_for(self) -> frozenset[str]:
+        """The names in the file's conditions, bounds and arguments."""
+        return self._said("asked_for")
+
+    @property
+    def runs(self) -> frozenset[str]:
+        """The trees that the file's items refer to, of trees the other ones."""
+        return self._said("runs")
+
+    def used(self, kind: Kind) -> frozenset[str]:
+        """The names of a kind that the file refers to."""
+        return self._said(kind)
+
+    def _said(self, of: Kind | str) -> frozenset[str]:
+        if of not in self._tallies:
+            self._tallies[of] = Tally.of(self.facts.values(), of)
+        return self._tallies[of].names
+
+    @cached_property
+    def _tallies(self) -> dict[Kind | str, Tally]:
+        return {}
+
+    @cached_property
+    def names(self) -> Names:
+        """The names that the file itself defines."""
+        return Names.of(self.facts.values())
+
+    def definitions(self, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """What a name means by this file alone, in the order of its text."""
+        found = self.names.found.get((kind, name), ())
+        return tuple([Definition(self.path, self._entries[id(item)], symbol) for item, symbol in found])
+
+    def defines(self, kind: Kind, name: str) -> bool:
+        """Whether the file defines a name; not parsed where its text says that it cannot."""
+        return (name in self.text or not _ESCAPED.isdisjoint(name)) and (kind, name) in self.defined_names
+
+    @cached_property
+    def problems(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with its syntax; spans count from the items."""
+        found: tuple[Diagnostic, ...] = ()
+        for entry in self.parsed.entries:
+            if entry.diagnostics:
+                found += entry.diagnostics
+        return found
+
+    @cached_property
+    def is_swallowed(self) -> bool:
+        """Whether a forgotten quote may have made text of what declares names."""
+        return any(problem.rule in _SWALLOWING for problem in self.problems)
+
+    def mentions_of(self, entry: Entry) -> tuple[Mention, ...]:
+        """Every word of one of the file's entries that names something."""
+        return self.facts[id(entry.item)].mentions
+
+    def mentioned(self, name: str) -> list[tuple[Entry, Mention]]:
+        """The words that say a name and name something, in the order of the text."""
+        facts = self.facts
+        return [(entry, one) for entry in self.parsed.entries for one in facts[id(entry.item)].mentioned.get(name, ())]
+
+    @property
+    def mentioned_names(self) -> Iterable[str]:
+        """All that words say which name something."""
+        return dict.fromkeys(chain.from_iterable(each.mentioned for each in self.facts.values()))
+
+    @cached_property
+    def kinds(self) -> frozenset[tuple[str, bool]]:
+        """What its nodes are, and whether that is quoted."""
+        return frozenset().union(*[each.kinds for each in self.facts.values()])
+
+    def named(self, entry: Entry) -> Mapping[What, tuple[Mention, ...]]:
+        """What one of the file's entries names: of mentions that say the same the first one."""
+        return self.facts[id(entry.item)].named
+
+    @cached_property
+    def source_lines(self) -> LineIndex:
+        return LineIndex(self.source) if self.origin else self.lines
+
+    def start_of(self, item: object) -> int:
+        """Where one of the file's items begins.
+
+        Raises:
+            KeyError: the item is none of this file's.
+        """
+        return self._entries[id(item)].start
+
+    def entry_of(self, item: Item) -> Entry:
+        """The entry of one of the file's items."""
+        return self._entries[id(item)]
+
+    def summary_of(self, entry: Entry) -> Summary:
+        """The summary of one of the file's entries."""
+        return self.facts[id(entry.item)].summary
+
+    @cached_property
+    def _entries(self) -> dict[int, Entry]:
+        return {id(entry.item): entry for entry in self.parsed.entries}
+
+    @cached_property
+    def includes(self) -> tuple[Include, ...]:
+        if "include" not in self.text:  # most files have none, and need not be parsed to know what another one means
+            return ()
+        return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
+
+    @cached_property
+    def included_paths(self) -> tuple[tuple[str, bool], ...]:
+        """What its includes name, and whether a ROS package is to have it."""
+        return tuple(
+            (include.path.text, is_of_package(include)) for include in self.includes if include.path is not None
+        )
+
+    @cached_property
+    def defined_names(self) -> frozenset[Name]:
+        return self.names.all
+
+    @cached_property
+    def used_names(self) -> frozenset[Name]:
+        return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
+
+    def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
+        return File, (self.path, self.text, self.origin)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, File) and (self.path, self.text, self.source) == (
+            other.path,
+            other.text,
+            other.source,
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.path, self.text))
+
+    def __repr__(self) -> str:
+        return f"File({self.path!r}, {len(self.text)} characters)"
+
+
+_ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written otherwise than it is
+_NAMES = ("path", "text", "origin", "included_paths", "defined_names", "used_names")  # they hold nothing of the tree
+_RARE_NAMES = ("kinds",)  # likewise, and seldom asked for
+_SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
+
+
+class Definition(Record):
+    """A symbol and where it stands."""
+
+    path: str
+    entry: Entry
+    symbol: Symbol
+
+    @property
+    def span(self) -> Span:
+        """The name, counted from the start of the file."""
+        return self.symbol.span.shifted(self.entry.start)
+
+
+class Origin(Record):
+    """What a file stands for that is written in another language.
+
+    Attributes:
+        text: as it stands on the disk.
+        places: what in the file's text was made of what in this one.
+        diagnostics: what is wrong with it in its own language; spans count from its start.
+        is_complete: all of it could be read, so a name that is not in the file's text is not in this one.
+    """
+
+    text: str
+    places: Places
+    diagnostics: tuple[Diagnostic, ...]
+    is_complete: bool
+
+
+def is_btq(path: str) -> bool:
+    """Whether a file is written in this language; an XML file may be included too."""
+    return not path.endswith(".xml")
+
+
+def is_of_package(include: Include) -> bool:
+    return any(pair.key.text == "ros_pkg" for pair in include.attributes)
