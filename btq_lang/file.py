@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from btq_lang.places import Places
     from btq_lang.project import Project
 
+SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is that of the classic form
+
 
 class File:
     """One file: its text, and what was made of it so far.  Two files with one path and text are equal.

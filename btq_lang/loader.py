@@ -13,7 +13,7 @@ import os
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from btq_lang.file import File, Origin
+from btq_lang.file import SUFFIXES, File, Origin
 from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
@@ -23,7 +23,6 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import BinaryIO
 
-SUFFIXES = (".btq", ".qualitybtcpp")
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 _BOM = "\ufeff"
 

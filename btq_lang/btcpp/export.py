@@ -18,7 +18,7 @@ from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
 from btq_lang.btcpp.undeclared import suggested_model, undeclared
 from btq_lang.comments import NO_COMMENTS
-from btq_lang.file import is_btq
+from btq_lang.file import SUFFIXES, is_btq
 from btq_lang.garbage import NotCollecting
 from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Model, Root, Tree, Verbatim
@@ -169,7 +169,7 @@ def _include(source: Source, entry: Entry, include: Include, included_as: Includ
         if target is not None and (is_mission(source.workspace, target) or not source.verbatim):
             name = escape(included_as(target))
         else:
-            name = spelt(include.path) if not text.endswith((".btq", ".qualitybtcpp")) else escape(xml_name(text))
+            name = spelt(include.path) if not text.endswith(SUFFIXES) else escape(xml_name(text))
         attributes.append(Attribute("path", name))
     return Element("include", only_first(attributes + attributes_of(source, entry, include.attributes)))
 

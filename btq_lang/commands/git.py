@@ -9,8 +9,8 @@ import os
 import subprocess
 
 from btq_lang.btcpp.marks import is_written_mission
-from btq_lang.file import File
-from btq_lang.loader import SUFFIXES, absolute, file_of, find_project, read
+from btq_lang.file import SUFFIXES, File
+from btq_lang.loader import absolute, file_of, find_project, read
 from btq_lang.project import include_candidates
 from btq_lang.workspace import Workspace
 

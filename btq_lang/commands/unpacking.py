@@ -10,6 +10,7 @@ import os
 import posixpath
 from collections.abc import Iterable
 
+from btq_lang.file import SUFFIXES
 from btq_lang.loader import LoadProblem, absolute, read
 
 
@@ -66,7 +67,7 @@ def unpacked(
 
 
 def _below(root: str, folder: str, name: str) -> str | None:
-    if not name.endswith(_KNOWN) or os.path.isabs(name) or any(char in name for char in _FOREIGN):
+    if not name.endswith((*SUFFIXES, ".xml")) or os.path.isabs(name) or any(char in name for char in _FOREIGN):
         return None
     path = absolute(os.path.join(folder, name))
     if posixpath.normpath(name) != name or not path.startswith(f"{root.rstrip('/')}/"):
@@ -78,5 +79,4 @@ def _says(path: str, text: str) -> bool:
     return os.path.isfile(path) and read(path) == (text, None)
 
 
-_KNOWN = (".btq", ".qualitybtcpp", ".xml")
 _FOREIGN = "\\:\0"  # what makes a path of its own of a name on some system

@@ -7,6 +7,7 @@ import asyncio
 from lsprotocol import types
 
 from btq_lang.editor import Server
+from btq_lang.file import SUFFIXES
 from btq_lang.garbage import keep_what_is_there
 from btq_lang.handlers.progress import checking
 from btq_lang.session import Session
@@ -109,4 +110,4 @@ async def _first_check(server: Server) -> None:
 
 
 # Of the names of files that missions and projects are read from.
-_ENDINGS = (".btq", ".qualitybtcpp", ".xml", "/btq.toml", "/pyproject.toml")
+_ENDINGS = (*SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml")
