@@ -31,6 +31,7 @@ COMPILED = (
     "plain",
     "blocks",
     "lexer",
+    "token_list",
     "cursor",
     "conditions",
     "clauses",

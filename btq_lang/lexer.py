@@ -1,6 +1,6 @@
 """The lexer: text to tokens, one logical line at a time.
 
-One invariant: it takes every string, moves forward with every step, and the tokens of `tokens()` joined are the text.
+One invariant: it takes every string, and moves forward with every step.
 It knows indentation, brackets, strings, numbers with units and comments (language.md §2); it knows no grammar but the
 words that begin an item, for these are where a forgotten bracket ends.
 
@@ -16,7 +16,7 @@ from bisect import bisect_left
 from functools import cache
 
 from btq_lang.characters import HASH, SLASH
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import (
     COMPILED,
     blanks_end,
@@ -28,17 +28,13 @@ from btq_lang.scan import (
     symbol_at,
     unit_run,
 )
-from btq_lang.slips import close_string, unknown_unit, value_meant
+from btq_lang.slips import INSTEAD, close_string, no_token, unknown_escapes, unknown_unit, value_meant
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import Span
 from btq_lang.tokens import (
-    BLANK,
     BRACED,
     CLOSE,
-    COMMENT,
-    DEDENT,
     ERROR,
-    INDENT,
     NAME,
     NEWLINE,
     NUMBER,
@@ -47,7 +43,6 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
-    Token,
 )
 
 if not COMPILED:
@@ -56,61 +51,6 @@ if not COMPILED:
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
-
-
-def tokens(text: str) -> tuple[Token, ...]:
-    """All tokens of a text, blanks and comments included, INDENT and DEDENT where blocks open and close."""
-    lexer = Lexer(text)
-    found: list[Token] = []
-    end = level = comment = 0
-
-    def fill(start: int) -> None:
-        """What the lexer passed over up to `start`: blanks, comments and characters that begin nothing."""
-        nonlocal end, comment
-        while comment < len(lexer.comments) and lexer.comments[comment][0] < start:
-            comment_start, comment_end = lexer.comments[comment]
-            found.extend(_pieces(text, end, comment_start))
-            found.append(Token(COMMENT, comment_start, text[comment_start:comment_end]))
-            end = comment_end
-            comment += 1
-        found.extend(_pieces(text, end, start))
-        end = start
-
-    while lexer.open_line():
-        lexer.scan()
-        fill(lexer.starts[0])
-        step = INDENT if lexer.level > level else DEDENT
-        found += [Token(step, lexer.starts[0], "")] * abs(lexer.level - level)
-        level = lexer.level
-        for kind, start, raw in zip(lexer.kinds, lexer.starts, lexer.raws, strict=True):
-            fill(start)
-            found.append(Token(kind, start, raw))
-            end = start + len(raw)
-    fill(len(text))
-    found += [Token(DEDENT, len(text), "")] * level
-    return tuple(found)
-
-
-def pieces(text: str) -> list[tuple[int, int, str]]:
-    """Kind, start and text of all tokens but blanks and what begins nothing: half of what `tokens` has, and quickly."""
-    lexer = Lexer(text)
-    comments = lexer.comments
-    found: list[tuple[int, int, str]] = []
-    told = 0
-    while lexer.open_line():
-        lexer.scan()
-        of_line = [*zip(lexer.kinds, lexer.starts, lexer.raws, strict=True)]
-        if told < len(comments):
-            of_line += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
-            of_line.sort(key=_start_of)
-            told = len(comments)
-        found += of_line
-    found += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
-    return found
-
-
-def _start_of(piece: tuple[int, int, str]) -> int:
-    return piece[1]
 
 
 class Lexer:
@@ -359,7 +299,7 @@ class Lexer:
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
-        in_value = self._brackets and (character == "[" or character not in _INSTEAD)
+        in_value = self._brackets and (character == "[" or character not in INSTEAD)
         if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
         if character == "{" or character == "}":
@@ -371,32 +311,8 @@ class Lexer:
             end += 1
         if not self._strange:
             self._strange = True
-            instead = _NO_END_SIGN if character == ";" else _INSTEAD.get(character)
-            instead = _UNITS_OF_SIGNALS if character == "[" and self.raws[:1] == ["signal"] else instead
-            notes = (instead,) if instead is not None else ()
-            shown = repr(character) if not character.isprintable() or character.isspace() else f"`{character}`"
-            message = f"{shown} means nothing here"
-            fixes = self._meant(start, character)
-            self.problems.append(Diagnostic("syntax-error", Span(start, end), message, notes=notes, fixes=fixes))
+            self.problems.append(no_token(text, start, end, of_signal=self.raws[:1] == ["signal"]))
         return end
-
-    def _meant(self, start: int, character: str) -> tuple[Fix, ...]:
-        """The fix for characters that only look like others, all of them in the line: `≤`, `“`, a no-break space."""
-        if character == "°":
-            degrees = "degC" if self.text[start + 1 : start + 2] == "C" else "deg"
-            return (replace_fix(f"Write `{degrees}`", Span(start, start + len(degrees) // 2), degrees),)
-        from unicodedata import normalize  # few files have any
-
-        is_quote = character in _OTHER_QUOTES
-        changes: list[Change] = []
-        for at in range(start, line_end(self.text, start)):
-            other = self.text[at]
-            if not is_quote and other in "\"'#":
-                break  # texts and comments have the characters that they have
-            plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
-            if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
-                changes.append(Change(Place(Span(at, at + 1)), plain))
-        return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
     def _half_braced(self, start: int, character: str) -> int:
         """A brace without the other one: `{key` or `key}`; the key is left as a word.  Alone on its line, or at the
@@ -467,7 +383,7 @@ class Lexer:
         if "\n" in raw or "\r" in raw:
             self._check_lines(start, end)
         if "\\" in raw:
-            self._check_escapes(start, raw)
+            self.problems += unknown_escapes(start, raw)
         return self._add(STRING, start, end)
 
     def _unclosed_string(self, start: int, quote: str) -> int:
@@ -495,20 +411,6 @@ class Lexer:
                     )
                 )
                 return
-
-    def _check_escapes(self, start: int, raw: str) -> None:
-        """One hint a string, whose fix mends all of it."""
-        unknown = [start + escape.start() for escape in _ESCAPE.finditer(raw) if escape[1] not in "\"'\\nt"]
-        if not unknown:
-            return
-        span = Span(unknown[0], unknown[0] + 2)
-        shown = self.text[span.start : span.end]
-        if not shown.isprintable():
-            shown, span = "\\", Span(span.start, span.start + 1)
-        fix = Fix("Write `\\\\`", tuple(Change(Place(Span(at, at + 1)), "\\\\") for at in unknown), safe=True)
-        message = f"`{shown}` is no escape: the backslash stands for itself"
-        notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
-        self.problems.append(Diagnostic("unknown-escape", span, message, notes=notes, fixes=(fix,)))
 
     def _quote_this(self, at: int) -> int:
         """A comment sign, or a word before one, where no comment may begin: the word around it needs quotes; behind
@@ -712,7 +614,7 @@ class Lexer:
         self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
 
 
-# ---- pieces ----
+# ---- blanks ----
 
 
 def _has_line_end(text: str, start: int, end: int) -> bool:
@@ -735,18 +637,7 @@ def _shown(blanks: str) -> str:
     return " and ".join(parts)
 
 
-def _pieces(text: str, start: int, end: int) -> list[Token]:
-    return [
-        Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _piece().finditer(text, start, end)
-    ]
-
-
 # ---- patterns that few files need: each takes a millisecond to compile ----
-
-
-@cache
-def _piece() -> re.Pattern[str]:
-    return re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 
 
 @cache
@@ -769,28 +660,11 @@ def _top_line() -> re.Pattern[str]:
 # ---- tables ----
 
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
-_OTHER_QUOTES: Final = "“”„‟«»‘’"
-_INSTEAD: Final = {
-    "&": "write `and`",
-    "|": "write `or`; `||` is the symbol of Parallel",
-    "[": "attributes stand in `( … )`",
-    **dict.fromkeys(_OTHER_QUOTES, "strings stand in straight quotes"),
-    "\xa0": "this is a no-break space: use an ordinary blank",
-    "\ufeff": "a byte order mark belongs at the start of a file",
-}
-_NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
-_UNITS_OF_SIGNALS: Final = "a signal's unit stands behind `:`: `signal distance : m`"
-_LOOKS_LIKE: Final = {
-    **{"≤": "<=", "≥": ">=", "≠": "!=", "−": "-", "–": "-", "×": "*", "·": "*", "÷": "/"},
-    **dict.fromkeys("“”„‟«»", '"'),
-    **dict.fromkeys("‘’", "'"),
-}
 _BLANKS: Final = re.compile(r"[ \t]*")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
 _BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
-_ESCAPE: Final = re.compile(r"\\(.)", re.DOTALL)
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
 # Compiled when first used: most files need none of these.

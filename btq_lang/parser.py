@@ -14,7 +14,6 @@ from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
-from btq_lang.lexer import tokens
 from btq_lang.near import near
 from btq_lang.nodes import XML, NodeParser
 from btq_lang.plain import plain_head
@@ -96,6 +95,8 @@ class Parsed:
     @property
     def tokens(self) -> tuple[Token, ...]:
         """All tokens, blanks and comments included: joined, their texts are the file.  Made when first asked for."""
+        from btq_lang.token_list import tokens  # a check does not ask
+
         if self._tokens is None:
             self._tokens = tokens(self.text)
         return self._tokens

@@ -1,13 +1,14 @@
-"""What was probably meant by a string, value or unit that is wrong, as diagnostics and fixes.
+"""What was probably meant by a string, value, unit or character that is wrong, as diagnostics and fixes.
 
 One invariant: it looks at the text around a place and nothing else: who asks knows what is wrong there.
 """
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 
-from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.scan import line_end, number_end
 from btq_lang.syntax import quote
 from btq_lang.text import Span
@@ -63,4 +64,75 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     return Diagnostic("unknown-unit", Span(start, end), message, notes=notes, fixes=fixes)
 
 
+def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
+    """One hint a string, whose fix mends all of it.
+
+    Args:
+        start: where the string begins.
+        raw: how it is written, quotes included.
+    """
+    unknown = [escape for escape in re.compile(_ESCAPE).finditer(raw) if escape[1] not in "\"'\\nt"]
+    if not unknown:
+        return ()
+    shown = unknown[0][0] if unknown[0][0].isprintable() else "\\"
+    places = [start + escape.start() for escape in unknown]
+    fix = Fix("Write `\\\\`", tuple(Change(Place(Span(at, at + 1)), "\\\\") for at in places), safe=True)
+    message = f"`{shown}` is no escape: the backslash stands for itself"
+    notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
+    span = Span(places[0], places[0] + len(shown))
+    return (Diagnostic("unknown-escape", span, message, notes=notes, fixes=(fix,)),)
+
+
+def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
+    """A character that begins nothing, once or several times.
+
+    Args:
+        of_signal: whether it stands in the line of a signal.
+    """
+    character = text[start]
+    instead = _NO_END_SIGN if character == ";" else INSTEAD.get(character)
+    instead = _UNITS_OF_SIGNALS if character == "[" and of_signal else instead
+    notes = (instead,) if instead is not None else ()
+    shown = repr(character) if not character.isprintable() or character.isspace() else f"`{character}`"
+    message = f"{shown} means nothing here"
+    return Diagnostic("syntax-error", Span(start, end), message, notes=notes, fixes=_look_alikes(text, start))
+
+
+def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
+    """The fix for characters that only look like others, all of them in the line: `≤`, `“`, a no-break space."""
+    if text[start] == "°":
+        degrees = "degC" if text[start + 1 : start + 2] == "C" else "deg"
+        return (replace_fix(f"Write `{degrees}`", Span(start, start + len(degrees) // 2), degrees),)
+    from unicodedata import normalize  # few files have any
+
+    is_quote = text[start] in _OTHER_QUOTES
+    changes: list[Change] = []
+    for at in range(start, line_end(text, start)):
+        other = text[at]
+        if not is_quote and other in "\"'#":
+            break  # texts and comments have the characters that they have
+        plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
+        if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:
+            changes.append(Change(Place(Span(at, at + 1)), plain))
+    return (Fix("Write plain characters", tuple(changes)),) if changes else ()
+
+
 _nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
+_ESCAPE: Final = r"(?s)\\(.)"  # compiled when first used, for most files need it never
+_OTHER_QUOTES: Final = "“”„‟«»‘’"
+_LOOKS_LIKE: Final = {
+    **{"≤": "<=", "≥": ">=", "≠": "!=", "−": "-", "–": "-", "×": "*", "·": "*", "÷": "/"},
+    **dict.fromkeys("“”„‟«»", '"'),
+    **dict.fromkeys("‘’", "'"),
+}
+_NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
+_UNITS_OF_SIGNALS: Final = "a signal's unit stands behind `:`: `signal distance : m`"
+# What to write instead of characters that are part of no value either.
+INSTEAD: Final = {
+    "&": "write `and`",
+    "|": "write `or`; `||` is the symbol of Parallel",
+    "[": "attributes stand in `( … )`",
+    **dict.fromkeys(_OTHER_QUOTES, "strings stand in straight quotes"),
+    "\xa0": "this is a no-break space: use an ordinary blank",
+    "\ufeff": "a byte order mark belongs at the start of a file",
+}

@@ -21,7 +21,7 @@ ROWS: tuple[frozenset[str], ...] = (
         | {"rules", "diagnostics", "units", "quantities"}
     ),
     frozenset(
-        {"tokens", "characters", "scan", "slips", "lexer", "words", "node_clauses", "syntax", "cursor"}
+        {"tokens", "characters", "scan", "slips", "lexer", "token_list", "words", "node_clauses", "syntax", "cursor"}
         | {
             "conditions",
             "clauses",

@@ -10,10 +10,10 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 from btq_lang.file import File
-from btq_lang.lexer import tokens as tokens_of
 from btq_lang.record import Record
 from btq_lang.syntax import unquote
 from btq_lang.text import Span
+from btq_lang.token_list import tokens as tokens_of
 from btq_lang.tokens import (
     BLANK,
     CATEGORIES,

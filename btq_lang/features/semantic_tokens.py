@@ -16,13 +16,13 @@ from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
 from btq_lang.file import File
-from btq_lang.lexer import pieces
 from btq_lang.mentions import Mention, What
 from btq_lang.parser import Parsed
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Requirement
 from btq_lang.text import LINE_END, Encoding, Span
+from btq_lang.token_list import pieces
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,

@@ -32,10 +32,10 @@ from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import TYPES, encode, semantic_tokens, stretches
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
-from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.text import LineIndex, Span, apply_edits
+from btq_lang.token_list import tokens as tokens_of
 from btq_lang.workspace import Workspace
 
 _TAG = re.compile(r"\$0|</?([a-z]+)>")
