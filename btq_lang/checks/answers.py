@@ -4,14 +4,15 @@ A check asks its view, and what it asked, it rests on: as long as the answers ar
 are two sorts of questions, both written as a function and its arguments:
 
 * a *look-up*, `what(workspace, path, …)`, reads the files and asks nothing.  After an edit it is made again: one that
-  begins with a kind and a name only if the edit touches an item that defines this name.  A *table* is a look-up for
-  all items at once.
+  begins with a kind and a name only if the edit touches an item that defines this name.
 * a *conclusion*, `what(view, …)`, asks other questions and looks at nothing else but the items among its arguments.  It
   is drawn again only when one of its questions has another answer, and when it comes out the same, all that rests on
-  it stays.  What is found in an item is such a conclusion.
+  it stays.  What is found in an item is such a conclusion.  A *table* is a conclusion about many things at once, a
+  mapping: who asks for one of these rests on no more of it than that.
 
 One invariant: after any edits an answer is the one that would be given afresh.  Who looks at the workspace
-itself, where nobody can say what he saw, notes `EVERYTHING`; that conclusion is not kept.  It knows no rules.
+itself, where nobody can say what he saw, notes `EVERYTHING`; that conclusion is not kept, and such a table is drawn
+again after every edit.  It knows no rules.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ Question: TypeAlias = "tuple[Any, ...]"
 
 EVERYTHING: Final[Question] = ()
 _OUTSIDE: Final = {EVERYTHING}  # who asks for what no conclusion does
+_PARTS: Final[Question] = (None,)  # who asks for tables, which are drawn again as soon as they are stale
 
 
 class _Answer(Record):
@@ -72,7 +74,8 @@ class Answers:
         self._askers: dict[Question, set[Question]] = {}
         self._look_ups: set[Question] = set()  # but for those of a name
         self._named: dict[Name, set[Question]] = {}
-        self._tables: dict[Callable[[View], Mapping[int, object]], Mapping[int, object]] = {}
+        self._tables: set[Question] = set()
+        self._restless: set[Question] = set()  # tables that rest on everything
         self._stale: set[Question] = set()  # conclusions to be drawn again
         self._outermost: set[Question] = set()  # what no conclusion asks
         self._before: set[Question] = set()  # the same, before the last edit
@@ -93,7 +96,7 @@ class Answers:
         self._is_asking = True
         if old is None or was_left or old.project is not workspace.project or list(files) != list(self._files):
             self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
-            self._outermost, self._tables = set(), {}
+            self._outermost, self._tables, self._restless = set(), set(), set()
             self.told, self.resolved = {}, None
         touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
         self._workspace, self._path, self._files = workspace, path, files
@@ -106,14 +109,8 @@ class Answers:
                 self._answers[question] = _Answer(value)
                 self._pass_on(question)
         self._draw_stale(view)
-        for table, before in self._tables.items():
-            now = self._tables[table] = self._made(view, table)
-            others = [item for item, value in now.items() if value is not before.get(item)]
-            for item in (*others, *(before.keys() - now.keys())):  # the answers are those of `before`
-                question = table, item
-                if question in self._answers and not _is_same(now.get(item), self._answers[question].value):
-                    self._answers[question] = _Answer(now.get(item))
-                    self._pass_on(question)
+        for question in [*self._restless]:
+            self._draw(view, question)
         self._draw_stale(view)
 
     def _draw_stale(self, view: View) -> None:
@@ -143,21 +140,18 @@ class Answers:
             (self._named.setdefault(question[1:], set()) if of_name else self._look_ups).add(question)
         return known.value
 
-    def look_up_in(self, view: View, table: Callable[[View], Mapping[int, object]], item: int) -> Any:
-        """What a table says of an item, which is given by its `id`; a table is made once after every edit."""
+    def look_up_in(self, view: View, table: Callable[[View], Mapping[Any, object]], item: object) -> Any:
+        """What a table says of an item."""
         question = table, item
         self._asked.add(question)
-        if table not in self._tables:
-            self._tables[table] = self._made(view, table)
-        if question not in self._answers:
-            self._answers[question] = _Answer(self._tables[table].get(item))
-        return self._answers[question].value
-
-    def _made(self, view: View, table: Callable[[View], Mapping[int, object]]) -> Mapping[int, object]:
-        asked, self._asked = self._asked, self._outermost
-        made = table(view)
-        self._asked = asked
-        return made
+        known = self._answers.get(question)
+        if known is None or (table,) in self._stale:
+            if (table,) not in self._tables:
+                self._tables.add((table,))
+                self._askers[table,] = {_PARTS}
+            value = self.conclude_early(view, (table,)).get(item)
+            known = self._answers[question] = _Answer(value, set(), 1 + self._answers[table,].height)
+        return known.value
 
     def conclude(self, view: View, question: Question) -> Any:
         """The answer of a conclusion."""
@@ -211,6 +205,11 @@ class Answers:
         value = question[0](view, *question[1:])
         asked, self._asked = self._asked, outer
         known = self._answers.get(question)
+        is_table = question in self._tables
+        if is_table and EVERYTHING in asked:
+            outer.add(EVERYTHING)
+            asked.remove(EVERYTHING)
+            self._restless.add(question)
         if EVERYTHING in asked:
             outer.discard(question)
             outer.add(EVERYTHING)
@@ -222,6 +221,8 @@ class Answers:
         self._answers[question] = _Answer(value, asked, height)
         if known is not None and not _is_same(value, known.value):
             self._pass_on(question)
+            if is_table:
+                self._pass_on_parts(question[0], known.value, value)
         before: set[Question] = (known.asked if known is not None else None) or set()
         for each in asked - before:
             self._askers.setdefault(each, set()).add(question)
@@ -236,6 +237,16 @@ class Answers:
                 if self._askers.get(asker) != _OUTSIDE:
                     self._count += 1
                     heappush(self._waiting, (self._answers[asker].height, self._count, asker))
+
+    def _pass_on_parts(self, table: object, before: Any, now: Any) -> None:
+        """A table is another one: what it says of some things may be as it was."""
+        others = [item for item, value in now.items() if value is not before.get(item)]
+        for item in (*others, *(before.keys() - now.keys())):
+            question = table, item
+            known = self._answers.get(question)
+            if known is not None and not _is_same(now.get(item), known.value):
+                self._answers[question] = _Answer(now.get(item), set(), known.height)
+                self._pass_on(question)
 
     def _leave(self, questions: Iterable[Question], asker: Question) -> None:
         """Somebody asks these no more; what nobody asks is forgotten."""

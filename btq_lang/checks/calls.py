@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, KeysView, Mapping
 from functools import cached_property
 
 from btq_lang.checks import lookups
@@ -31,22 +31,35 @@ def calls(view: View) -> Calls:
 
 def callers(view: View, tree: str) -> tuple[str, ...]:
     """The other trees that run a tree, or mean to."""
-    return view.ask(calls).callers(tree)
+    return view.look_up_in(_callers, tree) or ()
 
 
-def is_reached(view: View, tree: str, main: str) -> bool:
-    """Whether the mission runs a tree, directly or not, or means to."""
-    return tree in view.ask(calls).reached_from(main)
+def missed(view: View) -> dict[str, bool]:
+    """The trees that the mission does not run, neither directly nor through others, if that is known for sure."""
+    main = view.main_tree
+    if main is None or view.ask(has_gaps) or not view.is_read:
+        return {}
+    known = view.ask(calls)
+    return dict.fromkeys(known.names - known.reached_from(main), True)
 
 
-def circle(view: View, tree: str) -> tuple[str, ...] | None:
-    """The shortest way from a tree back to itself; see Calls.circle."""
-    return view.ask(calls).circle(tree)
+def circles(view: View) -> dict[str, tuple[str, ...]]:
+    """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
+    has one: there it is told."""
+    return view.ask(calls).circles
 
 
 def is_circular(view: View, tree: str, called: str) -> bool:
     """Whether a tree that another one runs leads back to that."""
-    return view.ask(calls).are_in_circle(tree, called)
+    return called in (view.look_up_in(_knots, tree) or ())
+
+
+def _callers(view: View) -> dict[str, tuple[str, ...]]:
+    return view.ask(calls).callers
+
+
+def _knots(view: View) -> dict[str, frozenset[str]]:
+    return {tree: knot for knot in view.ask(calls).knots.values() for tree in knot}
 
 
 def has_gaps(view: View) -> bool:
@@ -78,9 +91,17 @@ class Calls:
         """The trees that a tree runs, in the order of their SubTrees; none for an unknown tree."""
         return self._called.get(name, ())
 
-    def callers(self, name: str) -> tuple[str, ...]:
+    @property
+    def names(self) -> KeysView[str]:
+        """The trees."""
+        return self._called.keys()
+
+    @cached_property
+    def callers(self) -> dict[str, tuple[str, ...]]:
         """The other trees that run a tree, or mean to."""
-        return (*self._callers.get(name, ()), *self._meant_by.get(name, ()))
+        meant = _turned(self._meant)
+        found = {name: (*callers, *meant.pop(name, ())) for name, callers in self._callers.items()}
+        return found | {name: tuple(callers) for name, callers in meant.items()}
 
     def reached_from(self, name: str) -> frozenset[str]:
         """A tree and all that it runs, directly or not, and those that it means to run: where `SubTree` is missing."""
@@ -96,12 +117,12 @@ class Calls:
             self._reached[name] = frozenset(seen)
         return self._reached[name]
 
-    def circle(self, name: str) -> tuple[str, ...] | None:
-        """The shortest way from a tree back to itself, both ends included; None where there is none, and at all but
-        the first tree of those that reach each other: there it is told."""
-        knot = self._knots.get(name)
-        if knot is None:
-            return None
+    @cached_property
+    def circles(self) -> dict[str, tuple[str, ...]]:
+        """The shortest way from a tree back to itself, of the first tree of each knot."""
+        return {name: self._circle(name, knot) for name, knot in self.knots.items()}
+
+    def _circle(self, name: str, knot: frozenset[str]) -> tuple[str, ...]:
         before: dict[str, str] = {}
         waiting = [name]
         for tree in waiting:
@@ -114,11 +135,7 @@ class Calls:
                 if called in knot and called not in before:
                     before[called] = tree
                     waiting.append(called)
-        return None
-
-    def are_in_circle(self, tree: str, called: str) -> bool:
-        """Whether two trees run each other, directly or not."""
-        return any(tree in knot and called in knot for knot in self._knots.values())
+        raise AssertionError("each tree of a knot reaches itself")
 
     @cached_property
     def _reached(self) -> dict[str, frozenset[str]]:
@@ -127,10 +144,6 @@ class Calls:
     @cached_property
     def _callers(self) -> dict[str, list[str]]:
         return _turned(self._called)
-
-    @cached_property
-    def _meant_by(self) -> dict[str, list[str]]:
-        return _turned(self._meant)
 
     @cached_property
     def callees_first(self) -> tuple[str, ...]:
@@ -152,7 +165,7 @@ class Calls:
         return tuple(finished)
 
     @cached_property
-    def _knots(self) -> dict[str, frozenset[str]]:
+    def knots(self) -> dict[str, frozenset[str]]:
         """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
         finished = self.callees_first
         knots: dict[str, frozenset[str]] = {}

@@ -26,7 +26,7 @@ ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """All that these rules find in an entry."""
-    yield from view.look_up_in(_all_demands, entry) or ()
+    yield from view.look_up_in(_all_demands, id(entry.item)) or ()
 
 
 def _all_demands(view: View) -> ByItem:

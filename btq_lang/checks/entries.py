@@ -116,7 +116,7 @@ class Blackboards:
         self._signals = view.ask(_signal_entries)
         self.root_names: dict[str, int] = {}
         trees = {tree: view.ask(_handling, tree) for tree in view.scope.names(Kind.TREE)}
-        self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
+        self._roots = frozenset([tree for tree in trees if not callers(view, tree)])
         for tree, handling in trees.items():
             self._add(tree, handling, trees)
 

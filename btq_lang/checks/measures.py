@@ -11,13 +11,13 @@ from btq_lang.syntax import Entry, Requirement
 
 def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """What the resolved requirements complain of in an entry: units, signals, paths, arguments."""
-    yield from view.look_up_in(_all_unresolved, entry) or ()
+    yield from view.look_up_in(_all_unresolved, id(entry.item)) or ()
 
 
 def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
     requirement is unused, and told for that."""
-    found = view.look_up_in(_all_without_subject, entry)
+    found = view.look_up_in(_all_without_subject, id(entry.item))
     if found and view.is_read and not view.is_included:
         yield from found
 

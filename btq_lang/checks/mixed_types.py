@@ -98,7 +98,7 @@ def _types(view: View, tree: str) -> _Types:
 def _handed_on(view: View, tree: str, seen: SeenNode) -> Iterator[tuple[str, int | None, _Meeting]]:
     """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
     called = seen.node.id.text if seen.node.id is not None else ""
-    if view.ask(is_circular, tree, called):
+    if is_circular(view, tree, called):
         return
     given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
     shares_all = remaps_all(seen)
@@ -120,7 +120,7 @@ def _is_first(view: View, tree: str, key: str) -> bool:
     waiting = [(tree, key)]
     while waiting:
         name, entry = waiting.pop()
-        above = view.ask(callers, name)
+        above = callers(view, name)
         if not above:
             return True
         for caller in above:

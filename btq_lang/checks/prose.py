@@ -43,7 +43,9 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
     """What stands behind keywords and is neither a script nor clauses that mean something."""
     found = view.constraints(requirement)
-    if any(checkable for _, checkable in found) and name in (view.look_up_in(_all_without_claims, entry) or ()):
+    if any(checkable for _, checkable in found) and name in (
+        view.look_up_in(_all_without_claims, id(entry.item)) or ()
+    ):
         return [each for each, _ in found]
     return [each for each, checkable in found if not checkable]
 

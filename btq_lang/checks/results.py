@@ -74,7 +74,7 @@ def _of_node(view: View, tree: str, seen: SeenNode, known: dict[int, Results]) -
     found = UNKNOWN
     if seen.is_subtree:
         called = seen.id.text if seen.id is not None else ""
-        found = UNKNOWN if view.ask(is_circular, tree, called) else view.ask(_of_tree, called)
+        found = UNKNOWN if is_circular(view, tree, called) else view.ask(_of_tree, called)
     elif seen.kind is not None and not seen.is_placeholder:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind.tag, seen.node, children)

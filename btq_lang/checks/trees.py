@@ -77,7 +77,7 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name.text
-    circle = view.ask(calls.circle, name)
+    circle = view.look_up_in(calls.circles, name)
     definition = view.scope.find(Kind.TREE, name)
     if circle is None or definition is None or not view.is_this(definition, entry):
         return
@@ -97,12 +97,12 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     name = entry.item.name
     definition = view.scope.find(Kind.TREE, name.text)
-    if not view.ask(_is_missed, name.text):
+    if not view.look_up_in(calls.missed, name.text):
         return
     main = view.main_tree
     if definition is None or not view.is_this(definition, entry):
         return  # another tree of that name counts, which is told
-    users = view.ask(calls.callers, name.text)
+    users = calls.callers(view, name.text)
     if not users:
         message = f"nothing refers to the tree `{name.text}`, and the mission is `{main}`"
         yield Diagnostic("unused-tree", name.span, message, tags=(Tag.UNNECESSARY,))
@@ -113,17 +113,6 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
-def _is_missed(view: View, tree: str) -> bool:
-    """Whether there is a mission, and it is known for sure that it does not run a tree."""
-    main = view.main_tree
-    return (
-        main is not None
-        and not view.ask(calls.is_reached, tree, main)
-        and not view.ask(calls.has_gaps)
-        and view.is_read
-    )
-
-
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Several trees, and nothing says which of them is the mission; told at the first."""
     if not isinstance(entry.item, Tree) or not view.is_first_tree(entry) or view.is_included:
@@ -132,7 +121,7 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return  # the tree that runs the others may be what is misspelt
     if view.main_tree or view.look_up(lookups.has_root_of_tree):
         return
-    tops = [name for name in view.look_up(lookups.own_trees) if not view.ask(calls.callers, name)]
+    tops = [name for name in view.look_up(lookups.own_trees) if not calls.callers(view, name)]
     if len(tops) < 2:
         return  # without one at the top they run in circles, and that is told
     names = ", ".join(f"`{name}`" for name in tops[:_MOST_NAMES])

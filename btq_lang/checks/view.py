@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.script import Script
 
+    K = TypeVar("K")
     T = TypeVar("T")
 
 
@@ -112,13 +113,11 @@ class View:
             return self._answers.look_up((what, kind, name), of_name=True)  # type: ignore[no-any-return]  # as above
         return what(self._workspace, self.path, kind, name)
 
-    def look_up_in(self, table: Callable[[View], Mapping[int, T]], entry: Entry) -> T | None:
-        """What a table, made for all items at once and given by their `id`, says of an entry."""
+    def look_up_in(self, table: Callable[[View], Mapping[K, T]], item: K) -> T | None:
+        """What a table, which is asked for many things at once, says of one of them."""
         if self._answers is not None:
-            return self._answers.look_up_in(self, table, id(entry.item))  # type: ignore[no-any-return]  # as above
-        if table not in self._given:
-            self._given[table] = table(self)
-        return self._given[table].get(id(entry.item))  # type: ignore[no-any-return]  # as above
+            return self._answers.look_up_in(self, table, item)  # type: ignore[no-any-return]  # as above
+        return self.ask(table).get(item)
 
     def note_everything(self) -> None:
         """What is asked now is not kept."""
@@ -233,7 +232,11 @@ class View:
 
     def is_main(self, entry: Entry) -> bool:
         """Whether an entry of the file is the tree that runs when the engine loads the file."""
-        return self.ask(_is_main, self.facts(entry))
+        name = entry.item.name.text if isinstance(entry.item, Tree) and entry.item.name is not None else ""
+        is_only_one = self.look_up_in(_main_trees, name)
+        if is_only_one is None:
+            return False
+        return is_only_one or self.look_up_name(lookups.owner, Kind.TREE, name) is self.facts(entry)
 
     @property
     def edition(self) -> str:
@@ -543,12 +546,10 @@ def _is_first_tree(view: View, tree: Facts) -> bool:
     return view.look_up(lookups.first_tree) is tree
 
 
-def _is_main(view: View, tree: Facts) -> bool:
+def _main_trees(view: View) -> dict[str, bool]:
+    """The name of the tree that runs when the engine loads the file, and whether only this file's own can be it."""
     main = view.look_up(lookups.main_tree)
-    name = tree.item.name.text if isinstance(tree.item, Tree) and tree.item.name is not None else None
-    if main is None or main[0] != name:
-        return False
-    return main[1] or view.look_up_name(lookups.owner, Kind.TREE, name) is tree
+    return {main[0]: main[1]} if main is not None else {}
 
 
 def _has_names(view: View, kind: Kind) -> bool:
