@@ -533,6 +533,41 @@ def test_built_xml_is_no_change_of_a_folder(tmp_path: Path) -> None:
     assert (code, titles(out), told) == (1, ["old/m.btq -> new/m.btq"], "")
 
 
+def test_two_folders_of_built_xml(tmp_path: Path) -> None:
+    skills = "BehaviorTree Part\n    Drive\n"
+    for folder, limit, node in (("old", 30, "Go"), ("new", 20, "Stop")):
+        (tmp_path / folder / "source").mkdir(parents=True)
+        texts = {
+            "m": f'include "skills.btq"\nRoot M\nBehaviorTree M\n    SubTree Part satisfies rq1\n'
+            f"QualityReq rq1\n    takes at most {limit} s\n",
+            "n": f"BehaviorTree N\n    {node}\n",
+            "skills": skills,
+        }
+        for name, text in texts.items():
+            (tmp_path / folder / "source" / f"{name}.btq").write_text(text)
+        assert run("build", "source", "-o", ".", cwd=tmp_path / folder)[0] == 0
+        (tmp_path / folder / "source").rename(tmp_path / f"{folder}.source")
+    code, out, told = btq("old", "new", cwd=tmp_path)
+    assert (code, titles(out), told) == (1, ["old/m.xml -> new/m.xml", "old/n.xml -> new/n.xml"], "")
+    assert out.splitlines()[1] == "~ requirement rq1 changed  new/m.qreq.json:new/m.btq:5"
+    assert btq("old", "old", cwd=tmp_path) == (0, "", "")
+    assert btq("old", "old.source", cwd=tmp_path) == (0, "", "")
+    code, out, told = btq("old.source", "new", cwd=tmp_path)
+    assert (code, titles(out), told) == (1, ["old.source/m.btq -> new/m.xml", "old.source/n.btq -> new/n.xml"], "")
+
+
+def test_xml_and_what_was_imported_in_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "old").mkdir()
+    for name in ("x", "y"):
+        (tmp_path / "old" / f"{name}.xml").write_text(INCLUDED.format("Go"))
+    assert run("import", "old/x.xml", "old/y.xml", "-o", "new", cwd=tmp_path)[0] == 0
+    assert btq("old", "new", cwd=tmp_path) == (0, "", "")
+    (tmp_path / "old" / "y.xml").write_text(INCLUDED.format("Stop"))
+    (tmp_path / "new" / "y.xml").write_text(INCLUDED.format("Go"))
+    code, out, told = btq("old", "new", cwd=tmp_path)
+    assert (code, titles(out), told) == (1, ["new/y.btq (added)", "old/y.xml -> new/y.xml"], "")
+
+
 def test_includes_of_xml_and_of_what_was_imported(tmp_path: Path) -> None:
     for place, tree in (("x", "X"), ("a/x", "A"), ("b/x", "B")):
         (tmp_path / place).parent.mkdir(exist_ok=True)

@@ -40,9 +40,15 @@ def is_generated(xml: str) -> bool:
     return found is not None and is_generated_mark(found[1])
 
 
-def is_written_mission(xml: str) -> bool:
-    """Whether a text is XML of the engine, with trees or models, that somebody wrote and no build."""
-    return _MISSION.search(xml) is not None and not is_generated(xml)
+def is_built_of(xml: str, sources: Iterable[str]) -> bool:
+    """Whether a file says that it was built from one of these, named without folders."""
+    found = _FIRST_COMMENT.match(xml)
+    return found is not None and any(found[1] == generated_mark(source) for source in sources)
+
+
+def is_mission(xml: str) -> bool:
+    """Whether a text is XML of the engine, with trees or models."""
+    return _MISSION.search(xml) is not None
 
 
 def marked_description(own: str | None, lines: Iterable[str]) -> str:

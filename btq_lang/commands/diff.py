@@ -6,16 +6,16 @@ import errno
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 
-from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated, is_written_mission
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_generated, is_mission
 from btq_lang.btcpp.undeclared import made_models
 from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
-from btq_lang.file import File
+from btq_lang.file import SUFFIXES, File
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
 from btq_lang.record import replace
@@ -95,8 +95,20 @@ def _of_paths(paths: list[str]) -> Iterator[Comparison]:
         old = f"{old}/{os.path.basename(new)}" if os.path.isdir(old) else old
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
     sides = [{} if path is None else _sides(path) for path in (old, new)]
-    for name in sorted(sides[0].keys() | sides[1].keys()):
-        yield _without_made_models(compared(sides[0].get(name, NOWHERE), sides[1].get(name, NOWHERE)))
+    for before, after in _pairs(*sides):
+        yield _without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
+
+
+def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
+    """Files of one name, and an XML file with the .btq file that would be built into it."""
+    came = set(new) - set(old)
+    pairs = []
+    for name in old:
+        stem, ending = os.path.splitext(name)
+        other = (f"{stem}{each}" for each in (SUFFIXES if ending == ".xml" else (".xml",)))
+        pairs.append((name, name if name in new else next(filter(came.__contains__, other), name)))
+        came.discard(pairs[-1][1])
+    return sorted([*pairs, *zip(came, came, strict=True)])
 
 
 def _without_made_models(comparison: Comparison) -> Comparison:
@@ -118,18 +130,27 @@ def _without_made_models(comparison: Comparison) -> Comparison:
 
 def _sides(path: str) -> dict[str, Side]:
     """The mission of a file, with all that it includes; or those of a folder, each by itself, by their names in it."""
-    is_folder = os.path.isdir(path)
+    if not os.path.isdir(path):
+        return {"": _built_on_disk(path) or _on_disk(path)}
     found: dict[str, Side] = {}
-    built = None if is_folder else _built_on_disk(path)
-    if built is not None:
-        return {"": built}
-    xml = _xml_below(path) if is_folder else ()
-    for group in _groups([path, *xml]):
+    for group in _groups([path, *_xml_below(path)]):
         for each in group.given:
-            paths = (each,) if is_folder else group.workspace.closure(each)
-            name = each.removeprefix(f"{path}/") if is_folder else ""
-            found[name] = Side(shown(each), group.workspace, paths, shown)
+            built = _built_on_disk(each)
+            side = Side(shown(each), group.workspace, (each,), shown) if built is None else _by_itself(built)
+            found[each.removeprefix(f"{path}/")] = side
     return found
+
+
+def _on_disk(path: str) -> Side:
+    (group,) = _groups([path])
+    return Side(shown(path), group.workspace, group.workspace.closure(path), shown)
+
+
+def _by_itself(built: Side) -> Side:
+    """A built file of a folder without what it includes, as long as that is in XML of its own."""
+    *included, own = built.paths
+    bundled = (path for path in included if not os.path.isfile(f"{os.path.splitext(path)[0]}.xml"))
+    return replace(built, paths=(*bundled, own))
 
 
 def _built_on_disk(path: str) -> Side | None:
@@ -139,10 +160,13 @@ def _built_on_disk(path: str) -> Side | None:
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
-    """The XML below a folder that is compared: what somebody wrote; what a build wrote, its .btq says."""
-    paths, problems = collect([folder], find_project(folder).project, (".xml",))
+    """The XML below a folder that is compared: what a build wrote is not, where its .btq is there to say it."""
+    project = find_project(folder).project
+    paths, problems = collect([folder], project, (".xml", *SUFFIXES))
     _raise(problems)
-    return tuple(path for path in paths if is_written_mission(read(path)[0] or ""))
+    sources = {os.path.basename(path) for path in paths if not path.endswith(".xml")}
+    texts = {path: read(path)[0] or "" for path in paths if path.endswith(".xml")}
+    return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
 
 
 def _groups(paths: list[str]) -> tuple[Group, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 
-from btq_lang.btcpp.marks import is_written_mission
+from btq_lang.btcpp.marks import is_generated, is_mission
 from btq_lang.file import SUFFIXES, File
 from btq_lang.loader import absolute, file_of, find_project, read
 from btq_lang.project import include_candidates
@@ -95,7 +95,7 @@ class Revisions:
             texts.append(self.text(self.old, before))
         if after is not None and after.endswith(".xml"):
             texts.append(read(after)[0] if self.new is None else self.text(self.new, after))
-        return any(text is not None and is_written_mission(text) for text in texts)
+        return any(text is not None and is_mission(text) and not is_generated(text) for text in texts)
 
     def has(self, commit: str, path: str) -> bool:
         """Whether a commit has a file."""
