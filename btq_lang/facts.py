@@ -152,19 +152,37 @@ class Names:
         return cls(found)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
-        """The names after an edit that has put other items in the place of some; None where that says too little: the
-        names or their order are others, or a name has several definitions."""
+        """The names after an edit that has put other items in the place of some; None where that says too little: a
+        name has several definitions, or nothing says where the new ones stand."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
-        now = [(each.item, symbol) for each in come for symbol in each.summary.symbols]
-        if before != [(symbol.kind, symbol.name) for _, symbol in now]:
-            return None
+        now = {(one.kind, one.name): [(each.item, one)] for each in come for one in each.summary.symbols}
         if any(len(self.found[key]) > 1 for key in before):
             return None
-        if not now:
-            return self
-        after = Names({**self.found, **{(one[1].kind, one[1].name): [one] for one in now}})
-        after.__dict__.update({each: self.__dict__[each] for each in ("all", "by_kind") if each in self.__dict__})
+        if len(now) < sum([len(each.summary.symbols) for each in come]):
+            return None
+        if not before:
+            return None if now else self
+        if before == [*now]:
+            found = {**self.found, **now}
+        elif now.keys() - before & self.found.keys():
+            return None
+        else:
+            known = [*self.found.items()]
+            at = [*self.found].index(before[0])
+            found = dict([*known[:at], *now.items(), *known[at + len(before) :]])
+        after = Names(found)
+        after._take_over(self, before, [*now])
         return after
+
+    def _take_over(self, other: Names, before: list[Name], now: list[Name]) -> None:
+        """What is as it was."""
+        touched = {kind for kind, _ in (*before, *now)}
+        if before == now and "all" in other.__dict__:
+            self.all = other.all
+        if "by_kind" in other.__dict__:
+            self.by_kind = other.by_kind if before == now else other.by_kind | self._by_kind(touched)
+        if "symbols" in other.__dict__:
+            self.symbols = other.symbols | self._symbols(touched)
 
     @cached_property
     def all(self) -> frozenset[Name]:
@@ -172,10 +190,18 @@ class Names:
 
     @cached_property
     def by_kind(self) -> dict[Kind, tuple[str, ...]]:
-        names: dict[Kind, list[str]] = {kind: [] for kind in Kind}
-        for kind, name in self.found:
-            names[kind].append(name)
-        return {kind: tuple(each) for kind, each in names.items()}
+        return self._by_kind(Kind)
+
+    def _by_kind(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[str, ...]]:
+        return {kind: tuple([name for of, name in self.found if of is kind]) for kind in kinds}
+
+    @cached_property
+    def symbols(self) -> dict[Kind, tuple[Symbol, ...]]:
+        """The symbols of each kind, of each name the first one."""
+        return self._symbols(Kind)
+
+    def _symbols(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[Symbol, ...]]:
+        return {kind: tuple([same[0][1] for (of, _), same in self.found.items() if of is kind]) for kind in kinds}
 
     @cached_property
     def repeated(self) -> frozenset[Name]:

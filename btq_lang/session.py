@@ -62,7 +62,7 @@ class Session:
             return (path, *self.reload())
         linked = set(after.linked(path))  # what is used is known in both directions
         if renamed := old.defined_names ^ new.defined_names:
-            linked.update(other for other in after.files if _misses(after, other, renamed))
+            linked.update(other for other in after.files if other != path and _misses(after, other, renamed))
         return self._in_order(path, linked)
 
     def close(self, path: str) -> tuple[str, ...]:

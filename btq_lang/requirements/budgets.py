@@ -52,7 +52,7 @@ class _TreeBudgets:
         claims: the claims that count, by the node.
         composed, held, successes: by the node; of a SubTree node they say nothing of what they are made of, for that
             is in another tree.
-        asked: what was asked of other trees, by their names, with the answers.
+        asked: what was asked of other trees, by their names: the root that was run, and the answer.
     """
 
     __slots__ = ("applied", "asked", "claims", "composed", "held", "successes", "tree")
@@ -68,7 +68,7 @@ class _TreeBudgets:
         self.composed: dict[int, Budget] = {}
         self.held: dict[int, Budget] = {}
         self.successes: dict[int, Success | None] = {}
-        self.asked: dict[str, object] = {}
+        self.asked: dict[str, tuple[SourceNode | None, object]] = {}
 
 
 class Budgets:
@@ -124,6 +124,14 @@ class Budgets:
         """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
         others: set[str | None] = set()  # the trees whose budgets are to be made, and may come out otherwise
         by_tree, is_ordered_as_before = self._found.by_tree, self._nodes.is_ordered_as_before
+
+        def is_as_before(tree: TreeNodes, name: str, known: tuple[SourceNode | None, object]) -> bool:
+            root = self._nodes.root(name)
+            if root is not None and self._nodes.position(root.item) >= self._nodes.position(tree.item):
+                root = None
+            is_same_root = root is known[0] and root is not None and name not in others
+            return is_same_root or self._outcome(tree, name) == known[1]
+
         for tree in self._nodes.in_order if before else ():
             known = before.get(id(tree.item))
             if (
@@ -132,7 +140,7 @@ class Budgets:
                 and is_same(by_tree.get(id(tree.item), ()), known.applied)
                 and (
                     (is_ordered_as_before and others.isdisjoint(known.asked))
-                    or all(self._outcome(tree, name) == outcome for name, outcome in known.asked.items())
+                    or all(is_as_before(tree, name, known.asked[name]) for name in known.asked)
                 )
             ):
                 self._trees[id(tree.item)] = known
@@ -189,7 +197,7 @@ class Budgets:
             root = self._run_before(node)
             if node.node.id is not None:
                 name = node.node.id.text
-                at.asked[name] = self._outcome(at.tree, name)
+                at.asked[name] = root, self._outcome(at.tree, name)
             if root is not None:
                 return _without_terms(self._in(self._nodes.within(root.item)).held[id(root)])
             is_known = self._nodes.run_by(node) is not None
