@@ -7,11 +7,13 @@ that it touches; of the others nothing changes but the number of lines before th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from operator import is_
+from itertools import compress, count
+from operator import is_, ne
 
 from btq_lang.features.semantic_tokens import Known, Stretch, encode, stretches, tokens_of_stretch
 from btq_lang.file import File
 from btq_lang.record import Record
+from btq_lang.syntax import Entry
 from btq_lang.text import LINE_END, Encoding
 from btq_lang.workspace import Workspace
 
@@ -40,22 +42,28 @@ class Kept:
 
     __slots__ = ("answers", "encoding", "items", "names", "part", "world")
 
-    def __init__(self, items: tuple[object, ...], encoding: Encoding, known: Known, part: Part) -> None:
-        self.items = items
+    def __init__(self, entries: tuple[Entry, ...], encoding: Encoding, known: Known, part: Part) -> None:
+        self.items = tuple([entry.item for entry in entries])
         self.encoding = encoding
         self.names = frozenset(known.asked)
         self.answers = known.answers(self.names)
         self.world = known.world
         self.part = part
 
-    def holds(self, items: tuple[object, ...], encoding: Encoding, known: Known) -> bool:
+    def holds(self, entries: tuple[Entry, ...], encoding: Encoding, known: Known) -> bool:
         """Whether the part would be made again as it is."""
-        if self.encoding != encoding or len(self.items) != len(items) or not all(map(is_, self.items, items)):
+        items = self.items
+        if self.encoding != encoding or len(items) != len(entries):
             return False
-        if self.world != known.world:
-            if self.answers != known.answers(self.names):
+        if len(items) > 1 and not all(map(is_, items, [entry.item for entry in entries])):
+            return False  # of one it is known, for these are the facts of the first
+        if self.world is not known.world:
+            if self.world == known.world:
+                known.world = self.world  # so that those behind it need not be compared name by name
+            elif self.answers != known.answers(self.names):
                 return False
-            self.world = known.world
+            else:
+                self.world = known.world
         return True
 
 
@@ -76,15 +84,21 @@ class Colours(Record):
         return f"[{','.join([f'{first}{part.shown}' for first, part in zip(self.firsts, self.parts, strict=True)])}]"
 
 
+class Change(Record):
+    """An edit of `data`: from where, how many integers go, and what comes for them; what it counts is there before
+    any other edit is made."""
+
+    start: int
+    gone: int
+    come: list[int]
+
+
 def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
     """The semantic tokens of a file."""
-    file = workspace.files[path]
-    known = Known(workspace, path)
     parts: list[Part] = []
     firsts: list[int] = []
     lines = 0
-    for stretch in stretches(file.parsed, len(file.text)):
-        part = _part(file, stretch, known, encoding)
+    for part in _parts(workspace, path, encoding):
         if part.data:
             parts.append(part)
             firsts.append(lines + part.data[0])
@@ -97,69 +111,76 @@ def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
 def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None]:
     """Make the parts of a file before they are asked for: of a large one that takes longer than anybody waits, so
     whoever does it may do something else between two steps."""
-    file = workspace.files[path]
-    known = Known(workspace, path)
-    for done, stretch in enumerate(stretches(file.parsed, len(file.text)), 1):
-        _part(file, stretch, known, encoding)
+    for done, _ in enumerate(_parts(workspace, path, encoding), 1):
         if done % _A_STEP == 0:
             yield
 
 
-def _part(file: File, stretch: Stretch, known: Known, encoding: Encoding) -> Part:
-    """The part of a stretch, made anew where what is kept does not hold."""
-    items = tuple([entry.item for entry in stretch.entries])
-    facts = file.facts[id(items[0])] if items else None
-    kept = facts.colours if facts is not None else None
-    if isinstance(kept, Kept) and kept.holds(items, encoding, known):
-        return kept.part
+def _parts(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[Part]:
+    """The parts of a file's stretches, made anew where what is kept does not hold."""
+    file = workspace.files[path]
+    known = Known(workspace, path)
+    facts = file.facts
+    for stretch in stretches(file.parsed, len(file.text)):
+        first = facts[id(stretch.entries[0].item)] if stretch.entries else None
+        kept = first.colours if first is not None else None
+        if isinstance(kept, Kept) and kept.holds(stretch.entries, encoding, known):
+            yield kept.part
+            continue
+        part = _made(file, stretch, known, encoding)
+        if first is not None:
+            first.colours = Kept(stretch.entries, encoding, known, part)
+        yield part
+
+
+def _made(file: File, stretch: Stretch, known: Known, encoding: Encoding) -> Part:
     known.asked = set()
     text = file.text[stretch.start : stretch.end]
     data = encode(tokens_of_stretch(file, stretch, known), text, encoding)
     rest = len(LINE_END.findall(text)) - sum(data[::5])
-    part = Part(tuple(data), rest, "".join([f",{number}" for number in data[1:]]))
-    if facts is not None:
-        facts.colours = Kept(items, encoding, known, part)
-    return part
+    return Part(tuple(data), rest, "".join([f",{number}" for number in data[1:]]))
 
 
-def delta(before: Colours, after: Colours) -> tuple[int, int, list[int]] | None:
-    """What to replace in the data of `before` to have that of `after`: from where, how many integers, and by what;
-    None: nothing."""
-    shorter = min(len(before.parts), len(after.parts))
-    start = 0
-    while start < shorter and _is_same(before, start, after, start):
-        start += 1
-    end = 0
-    while end < shorter - start and _is_same(before, -1 - end, after, -1 - end):
-        end += 1
-    changed = difference(_joined(before, start, len(before.parts) - end), _joined(after, start, len(after.parts) - end))
-    if changed is None:
-        return None
-    at, gone, come = changed
-    return sum([len(part.data) for part in before.parts[:start]]) + at, gone, come
+def delta(before: Colours, after: Colours) -> list[Change]:
+    """What to replace in the data of `before` to have that of `after`, in the order of the text.  A part that is the
+    same object is no further looked at, however many have changed before and behind it."""
+    places = {id(part): index for index, part in enumerate(before.parts)}
+    changes: list[Change] = []
+    done = other_done = integers = 0
+    for index, part in enumerate((*after.parts, None)):
+        place = places.get(id(part), -1) if part is not None else len(before.parts)
+        if place < done or (part is not None and before.firsts[place] != after.firsts[index]):
+            continue  # it is new, or other lines stand before it
+        if place > done or index > other_done:
+            gone, come = _joined(before, done, place), _joined(after, other_done, index)
+            changed = difference(gone, come)
+            if changed is not None:
+                changes.append(Change(integers + changed.start, changed.gone, changed.come))
+            integers += len(gone)
+        if part is not None:
+            integers += len(part.data)
+            done, other_done = place + 1, index + 1
+    return changes
 
 
-def difference(before: Sequence[int], after: Sequence[int]) -> tuple[int, int, list[int]] | None:
-    """As `delta`, of the integers themselves."""
-    if list(before) == list(after):
-        return None
-    start = 0
+def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
+    """The one change that makes the second of the first, from token to token; None: they are the same."""
     shorter = min(len(before), len(after))
-    while start < shorter and before[start] == after[start]:
-        start += 1
+    start = _alike(before, after)
+    if start == len(before) == len(after):
+        return None
     start -= start % 5
-    end = 0
-    while end < shorter - start and before[-1 - end] == after[-1 - end]:
-        end += 1
+    end = min(_alike(before[::-1], after[::-1]), shorter - start)
     end -= end % 5
-    return start, len(before) - end - start, list(after[start : len(after) - end])
+    return Change(start, len(before) - end - start, list(after[start : len(after) - end]))
+
+
+def _alike(first: Sequence[int], second: Sequence[int]) -> int:
+    """How many integers are the same from the start on."""
+    return next(compress(count(), map(ne, first, second)), min(len(first), len(second)))
 
 
 _A_STEP = 10  # stretches, of some 20 nodes each: 10 to 30 ms
-
-
-def _is_same(before: Colours, index: int, after: Colours, other: int) -> bool:
-    return before.parts[index] is after.parts[other] and before.firsts[index] == after.firsts[other]
 
 
 def _joined(colours: Colours, start: int, end: int) -> list[int]:

@@ -53,8 +53,8 @@ def register(server: Server) -> None:
         found = colours(params.text_document)
         if found is None or before is None or before[0] != params.previous_result_id:
             return whole(found)
-        edit = features.delta(before[1], found[1])
-        edits = [{"start": edit[0], "deleteCount": edit[1], "data": edit[2]}] if edit else []
+        changes = features.delta(before[1], found[1])
+        edits = [{"start": one.start, "deleteCount": one.gone, "data": one.come} for one in changes]
         return {"resultId": found[0], "edits": edits}
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)

@@ -246,9 +246,8 @@ def check_delta(before: list[int], after: list[int], expected: tuple[int, int, l
     """This is what makes the second list of integers of the first."""
     made = difference(before, after)
     if made is not None:
-        start, count, data = made
-        assert [*before[:start], *data, *before[start + count :]] == after
-    assert made == expected
+        assert [*before[: made.start], *made.come, *before[made.start + made.gone :]] == after
+    assert (None if made is None else (made.start, made.gone, made.come)) == expected
 
 
 def check_hover(text: str, markdown: str | None) -> None:

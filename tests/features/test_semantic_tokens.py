@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from feature_asserts import check_delta, check_tokens
 
+from btq_lang.features.colours import Change, colours, delta
+from btq_lang.workspace import Workspace
+
 
 def test_a_tree() -> None:
     check_tokens(
@@ -100,3 +103,16 @@ def test_delta() -> None:
     check_delta(one + two, one + three, (5, 5, three))
     check_delta([], one, (0, 0, one))
     check_delta(one + one, one, (5, 5, []))
+
+
+def test_each_place_that_has_changed_is_a_change_of_its_own() -> None:
+    trees = [f"BehaviorTree T{number}\n    Go\n" for number in range(9)]
+    before = Workspace.of({"main.btq": "".join(trees)})
+    shown, after = colours(before, "main.btq", "utf-16"), before
+    for number, tree in ((2, "BehaviorTree T2\n    Stay\n"), (6, "BehaviorTree T6\n    Go\n    Go\n")):
+        trees[number] = tree
+        after = after.with_file("main.btq", "".join(trees))
+    assert delta(shown, colours(after, "main.btq", "utf-16")) == [
+        Change(2 * 15 + 10, 5, [1, 4, 4, 7, 0]),  # a longer word
+        Change(7 * 15, 0, [1, 4, 2, 7, 0]),  # a line more, which stands before the next tree's first
+    ]
