@@ -336,6 +336,22 @@ def test_a_mission_and_what_was_built_of_it_in_another_folder(tmp_path: Path) ->
     assert (code, out.splitlines()[1], told) == (1, f"~ requirement rq1 changed  {where}", "")
 
 
+def test_guards_that_were_changed_by_hand(tmp_path: Path) -> None:
+    requirement = "QualityReq rq1\n    takes at most 30 s\n    on violation fail\n"
+    tree = "BehaviorTree M\n    Sequence\n        Go satisfies rq1\nTreeNodesModel\n    Action Go\n"
+    (tmp_path / "main.btq").write_text(requirement + tree)
+    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    xml = tmp_path / "main.xml"
+    assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
+    xml.write_text(xml.read_text().replace('"30000"', '"40000"'))
+    line = xml.read_text()[: xml.read_text().index("<Timeout")].count("\n") + 1
+    advice = "changed; the next build writes it as it was, so change the requirement that it enforces"
+    for paths, sign in ((("main.btq", "main.xml"), "+"), (("main.xml", "main.btq"), "-")):
+        said = f"~ guard rq1_limit changed  main.xml:{line}\n    {sign} by hand: {advice}\n\n1 guard changed\n"
+        assert btq(*paths, cwd=tmp_path) == (1, f"{' -> '.join(paths)}\n{said}", "")
+    assert btq("main.xml", "main.xml", cwd=tmp_path) == (0, "", "")
+
+
 def test_models_that_a_build_made_are_no_change(tmp_path: Path) -> None:
     mission = tmp_path / "main.btq"
     mission.write_text(

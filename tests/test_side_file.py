@@ -171,7 +171,7 @@ def test_side_files_of_missions_made_up_keep_the_schema_and_lead_back(spelling: 
 
 
 @pytest.mark.parametrize("example", ["classic", "hospital", "laboratory", "navigation", "pick-and-place"])
-def test_an_example_is_built_and_imported(btq: Btq, example: str) -> None:  # noqa: F811
+def test_an_example_is_built_and_imported(btq: Btq, capsys: Capsys, example: str) -> None:  # noqa: F811
     shutil.copytree(ROOT / "examples" / example, btq.folder / "there")
     assert btq.build("there", "-o", "out")[0] == 0
     for xml in sorted((btq.folder / "out").rglob("*.xml")):
@@ -181,6 +181,11 @@ def test_an_example_is_built_and_imported(btq: Btq, example: str) -> None:  # no
         if xml.with_suffix(".qreq.json").exists():
             assert main(["import", str(xml), "-o", "back"]) == 0
             assert btq.read(f"back/{place.name}.btq") == source.read_text(encoding="utf-8")
+            assert list(violations(json.loads(xml.with_suffix(".qreq.json").read_text("utf-8")), SCHEMA)) == []
+            xml.write_text(xml.read_text("utf-8").replace("  </BehaviorTree>", "  <Late/></BehaviorTree>"), "utf-8")
+            capsys.readouterr()
+            assert main(["import", str(xml), "-o", "back", "--force"]) == 0
+            assert "by hand" not in capsys.readouterr().err
 
 
 def test_of_xml_that_was_edited_the_rest_comes_back() -> None:
@@ -351,6 +356,36 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     assert main(["import", "out/main.xml", "--force"]) == 0
     no = "put out/main.qreq.json beside the XML to keep them"
     assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
+
+
+def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+    (btq.folder / "main.btq").write_text(
+        "QualityReq quick\n    takes at most 30 s\n    on violation fail\nBehaviorTree M\n    ->\n"
+        "        Go satisfies quick\n        Stay (_skipIf = off) satisfies quick\n        Go satisfies quick\n"
+    )
+    assert btq.build("main.btq")[0] == 0
+    xml = btq.folder / "main.xml"
+    built = xml.read_text()
+
+    def told(edited: str) -> list[str]:
+        xml.write_text(edited)
+        capsys.readouterr()
+        assert main(["import", "main.xml", "-o", "back", "--force"]) == 0
+        return [line for line in capsys.readouterr().err.splitlines() if "by hand" in line]
+
+    then = "by hand: the next build writes it as it was, so change the requirement that it enforces"
+    at = {name: built[: built.index(f'<Timeout name="{name}')].count("\n") + 1 for name in ("quick_limit", "quick_2")}
+    assert told(built.replace('"30000"', '"40000"', 1)) == [
+        f"main.xml:{at['quick_limit']}:8: `quick_limit` was changed {then}"
+    ]
+    without = re.sub(r' *<Timeout name="quick_2.*?(<Stay[^>]*>).*?</Timeout>', r"\1", built, flags=re.DOTALL)
+    assert told(without) == [f"main.xml:{at['quick_2']}:2: `quick_2_limit` was taken out {then}"]
+    # Nodes that move or go with all that is around them, and other spellings, are no such change.
+    guarded = re.findall(r" *<Timeout.*?</Timeout>\n", built, re.DOTALL)
+    assert told(built.replace(guarded[0], "")) == []
+    assert told(built.replace("".join(guarded), "".join(guarded[::-1]))) == []
+    assert told(built.replace('name="quick_limit" msec="30000"', "msec='30000'\n name='quick&#95;limit'")) == []
+    assert told(built.replace('_skipIf="off"', '_skipIf="on"')) == []
 
 
 def test_what_a_mission_includes_is_to_be_imported_too(btq: Btq, capsys: Capsys) -> None:  # noqa: F811

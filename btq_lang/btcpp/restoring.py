@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+from btq_lang.btcpp.by_hand import ByHand, Guarded, changed_by_hand
+from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSION
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.file import is_btq
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import Record
+from btq_lang.record import Record, replace
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -46,6 +48,7 @@ class Restored(Record):
         is_whole: it is the mission as it was.
         file: where the mission was, seen from the side file, which may say anything.
         lost: clauses of nodes that are not there any more.
+        by_hand: what somebody has changed that enforces, which counts for nothing.
         others: of a whole bundle, the files that it includes: their paths, seen from the mission, and texts.  The paths
             are whatever the side file says, and may lead anywhere.
     """
@@ -54,6 +57,7 @@ class Restored(Record):
     is_whole: bool
     file: str
     lost: tuple[Lost, ...] = ()
+    by_hand: tuple[ByHand, ...] = ()
     others: tuple[tuple[str, str], ...] = ()
 
 
@@ -88,6 +92,10 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
         place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
+        guards = tuple(
+            Guarded(str(each["node"]), tuple((name, str(sum_)) for name, sum_ in dict(each["guards"]).items()))
+            for each in data.get("guards", ())
+        )
     except (ValueError, LookupError, TypeError, RecursionError):
         return None
     if not is_known or not all(_is_text(each) for each in (mission, place, *chain(*others))):
@@ -95,7 +103,9 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
     if hashlib.sha256(xml.encode("utf-8", "replace")).hexdigest() == built:
         return Restored(mission, True, place, others=others)
     sources = ((None, mission), *((file, text) for file, text in others if is_btq(file)))
-    return _merged(parse(imported), [(file, parse(text)) for file, text in sources], place)
+    merged = _merged(parse(imported), [(file, parse(text)) for file, text in sources], place)
+    document = read(xml).document if guards else None
+    return merged if document is None else replace(merged, by_hand=changed_by_hand(document.root, guards))
 
 
 def _is_text(value: object) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator, Mapping
 
+from btq_lang.btcpp.by_hand import guarded
 from btq_lang.btcpp.document import Document, Element
 from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
@@ -100,6 +101,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             "traces": [
                 {"requirement": each.requirement, "nodes": running.uids(Target(each.node))} for each in found.traces
             ],
+            **_guards(built.documents[-1].root),
             "concerns": list(_concerns(workspace, paths, found.nodes, running)),
             "nodes": [_node(instance, node, place) for instance, node in running.all],
         }
@@ -173,6 +175,12 @@ class _Running:
                     left.pop()
                 at = at.parent
         return not left
+
+
+def _guards(root: Element) -> dict[str, Json]:
+    """What enforces in the file, by the nodes that it stands at."""
+    found: list[Json] = [{"node": each.node, "guards": dict(each.guards)} for each in guarded(root)]
+    return {"guards": found} if found else {}
 
 
 def _node(instance: Instance, node: SourceNode | None, place: _Places) -> Json:

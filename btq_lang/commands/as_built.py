@@ -8,11 +8,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 
+from btq_lang.btcpp.by_hand import ByHand
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.commands.files import Files
+from btq_lang.file import File
 from btq_lang.loader import absolute, find_project, read, shown
 from btq_lang.parser import parse
 from btq_lang.project import include_candidates
@@ -54,19 +56,29 @@ class Disk:
         return None if problems or group is None else group.workspace
 
 
-def as_built(
-    path: str, source: Source, called: Callable[[str], str] = shown
-) -> tuple[Workspace, str, Callable[[str], str]] | None:
+class Built(Record):
+    """The mission of an XML file.
+
+    Attributes:
+        workspace: the mission with all that it includes, and the XML that somebody has changed by hand.
+        path: of the mission in there, where no file needs to be.
+        shown: how its paths are shown: those that stand in the side file behind that one's.
+        by_hand: what was changed in what enforces, in which XML.
+    """
+
+    workspace: Workspace
+    path: str
+    shown: Callable[[str], str]
+    by_hand: tuple[tuple[str, ByHand], ...]
+
+
+def as_built(path: str, source: Source, called: Callable[[str], str] = shown) -> Built | None:
     """The mission of an XML file; None: there is no side file, or it is of something else.
 
     Args:
         path: of the XML.
         source: where it and its side file are read.
         called: how people call a file of that.
-
-    Returns:
-        The mission with all that it includes, its path in there, where no file needs to be, and how its paths are
-        shown: those that stand in the side file behind that one's.
     """
     side = side_path(path)
     if path == side or not path.endswith(".xml") or not source.is_file(side):
@@ -77,9 +89,11 @@ def as_built(
     target = f"{os.path.splitext(path)[0]}.btq"
     known: dict[str, str] = {}
     sources: dict[str, str] = {}
+    by_hand: list[tuple[str, ByHand]] = []
     waiting = [(made, path, target)]
     for made, xml, place in waiting:
         folder = os.path.dirname(xml)
+        by_hand += ((xml, each) for each in made.by_hand)
         for name, text in (
             (place, made.text),
             *((absolute(os.path.join(folder, each)), it) for each, it in made.others),
@@ -93,7 +107,13 @@ def as_built(
     workspace = source.workspace(target, known)
     if workspace is None:
         return None
-    return workspace, target, lambda each: f"{called(sources[each])}:{shown(each)}" if each in sources else called(each)
+    changed = {xml: File(xml, source.text(xml) or "") for xml, _ in by_hand}
+    return Built(
+        Workspace({**changed, **workspace.files}, workspace.project),
+        target,
+        lambda each: f"{called(sources[each])}:{shown(each)}" if each in sources else called(each),
+        tuple(by_hand),
+    )
 
 
 class _Made(Record):
@@ -104,12 +124,14 @@ class _Made(Record):
         others: of a bundle, the files it includes: their paths, seen from the mission, and texts.
         includes: what the XML includes, in order.
         source: the file that says all that: the side file, or the XML.
+        by_hand: what was changed in what enforces.
     """
 
     text: str
     others: tuple[tuple[str, str], ...]
     includes: tuple[str | None, ...]
     source: str
+    by_hand: tuple[ByHand, ...] = ()
 
 
 def _made(path: str, source: Source) -> _Made | None:
@@ -125,7 +147,7 @@ def _made(path: str, source: Source) -> _Made | None:
     includes = tuple(_includes(done.text))
     mission = restored(xml, done.text, said) if said is not None else None
     if mission is not None:
-        return _Made(mission.text, mission.others, includes, side)
+        return _Made(mission.text, mission.others, includes, side, mission.by_hand)
     return _Made(done.text if is_generated(xml) else xml, (), includes, path)
 
 

@@ -8,13 +8,14 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Collection, Iterator
 
+from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_generated, is_mission
 from btq_lang.btcpp.undeclared import made_models
-from btq_lang.commands.as_built import Disk, as_built
+from btq_lang.commands.as_built import Built, Disk, as_built
 from btq_lang.commands.files import Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
-from btq_lang.diff import Change, as_json, as_markdown, as_text
-from btq_lang.diff.comparison import NOWHERE, Comparison, Side, compared
+from btq_lang.diff import Change, Place, as_json, as_markdown, as_text
+from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared
 from btq_lang.file import SUFFIXES, File
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
@@ -156,7 +157,14 @@ def _by_itself(built: Side) -> Side:
 def _built_on_disk(path: str) -> Side | None:
     """What a built XML file was made of, where its side file says so."""
     built = as_built(path, Disk())
-    return None if built is None else Side(shown(path), built[0], built[0].closure(built[1]), built[2])
+    return None if built is None else _side(shown(path), built)
+
+
+def _side(name: str, built: Built) -> Side:
+    by_hand = tuple(
+        ByHand(each.guard, each.sum, f"{each.happened}; {ADVICE}", Place(xml, each.span)) for xml, each in built.by_hand
+    )
+    return Side(name, built.workspace, built.workspace.closure(built.path), built.shown, by_hand)
 
 
 def _xml_below(folder: str) -> tuple[str, ...]:
@@ -212,7 +220,7 @@ def _revised(known: Revisions, revision: str | None, path: str | None, with_incl
     name = _named(known.names[revision])
     built = as_built(path, Commit(known, revision), name) if with_includes else None
     if built is not None:
-        return Side(name(path), built[0], built[0].closure(built[1]), built[2])
+        return _side(name(path), built)
     workspace = known.workspace(revision, path)
     if workspace is None:
         return NOWHERE

@@ -7,8 +7,10 @@ import sys
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Mapping
 
+from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
+from btq_lang.btcpp.version3 import Change
 from btq_lang.loader import LoadProblem, absolute, find_project, read, shown, write_whole
 from btq_lang.project import include_candidates
 from btq_lang.record import Record, replace
@@ -119,7 +121,9 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
         f"its node is not there any more: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
         for lost in mission.lost
     )
-    return replace(job, done=replace(job.done, text=format_text(mission.text).text), losses=losses)
+    by_hand = (Change(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.by_hand)
+    changes = (*by_hand, *job.done.changes)
+    return replace(job, done=replace(job.done, text=format_text(mission.text).text, changes=changes), losses=losses)
 
 
 def _without_side_file(job: _Job, advice: str) -> _Job:

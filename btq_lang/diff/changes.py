@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 # The order in which changes are told: what the mission is and must be first, then how it does that.
 THINGS: Final = (
     *("mission", "include", "requirement", "apply", "quality"),
-    *("signal", "context", "node model", "tree", "xml"),
+    *("signal", "context", "node model", "tree", "xml", "guard"),
 )
+GUARD: Final = "guard"  # what enforces a requirement in XML, which the mission says nothing of
 
 What: TypeAlias = "Literal['added', 'removed', 'moved', 'changed', 'renamed']"
 
@@ -42,7 +43,7 @@ class Change(Record):
 
     Attributes:
         thing: `tree`, `node`, `requirement`, `signal`, `context`, `quality`, `node model`, `include`, `apply`,
-            `mission`, `xml`.
+            `mission`, `xml`, `guard`.
         name: its name in the new mission, or in the old one where it is gone; of a node the path to it.
         old, new: where it stands; None where it does not.
         details: what is said otherwise; of a node that was added or removed, the requirements attached to it.

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from btq_lang.diff import Change, Place, compare
+from btq_lang.diff.changes import GUARD, Detail
 from btq_lang.record import Record
 from btq_lang.text import Position
 from btq_lang.workspace import Workspace
@@ -14,6 +15,21 @@ if TYPE_CHECKING:
     from typing import Final
 
 
+class ByHand(Record):
+    """What somebody has changed in the XML of a mission and the mission does not say.
+
+    Attributes:
+        name: of the node that enforces something.
+        said: what it says now, in a form that can be compared.
+        message: what happened to it, and what to do.
+    """
+
+    name: str
+    said: str
+    message: str
+    place: Place
+
+
 class Side(Record):
     """One of two missions.
 
@@ -21,12 +37,14 @@ class Side(Record):
         name: what it is called; None where there is none, and all of the other was added or removed.
         paths: its files, its own the last.
         shown: a path as people read it.
+        by_hand: of XML, what the mission does not say.
     """
 
     name: str | None
     workspace: Workspace
     paths: tuple[str, ...]
     shown: Callable[[str], str]
+    by_hand: tuple[ByHand, ...] = ()
 
     def place(self, place: Place) -> tuple[str, Position, Position]:
         """A place: the file as people read it, and where it begins and ends, counted from 0."""
@@ -58,7 +76,18 @@ class Comparison(Record):
 
 def compared(old: Side, new: Side) -> Comparison:
     """Compare two missions."""
-    return Comparison(old, new, compare(old.workspace, old.paths, new.workspace, new.paths))
+    changes = compare(old.workspace, old.paths, new.workspace, new.paths)
+    return Comparison(old, new, (*changes, *_by_hand(old, new)))
+
+
+def _by_hand(old: Side, new: Side) -> Iterator[Change]:
+    known = {(each.name, each.said) for each in old.by_hand}, {(each.name, each.said) for each in new.by_hand}
+    for each in old.by_hand:
+        if (each.name, each.said) not in known[1]:
+            yield Change("changed", GUARD, each.name, each.place, None, (Detail("by hand", each.message, None),))
+    for each in new.by_hand:
+        if (each.name, each.said) not in known[0]:
+            yield Change("changed", GUARD, each.name, None, each.place, (Detail("by hand", None, each.message),))
 
 
 def all_changes(comparisons: Iterable[Comparison]) -> tuple[Change, ...]:

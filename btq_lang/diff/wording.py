@@ -26,9 +26,10 @@ TITLES: Final = {
     "node model": "Node models",
     "tree": "Trees",
     "xml": "Verbatim XML",
+    "guard": "Guards",
 }
 _CLAUSES: Final = {"requirement": "satisfies", "quality": "satisfices", "tag": "tags"}
-_IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree", "name")
+_IN_WORDS: Final = ("title", "quality", "attached to", "category", "kind", "tree", "name", "by hand")
 _MOST: Final = 3  # names in a row
 
 

@@ -1,0 +1,145 @@
+"""What somebody has changed by hand in the nodes that a build put into XML to enforce requirements.
+
+No import keeps such a change, for those nodes are made of requirements.  One invariant: as long as they say what they
+said when they were built, there is nothing to tell, wherever they stand and whatever became of the mission's own nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btq_lang.btcpp.document import Element
+from btq_lang.btcpp.wrappers import MARK, MOVED
+from btq_lang.record import Record
+from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+ADVICE: Final = "the next build writes it as it was, so change the requirement that it enforces"
+
+
+class Guarded(Record):
+    """One of the mission's nodes, with the guards that a build put around and beside it.
+
+    Attributes:
+        node: its tree, what it is, how it is called, and which of those in the tree it is: `Main/Pick/Again/1`.
+        guards: by their names, a sum of what each says.
+    """
+
+    node: str
+    guards: tuple[tuple[str, str], ...]
+
+
+class ByHand(Record):
+    """A guard that is not as it was built.
+
+    Attributes:
+        sum: of what it says now; empty where it is gone.
+        span: where it stands in the XML, or the node that it stood at.
+    """
+
+    guard: str
+    sum: str
+    span: Span
+
+    @property
+    def happened(self) -> str:
+        return "changed" if self.sum else "taken out"
+
+
+def guarded(root: Element) -> Iterator[Guarded]:
+    """The nodes of a file that have guards, in order."""
+    for key, _, guards in _nodes(root):
+        if guards:
+            yield Guarded(key, tuple(guards.items()))
+
+
+def changed_by_hand(root: Element, built: Iterable[Guarded]) -> tuple[ByHand, ...]:
+    """What was changed since a build, in the order of the file.
+
+    Args:
+        root: of the XML as it stands now.
+        built: what stood there when it was built.
+    """
+    built = tuple(built)
+    known = {said for each in built for said in each.guards}
+    marked = {_name(each): each for each in _walk(root) if each.get(MARK) is not None and _name(each)}
+    nodes = {key: (node, guards) for key, node, guards in _nodes(root)}
+    found = [
+        ByHand(name, sum_, _span(marked[name]))
+        for _, guards in nodes.values()
+        for name, sum_ in guards.items()
+        if (name, sum_) not in known
+    ]
+    for each in built:
+        node, guards = nodes.get(each.node, (None, {}))
+        was_another = bool(guards) and guards.keys().isdisjoint(dict(each.guards))  # one of its kind before it is gone
+        if node is not None and not was_another:
+            found += [ByHand(name, "", _span(node)) for name, _ in each.guards if name not in marked]
+    return tuple(sorted(found, key=lambda each: each.span))
+
+
+def _nodes(root: Element) -> Iterator[tuple[str, Element, dict[str, str]]]:
+    """The mission's own nodes, in the order of the file, each with the sums of its guards, by their names."""
+    for tree in root.elements:
+        if tree.tag != "BehaviorTree":
+            continue
+        counts: dict[str, int] = {}
+        stack = [*tree.elements][::-1]
+        while stack:
+            guards, own = _split(stack.pop())
+            stack += [child for node in own for child in node.elements][::-1]
+            for node in own:
+                called = f"{tree.get('ID')}/{node.get('ID') or node.tag}/{_name(node)}"
+                number = counts[called] = counts.get(called, 0) + 1
+                # What stands around several nodes no import takes out.
+                yield f"{called}/{number}", node, guards if len(own) == 1 else {}
+
+
+def _split(outermost: Element) -> tuple[dict[str, str], list[Element]]:
+    """The guards that an element begins, by their names, and the mission's own nodes in them."""
+    said: dict[str, list[str]] = {}
+    own = []
+    stack = [(outermost, "")]
+    while stack:
+        element, named = stack.pop()
+        if element.get(MARK) is None:
+            own.append(element)
+            continue
+        named = _name(element) or named  # one without a name is a part of the guard around it
+        said.setdefault(named, []).append(_said(element))
+        stack += [(child, named) for child in element.elements][::-1]
+    return {name: _sum(parts) for name, parts in said.items()}, own
+
+
+def _said(element: Element) -> str:
+    """The tag and the attributes, whatever their order and spelling, but for those of the node itself."""
+    moved = {MOVED, *(each.partition(":")[0] for each in (element.get(MOVED) or "").split())}
+    return repr((element.tag, sorted((each.name, each.value) for each in element.attributes if each.name not in moved)))
+
+
+def _sum(parts: list[str]) -> str:
+    import hashlib
+
+    return hashlib.sha256("\n".join(parts).encode("utf-8", "replace")).hexdigest()[:_DIGITS]
+
+
+def _walk(root: Element) -> Iterator[Element]:
+    stack = [root]
+    while stack:
+        yield (element := stack.pop())
+        stack += element.elements
+
+
+def _name(element: Element) -> str:
+    return element.get("name") or ""
+
+
+def _span(element: Element) -> Span:
+    return Span(element.start + 1, element.start + 1 + len(element.tag))
+
+
+_DIGITS: Final = 16  # enough to tell an edit; nobody is to be kept from forging one
