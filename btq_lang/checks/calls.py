@@ -7,7 +7,6 @@ from functools import cached_property
 
 from btq_lang.checks import lookups
 from btq_lang.symbols import Kind, Use
-from btq_lang.syntax import Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -22,10 +21,7 @@ Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 def calls(view: View) -> Calls:
     """Which tree runs which, of all trees in scope; those of the file come first, for a circle is told at its first
     tree, and included XML may not know that it is in one."""
-    own = [
-        each.item.name.text for each in view.look_up(lookups.trees) if isinstance(each.item, Tree) and each.item.name
-    ]
-    names = dict.fromkeys((*own, *view.scope.names(Kind.TREE)))
+    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.scope.names(Kind.TREE)))
     return Calls({name: view.ask(_runs, name) for name in names})
 
 

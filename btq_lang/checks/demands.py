@@ -44,19 +44,14 @@ def _all_demands(view: View) -> ByItem:
     held = demanded.requirements.by_tree
     trees = [tree for tree in demanded.requirements.nodes.trees if tree.timeouts or id(tree.item) in held]
     budgets = [*map(demanded.budgets.in_tree, trees)]  # another one where what is applied is another
-    for tree, made_of, kept in zip(trees, budgets, table.take_all(trees, budgets), strict=True):
-        known = kept or table.take(tree, made_of) or table.put(tree, made_of, _of_tree(demanded, tree))
+    for known in table.all(trees, budgets, lambda at: _of_tree(demanded, trees[at])):
         if known[0]:
             found.append(known[0])
         if known[1]:
             guards += known[1]
     table = memory.table("demands by themselves", demanded)
-    for requirement in demanded.requirements.all.values():
-        if requirement.goal is not None or requirement.window is not None:
-            of_itself = table.take(requirement)
-            found.append(
-                table.put(requirement, None, _of_requirement(view, requirement)) if of_itself is None else of_itself
-            )
+    lonely = [each for each in demanded.requirements.all.values() if each.goal is not None or each.window is not None]
+    found += table.all(lonely, [None] * len(lonely), lambda at: _of_requirement(view, lonely[at]))
     found.append(_by_item(view, of_signals(demanded, guards, memory)))
     return _together(found)
 

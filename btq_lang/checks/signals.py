@@ -50,10 +50,7 @@ def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> I
         return
     table = memory.table("entries", demanded)
     trees = demanded.requirements.nodes.trees
-    entries: list[_Entries] = [
-        known or table.take(tree) or table.put(tree, None, _entries_of(demanded, tree))
-        for tree, known in zip(trees, table.take_all(trees, [None] * len(trees)), strict=True)
-    ]
+    entries = table.all(trees, [None] * len(trees), lambda at: _entries_of(demanded, trees[at]))
     yield from _never_written(demanded, here, entries, guards, memory.table("near", demanded))
     yield from _of_text(demanded, here, entries)
 
@@ -86,6 +83,10 @@ def _never_written(
         return  # who writes it may be in the files that include this one
     written = frozenset().union(*(each.written for each in entries))
     guarding = {signal.name for signals, _ in guards for signal in signals}
+    unwritten = [signal for signal in here if (signal.key or "").removeprefix("@") not in written]
+    keys = [(signal.key or "").removeprefix("@") for signal in unwritten]
+    near_keys = table.all(unwritten, [written] * len(unwritten), lambda at: near(keys[at], written))
+    likely_keys = dict(zip(keys, near_keys, strict=True))
     for signal in here:
         key = (signal.key or "").removeprefix("@")
         if key in written and signal.name in guarding and (writer := _isolated(found, entries, key)) is not None:
@@ -96,9 +97,7 @@ def _never_written(
             continue
         if key in written:
             continue
-        likely = table.take(signal, written)
-        if likely is None:
-            likely = table.put(signal, written, near(key, written))
+        likely = likely_keys[key]
         if not (likely or signal.name in guarding):
             continue
         yield (

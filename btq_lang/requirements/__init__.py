@@ -20,11 +20,11 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from operator import is_
 
 from btq_lang.file import File
-from btq_lang.record import Record
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.memory import Memory, Table
@@ -42,22 +42,19 @@ from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, Final, TypeAlias
-
-_About: TypeAlias = "tuple[object, object, tuple[object, ...]]"
+    from typing import Any, Final
 
 __all__ = ["Memory", "Problem", "Requirements", "requirements"]
 
 
-class Requirements(Record):
+class Requirements:
     """All requirements that a file sees.
 
     Attributes:
         signals: by name.
         contexts: by name; None: it could not be understood.
         all: every requirement by name, in the order of their definitions, parameters in it.
-        applied: what holds for what, with arguments.
-        traces: `satisfies` at a node of a requirement whose claims name their subjects themselves.
+        held: what each of these holds for, in the same order.
         attached: names of requirements that a node or an `apply` refers to.
         problems: everything that was not understood.
         nodes: the written nodes.
@@ -65,16 +62,37 @@ class Requirements(Record):
         by_tree: what is applied to nodes, by the tree that they stand in; a span, too, by the node that it begins at.
     """
 
-    signals: dict[str, Signal]
-    contexts: dict[str, Condition | None]
-    all: dict[str, Requirement]
-    applied: tuple[Applied, ...]
-    traces: tuple[Trace, ...]
-    attached: frozenset[str]
-    problems: tuple[Problem, ...]
-    nodes: Nodes
-    mission: SourceNode | None
-    by_tree: dict[int, tuple[Applied, ...]]
+    def __init__(
+        self,
+        signals: dict[str, Signal],
+        contexts: dict[str, Condition | None],
+        of_name: dict[str, Requirement],
+        held: list[Held],
+        attached: frozenset[str],
+        problems: tuple[Problem, ...],
+        nodes: Nodes,
+        mission: SourceNode | None,
+        by_tree: dict[int, tuple[Applied, ...]],
+    ) -> None:
+        self.signals = signals
+        self.contexts = contexts
+        self.all = of_name
+        self.held = held
+        self.attached = attached
+        self.problems = problems
+        self.nodes = nodes
+        self.mission = mission
+        self.by_tree = by_tree
+
+    @cached_property
+    def applied(self) -> tuple[Applied, ...]:
+        """What holds for what, with arguments."""
+        return tuple([each for held in self.held for each in held.applied])
+
+    @cached_property
+    def traces(self) -> tuple[Trace, ...]:
+        """`satisfies` at a node of a requirement whose claims name their subjects themselves."""
+        return tuple([each for held in self.held for each in held.traces])
 
     def in_tree(self, tree: TreeNodes) -> tuple[Applied, ...]:
         """What holds for nodes of a tree, in the order of the requirements."""
@@ -117,87 +135,69 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
     problems: list[Problem] = []
     for file, symbol in _counting(files, Kind.SIGNAL):
         table = memory.table(f"signal {symbol.name}", reader)
-        known = table.take(symbol) or _make(table, symbol, None, _read_signal, reader, file, symbol)
-        reader.signals[symbol.name] = known[0]
-        problems += known[1]
+        reader.signals[symbol.name], told = _one(table, reader, symbol, None, _read_signal, file, symbol)
+        problems += told
     for file, symbol, mistake in _ordered_contexts(reader, files):
         table = memory.table(f"context {symbol.name}", reader)
-        known = table.take(symbol, mistake) or _make(
-            table, symbol, mistake, _read_context, reader, file, symbol, mistake
-        )
-        reader.contexts[symbol.name] = known[0]
-        problems += known[1]
+        reader.contexts[symbol.name], told = _one(table, reader, symbol, mistake, _read_context, file, symbol, mistake)
+        problems += told
     qualities = {key: quality for tree in nodes.trees if tree.qualities for key, quality in tree.qualities.items()}
-    table = memory.table("requirements", reader)
     defined = _counting(files, Kind.REQUIREMENT)
-    enclosing = [qualities.get(id(symbol.target)) for _, symbol in defined]
-    about: list[_About] = [
-        (symbol, quality, (file, symbol, quality)) for (file, symbol), quality in zip(defined, enclosing, strict=True)
-    ]
-    read = _all(table, reader, _read_requirement, about)
-    reader.requirements.update(
-        {symbol.name: requirement for (_, symbol), (requirement, _) in zip(defined, read, strict=True)}
-    )
-    problems += [problem for _, told in read for problem in told]
-    about = [
-        (entry.item, nodes.within(entry.item) if type(entry.item) is Tree else None, (file.path, entry))
+    symbols = [symbol for _, symbol in defined]
+    enclosing = [qualities.get(id(symbol.target)) for symbol in symbols]
+    table = memory.table("requirements", reader)
+    read = _all(table, reader, symbols, enclosing, lambda at: _read_requirement(reader, *defined[at], enclosing[at]))
+    reader.requirements.update(zip([symbol.name for symbol in symbols], [each for each, _ in read], strict=True))
+    attaching = [
+        (file.path, entry)
         for file in files
         for entry in file.parsed.entries
         if type(entry.item) is Tree or type(entry.item) is Apply
     ]
-    attached = _all(memory.table("uses", reader), reader, uses_in, about)
-    found: list[Uses] = [uses for uses, _ in attached]
-    problems += [problem for _, told in attached for problem in told]
-    of_each = _by_requirement(found, memory)
+    items = [entry.item for _, entry in attaching]
+    within = [nodes.within(item) if type(item) is Tree else None for item in items]
+    attached = _all(memory.table("uses", reader), reader, items, within, lambda at: uses_in(reader, *attaching[at]))
+    uses, mentioned = _by_requirement([each for each, _ in attached], memory)
+    wanted = [*reader.requirements.values()]
+    of_each = [uses.get(name, ()) for name in reader.requirements]
     table = memory.table("held", reader)
-    pairs = [(each, of_each.get(name, ())) for name, each in reader.requirements.items()]
-    holding = _all(table, reader, _held_by, [(each, uses, (table, each, uses)) for each, uses in pairs])
-    problems += [problem for _, told in holding for problem in told]
-    applied: list[Applied] = []
-    by_tree: dict[int, list[Applied]] = {}
-    traces: list[Trace] = []
-    for held, _ in holding:
-        applied += held.applied
-        traces += held.traces
-        for tree, each in held.by_tree:
-            by_tree.setdefault(tree, []).append(each)
+    holding = _all(
+        table, reader, wanted, of_each, lambda at: held_by(reader, wanted[at], of_each[at], table.before(wanted[at]))
+    )
+    problems += [problem for rows in (read, attached, holding) for _, told in rows if told for problem in told]
+    held = [each for each, _ in holding]
+    by_tree = _by_tree(held, table.others, memory)
     return Requirements(
         reader.signals,
         reader.contexts,
         reader.requirements,
-        tuple(applied),
-        tuple(traces),
-        frozenset().union(*(each.mentioned for each in found)),
+        held,
+        mentioned,
         tuple(problems),
         nodes,
         reader.mission,
-        _as_before(by_tree, memory),
+        by_tree,
     )
 
 
-def _make(
-    table: Table, owner: object, made_of: object, make: Callable[..., object], reader: Reader, *about: object
-) -> tuple[Any, tuple[Problem, ...]]:
-    """What is made for an owner, with the problems that are found meanwhile; it is kept."""
-    reader.problems = {}
-    made = make(reader, *about)
-    return table.put(owner, made_of, (made, tuple(reader.problems.values())))
-
-
 def _all(
-    table: Table, reader: Reader, make: Callable[..., object], wanted: list[_About]
+    table: Table, reader: Reader, owners: Sequence[object], made_of: Sequence[object], make: Callable[[int], object]
 ) -> list[tuple[Any, tuple[Problem, ...]]]:
-    """What a table has, made where it is another one than before.
+    """As the table's `all`, each with the problems that are found meanwhile."""
 
-    Args:
-        wanted: each owner, what else it is made of, and with what `make` is called behind the reader.
-    """
-    found = table.take_all([owner for owner, _, _ in wanted], [made_of for _, made_of, _ in wanted])
-    for index, known in enumerate(found):
-        if known is None:
-            owner, made_of, about = wanted[index]
-            found[index] = table.take(owner, made_of) or _make(table, owner, made_of, make, reader, *about)
-    return found
+    def made(at: int) -> tuple[object, tuple[Problem, ...]]:
+        reader.problems = {}
+        found = make(at)
+        return found, tuple(reader.problems.values())
+
+    return table.all(owners, made_of, made)
+
+
+def _one(
+    table: Table, reader: Reader, owner: object, made_of: object, make: Callable[..., object], *about: object
+) -> tuple[Any, tuple[Problem, ...]]:
+    """The same of a table for one owner; `make` is told more than the reader."""
+    return _all(table, reader, (owner,), (made_of,), lambda _: make(reader, *about))[0]
 
 
 def _read_signal(reader: Reader, file: File, symbol: Symbol) -> Signal:
@@ -230,55 +230,68 @@ def _read_requirement(reader: Reader, file: File, symbol: Symbol, quality: str |
     return with_constraints(reader, requirement, written.text)
 
 
-def _held_by(reader: Reader, table: Table, requirement: Requirement, uses: tuple[Use, ...]) -> Held:
-    return held_by(reader, requirement, uses, table.before(requirement))
-
-
-def _by_requirement(found: list[Uses], memory: Memory) -> dict[str, tuple[Use, ...]]:
-    """What entries attach, by the requirement: the same objects as before where they are of the same."""
-    entries, known = memory.uses
-    if len(found) == len(entries):
-        pairs = [(one, other) for one, other in zip(found, entries, strict=True) if one is not other]
-        others = {name for pair in pairs for each in pair for name in each.mentioned}
-        uses = {name: each for name, each in known.items() if name not in others} if others else known
-    else:
-        others, uses = None, {}
-    if others is None or others:
+def _by_requirement(found: list[Uses], memory: Memory) -> tuple[dict[str, tuple[Use, ...]], frozenset[str]]:
+    """What entries attach, by the requirement, and which are mentioned: the same objects as before where they are of
+    the same."""
+    entries, uses, mentioned = memory.uses
+    is_as_long = len(found) == len(entries)
+    pairs = [pair for pair in zip(found, entries, strict=False) if pair[0] is not pair[1]] if is_as_long else []
+    others = {name for pair in pairs for each in pair for name in each.mentioned}
+    if others or not is_as_long:
         lists: dict[str, list[Use]] = {}
         for each in found:
-            if each.found and (others is None or not others.isdisjoint(each.mentioned)):
+            if each.found and not (is_as_long and others.isdisjoint(each.mentioned)):
                 for use in each.found:
-                    if others is None or use.requirement in others:
+                    if not is_as_long or use.requirement in others:
                         lists.setdefault(use.requirement, []).append(use)
-        uses.update({name: tuple(each) for name, each in lists.items()})
-    memory.uses = found, uses
-    return uses
+        kept = {name: each for name, each in uses.items() if name not in others} if is_as_long else {}
+        uses = kept | {name: tuple(each) for name, each in lists.items()}
+    if not is_as_long or any(one.mentioned != other.mentioned for one, other in pairs):
+        mentioned = frozenset().union(*[each.mentioned for each in found])
+    memory.uses = found, uses, mentioned
+    return uses, mentioned
 
 
-def _as_before(by_tree: dict[int, list[Applied]], memory: Memory) -> dict[int, tuple[Applied, ...]]:
-    """What holds for nodes of each tree: the same objects as before where it is the same."""
-    known = memory.by_tree
-    memory.by_tree = {
+def _by_tree(held: list[Held], others: list[int] | None, memory: Memory) -> dict[int, tuple[Applied, ...]]:
+    """What holds for nodes of each tree: the same objects as before where it is the same.
+
+    Args:
+        others: the requirements that hold for something else than before; None: nobody knows.
+    """
+    before, known = memory.held, memory.by_tree
+    touched: set[int] = set()
+    for at in others or ():
+        then, now = [{(tree, id(each)) for tree, each in one.by_tree} for one in (before[at], held[at])]
+        touched.update([tree for tree, _ in then ^ now])
+    lists: dict[int, list[Applied]] = {}
+    for each in held if others is None or touched else ():
+        for tree, applied in each.by_tree:
+            if others is None or tree in touched:
+                lists.setdefault(tree, []).append(applied)
+    found = {
         tree: old
         if (old := known.get(tree)) is not None and len(old) == len(each) and all(map(is_, old, each))
         else tuple(each)
-        for tree, each in by_tree.items()
+        for tree, each in lists.items()
     }
-    return memory.by_tree
+    if others is not None:
+        found = {tree: each for tree, each in known.items() if tree not in touched} | found if touched else known
+    memory.held, memory.by_tree = held, found
+    return found
 
 
-def _counting(files: Iterable[File], kind: Kind) -> list[tuple[File, Symbol]]:
+def _counting(files: Sequence[File], kind: Kind) -> list[tuple[File, Symbol]]:
     """The definitions that count, of names of a kind: the first one of each."""
+    if len(files) == 1:
+        return [(files[0], symbol) for symbol in files[0].names.symbols[kind]]
     found: dict[str, tuple[File, Symbol]] = {}
     for file in files:
-        known = file.names.found
-        for name in file.names.by_kind[kind]:
-            if name not in found:
-                found[name] = file, known[kind, name][0][1]
+        for symbol in file.names.symbols[kind]:
+            found.setdefault(symbol.name, (file, symbol))
     return [*found.values()]
 
 
-def _ordered_contexts(reader: Reader, files: Iterable[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:
+def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:
     """Those that a context speaks of come before it; one that speaks of itself means nothing, and comes with what is
     told of it."""
     written = {symbol.name: (file, symbol) for file, symbol in _counting(files, Kind.CONTEXT)}

@@ -6,8 +6,8 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
-from itertools import repeat
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from operator import is_
 
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
@@ -15,9 +15,9 @@ from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, Final, Protocol, TypeAlias, TypeVar
+    from typing import Any, Protocol, TypeAlias, TypeVar
 
-    from btq_lang.requirements.attach import Uses
+    from btq_lang.requirements.attach import Held, Uses
     from btq_lang.requirements.budgets import _TreeBudgets
     from btq_lang.requirements.nodes import Nodes
 
@@ -42,7 +42,8 @@ class Memory:
 
     Attributes:
         nodes: the written nodes.
-        uses: what each entry attaches, in their order; and all of it by the requirement.
+        uses: what each entry attaches, in their order; all of it by the requirement; and which are mentioned.
+        held: what each requirement holds for, in their order.
         by_tree: what holds for nodes, by the tree that they stand in.
         budgets: those of the nodes of each tree.
         ways_up: how trees run each other, and what was found out of that alone, by the names of trees.
@@ -50,7 +51,8 @@ class Memory:
 
     def __init__(self) -> None:
         self.nodes: Nodes | None = None
-        self.uses: tuple[list[Uses], dict[str, tuple[Use, ...]]] = ([], {})
+        self.uses: tuple[list[Uses], dict[str, tuple[Use, ...]], frozenset[str]] = ([], {}, frozenset())
+        self.held: list[Held] = []
         self.by_tree: dict[int, tuple[Applied, ...]] = {}
         self.budgets: dict[int, _TreeBudgets] = {}
         self.ways_up: tuple[object, dict[str | None, Any]] = (None, {})
@@ -72,88 +74,107 @@ class Memory:
 
 
 class Table:
-    """What was made in one go.
+    """What was made for owners, in their order.
 
     Attributes:
-        made: by the `id` of its owner: the owner, what it was made of, what was asked meanwhile, and itself.
         answers: what was asked for any of it, and perhaps for more.
+        others: where something else stands than before; None: there were more owners or fewer.
     """
 
-    __slots__ = ("_asker", "_changed", "_made_before", "_most", "answers", "made")
+    __slots__ = (
+        "_asked",
+        "_asker",
+        "_before",
+        "_changed",
+        "_made",
+        "_made_of",
+        "_most",
+        "_owners",
+        "_places",
+        "answers",
+        "others",
+    )
 
     def __init__(self, before: Table | None, asker: Asker) -> None:
-        self.made: dict[int, tuple[object, object, tuple[Question, ...], Any]] = {}
         self.answers: dict[Question, object] = {}
+        self.others: list[int] | None = None
+        self._owners: Sequence[object] = ()
+        self._made_of: Sequence[object] = ()
+        self._asked: list[tuple[Question, ...]] = []  # for each of them
+        self._made: list[Any] = []
+        self._places: dict[int, int] | None = None  # of the owners, by their `id`s, once somebody asks
         self._asker = asker
-        self._made_before = before.made if before is not None else {}
+        self._before: Table | None = before
         self._changed: set[Question] = set()
         self._most: int = before._most if before is not None else 0
         if before is not None and before.answers:
-            self.answers = before._asked() if len(before.answers) > self._most else before.answers.copy()
+            self.answers = before._in_use() if len(before.answers) > self._most else before.answers.copy()
             self._most = max(self._most, 2 * len(self.answers))
             for question, answer in before.answers.items():
                 if question in self.answers and not is_same(asker.answer(question), answer):
                     self._changed.add(question)
                     del self.answers[question]
 
-    def take(self, owner: object, made_of: object = None) -> Any:
-        """What stands here for an owner, if it would be made of the same and every answer is as it was; else None, and
-        what is asked from now on is noted for it.
+    def all(self, owners: Sequence[object], made_of: Sequence[object], make: Callable[[int], T]) -> list[T]:
+        """What stands here for each owner: what stood here before, if it would be made of the same and every answer is
+        as it was; else it is made.  After most edits the owners are the same ones in the same order, and of thousands
+        one is another.
 
         Args:
             made_of: what else it is made of.
+            make: is told which owner it is, counted from 0.
         """
-        known = self._made_before.get(id(owner))
-        if (
-            known is not None
-            and known[0] is owner
-            and (known[1] is made_of or is_same(made_of, known[1]))
-            and (not self._changed or self._changed.isdisjoint(known[2]))
-        ):
-            self.made[id(owner)] = known
-            return known[3]
-        self._asker.noted = {}
-        return None
-
-    def take_all(self, owners: Sequence[object], made_of: Sequence[object]) -> list[Any]:
-        """As `take`, of all owners that the table will have, each with what else it is made of.  None stands for what
-        is to be made; before that, `take` must be asked for it.
-
-        After most edits the owners are the same ones in the same order, and of thousands one is another.
-        """
-        known, changed = self._made_before, self._changed
-        rows = known.values() if len(known) == len(owners) else repeat(None)
-        found: list[Any] = []
-        for owner, part, row in zip(owners, made_of, rows, strict=False):
-            if row is None or row[0] is not owner:
-                row = known.get(id(owner))
+        before, count = self._before, len(owners)
+        self._owners, self._made_of = owners, made_of
+        places: Iterable[int] = range(count)
+        is_as_long = before is not None and len(before._owners) == count
+        if before is not None and is_as_long:
+            self._asked, self._made = before._asked.copy(), before._made.copy()
+            places = self._not_as_before(before)
+        else:
+            self._asked, self._made = [()] * count, [None] * count
+        for at in places:
+            was = before._place(owners[at]) if before is not None else None
             if (
-                row is not None
-                and row[0] is owner
-                and (row[1] is part or is_same(part, row[1]))
-                and (not changed or changed.isdisjoint(row[2]))
+                before is not None
+                and was is not None
+                and is_same(made_of[at], before._made_of[was])
+                and self._changed.isdisjoint(before._asked[was])
             ):
-                found.append(row[3])
-            else:
-                row = _TO_BE_MADE  # it keeps the place, for the order
-                found.append(None)
-            self.made[id(owner)] = row
-        return found
-
-    def put(self, owner: object, made_of: object, made: T) -> T:
-        """What is made for an owner stands here from now on."""
-        self.made[id(owner)] = owner, made_of, tuple(self._asker.noted), made
-        self.answers.update(self._asker.noted)
-        return made
+                self._asked[at], self._made[at] = before._asked[was], before._made[was]
+                continue
+            self._asker.noted = {}
+            self._made[at] = make(at)
+            self._asked[at] = tuple(self._asker.noted)
+            self.answers.update(self._asker.noted)
+        if before is not None and is_as_long:
+            self.others = [at for at in places if self._made[at] is not before._made[at]]
+        self._before = None
+        return self._made
 
     def before(self, owner: object) -> Any:
         """What was made for an owner before, of whatever; None if nothing was."""
-        known = self._made_before.get(id(owner))
-        return known[3] if known is not None and known[0] is owner else None
+        at = self._before._place(owner) if self._before is not None else None
+        return self._before._made[at] if self._before is not None and at is not None else None
 
-    def _asked(self) -> dict[Question, object]:
+    def _not_as_before(self, before: Table) -> list[int]:
+        """Where another owner stands than before, or one that is made of something else."""
+        found: set[int] = set()
+        for now, then in ((self._owners, before._owners), (self._made_of, before._made_of)):
+            found.update([at for at, same in enumerate(map(is_, now, then)) if not same])
+        if changed := self._changed:
+            found.update([at for at, asked in enumerate(before._asked) if asked and not changed.isdisjoint(asked)])
+        return sorted(found)
+
+    def _place(self, owner: object) -> int | None:
+        if self._places is None:
+            self._places = {id(each): at for at, each in enumerate(self._owners)}
+        at = self._places.get(id(owner))
+        return at if at is not None and self._owners[at] is owner else None
+
+    def _in_use(self) -> dict[Question, object]:
         """The answers that anything here rests on."""
-        return {question: self.answers[question] for each in self.made.values() for question in each[2]}
+        return {question: self.answers[question] for asked in self._asked for question in asked}
 
 
 def is_same(now: Any, before: Any) -> bool:
@@ -171,6 +192,5 @@ def is_same(now: Any, before: Any) -> bool:
     return kind in _PLAIN and bool(now == before)
 
 
-_TO_BE_MADE: Final = (None, None, (), None)
 _LIGHT = (Use, Applied, Target, Argument, Place)  # made anew where what they say is as before
 _PLAIN = (str, int, frozenset, Span, Value)
