@@ -152,7 +152,7 @@ class Converter:
         return f'{{"location": {{"uri": {uri}, "range": {range_}}}, "message": {message}}}'
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
-        (line, column), (end_line, end_column) = [lines.position(offset, self.encoding) for offset in span]
+        (line, column), (end_line, end_column) = lines.ends(span, self.encoding)
         return (
             f'{{"start": {{"line": {line}, "character": {column}}}, '
             f'"end": {{"line": {end_line}, "character": {end_column}}}}}'

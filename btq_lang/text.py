@@ -155,6 +155,16 @@ class LineIndex:
             return Position(line, offset - start)
         return Position(line, _width(self._text[start:offset], encoding))
 
+    def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[Position, Position]:
+        """The positions of both ends of a span; nearly all begin and end in one line."""
+        start, end = span
+        if self._text.isascii() and 0 <= start <= end <= len(self._text):
+            line = bisect_right(self._starts, start)
+            if line == len(self._starts) or end < self._starts[line]:
+                begin = self._starts[line - 1]
+                return Position(line - 1, start - begin), Position(line - 1, end - begin)
+        return self.position(start, encoding), self.position(end, encoding)
+
     def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
         """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""
         if position.line < 0:

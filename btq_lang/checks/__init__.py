@@ -229,12 +229,12 @@ class Found(Record):
 
     Attributes:
         restless: the checks that must be asked again after every edit, for they look at the whole workspace.
-        has_places_elsewhere: some places count from other items, and so move with these.
+        elsewhere: the places that count from other items, and so move with these.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     restless: tuple[Check, ...]
-    has_places_elsewhere: bool
+    elsewhere: tuple[Place, ...]
 
 
 def check(
@@ -300,10 +300,10 @@ def _known(view: View, workspace: Workspace, answers: Answers) -> list[Diagnosti
         if not (known.diagnostics or known.restless or entry.diagnostics):
             continue
         same = before.get(facts)
-        moves = known.restless or known.has_places_elsewhere
-        if same is None or same[0] is not known or same[1] != entry.start or moves:
+        starts = [entry.start, *[_start(place, workspace) for place in known.elsewhere]]
+        if same is None or same[0] is not known or same[1] != starts or known.restless:
             restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
-            same = known, entry.start, _told(view, entry, (*known.diagnostics, *restless), workspace)
+            same = known, starts, _told(view, entry, (*known.diagnostics, *restless), workspace)
         answers.told[facts] = same
         told += same[2]
     return told
@@ -322,7 +322,8 @@ def _kept(view: View, facts: Facts) -> Found:
             found += diagnostics
     places = (each.place for diagnostic in found for each in diagnostic.related)
     changed = (change.place for diagnostic in found for fix in diagnostic.fixes for change in fix.changes)
-    return Found(tuple(found), tuple(restless), any(place.anchor is not None for place in chain(places, changed)))
+    elsewhere = {id(place.anchor): place for place in chain(places, changed) if place.anchor is not None}
+    return Found(tuple(found), tuple(restless), tuple(elsewhere.values()))
 
 
 def checks_of(entry: Entry) -> tuple[Check, ...]:
@@ -376,4 +377,9 @@ def _absolute(place: Place, by: int, workspace: Workspace) -> Place:
         return place if place.path is not None else Place(place.span.shifted(by))
     if place.path is None:
         return place
-    return Place(place.span.shifted(workspace.files[place.path].start_of(place.anchor)), place.path)
+    return Place(place.span.shifted(_start(place, workspace)), place.path)
+
+
+def _start(place: Place, workspace: Workspace) -> int:
+    """Where the item begins that a place counts from."""
+    return workspace.files[place.path].start_of(place.anchor) if place.path is not None else 0

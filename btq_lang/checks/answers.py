@@ -60,12 +60,13 @@ class Answers:
     """The answers about one file, and who asked for them.
 
     Attributes:
-        told: of the items of which something was told: what was found, where the item began, and what that came to.
+        told: of the items of which something was told: what was found, where the item and those began that its places
+            count from, and what that came to.
         resolved: the requirements in scope, as they were resolved last; they are kept by a mechanism of their own.
     """
 
     def __init__(self) -> None:
-        self.told: dict[Facts, tuple[Found, int, list[Diagnostic]]] = {}
+        self.told: dict[Facts, tuple[Found, list[int], list[Diagnostic]]] = {}
         self.resolved: Memory | None = None
         self._workspace: Workspace | None = None
         self._path = ""
@@ -167,13 +168,10 @@ class Answers:
     def conclude_each(self, view: View, what: object, about: Iterable[object]) -> list[Any]:
         """The answers of one conclusion about many things."""
         answers, stale = self._answers, self._stale
-        found = []
-        for each in about:
-            question = what, each
-            self._asked.add(question)
-            known = answers.get(question)
-            found.append(self._draw(view, question) if known is None or question in stale else known.value)
-        return found
+        questions = [(what, each) for each in about]
+        self._asked.update(questions)
+        drawn = {each: self._draw(view, each) for each in questions if each not in answers or each in stale}
+        return [drawn[each] if each in drawn else answers[each].value for each in questions]
 
     def conclude_early(self, view: View, question: Question) -> Any:
         """The same, for whoever will ask."""
@@ -218,8 +216,10 @@ class Answers:
                 self._leave(self._forget(question), question)
             return value
         height = 1 + max([self._answers[each].height for each in asked if each in self._answers], default=0)
+        if known is not None and _is_same(value, known.value):
+            value = known.value  # with what was found out of it meanwhile
         self._answers[question] = _Answer(value, asked, height)
-        if known is not None and not _is_same(value, known.value):
+        if known is not None and value is not known.value:
             self._pass_on(question)
             if is_table:
                 self._pass_on_parts(question[0], known.value, value)
