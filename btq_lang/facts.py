@@ -19,7 +19,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from btq_lang.mentions import Mention, What
+    from btq_lang.mentions import Mention
 
 Name: TypeAlias = tuple[Kind, str]
 
@@ -51,28 +51,12 @@ class Facts:
         return mentions(self.item)
 
     @cached_property
-    def named(self) -> Mapping[What, tuple[Mention, ...]]:
-        """What it names, by what that is: of mentions that say the same the first one."""
-        found: dict[What, dict[tuple[str, bool, bool], Mention]] = {}
-        for one in self.mentions:
-            found.setdefault(one.what, {}).setdefault((one.name, one.word.quoted, one.defines), one)
-        return {what: tuple(names.values()) for what, names in found.items()}
-
-    @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
         """What its nodes are, and whether that is quoted."""
-        from btq_lang.mentions import What  # as above
+        from btq_lang.mentions import kinds  # as above
 
-        found = self.named.get(What.NODE, ())
-        return frozenset([(one.name, one.word.quoted) for one in found if not one.defines])
-
-    @cached_property
-    def mentioned(self) -> Mapping[str, list[Mention]]:
-        """Its mentions by what they say."""
-        found: dict[str, list[Mention]] = {}
-        for one in self.mentions:
-            found.setdefault(one.name, []).append(one)
-        return found
+        nodes = self.item.walk() if isinstance(self.item, Tree) else ()
+        return frozenset([(word.text, word.quoted) for node in nodes for word in kinds(node)])
 
     @cached_property
     def used(self) -> Mapping[Kind, frozenset[str]]:

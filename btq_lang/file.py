@@ -7,9 +7,9 @@ they bring.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from itertools import chain
 
 from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.facts import Facts, Names, Tally
@@ -22,7 +22,7 @@ from btq_lang.text import LineIndex, Span, changed
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.facts import Name
-    from btq_lang.mentions import Mention, What
+    from btq_lang.mentions import Mention
     from btq_lang.places import Places
     from btq_lang.project import Project
 
@@ -191,22 +191,25 @@ class File:
 
     def mentioned(self, name: str) -> list[tuple[Entry, Mention]]:
         """The words that say a name and name something, in the order of the text."""
-        facts = self.facts
-        return [(entry, one) for entry in self.parsed.entries for one in facts[id(entry.item)].mentioned.get(name, ())]
+        return [(entry, one) for entry in self._saying(name) for one in self.mentions_of(entry) if one.name == name]
 
-    @property
-    def mentioned_names(self) -> Iterable[str]:
-        """All that words say which name something."""
-        return dict.fromkeys(chain.from_iterable(each.mentioned for each in self.facts.values()))
+    def _saying(self, name: str) -> Sequence[Entry]:
+        """The entries that may say a name: those that hold it as it is, or all, where it may be written otherwise."""
+        entries = self.parsed.entries
+        if not name or not _NOT_AS_IT_IS.isdisjoint(name):
+            return entries
+        found: list[Entry] = []
+        at = self.text.find(name)
+        while at >= 0:
+            index = bisect_right(entries, at, key=_start_of)
+            found += entries[index - 1 : index]
+            at = self.text.find(name, entries[index].start) if index < len(entries) else -1
+        return found
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
         """What its nodes are, and whether that is quoted."""
         return frozenset().union(*[each.kinds for each in self.facts.values()])
-
-    def named(self, entry: Entry) -> Mapping[What, tuple[Mention, ...]]:
-        """What one of the file's entries names: of mentions that say the same the first one."""
-        return self.facts[id(entry.item)].named
 
     @cached_property
     def source_lines(self) -> LineIndex:
@@ -249,6 +252,16 @@ class File:
     def defined_names(self) -> frozenset[Name]:
         return self.names.all
 
+    def names_of(self, kind: Kind) -> tuple[str, ...]:
+        """The names of a kind that the file defines, in any order."""
+        if kind not in self._names_of:
+            self._names_of[kind] = tuple([name for of, name in self.defined_names if of is kind])
+        return self._names_of[kind]
+
+    @cached_property
+    def _names_of(self) -> dict[Kind, tuple[str, ...]]:
+        return {}
+
     @cached_property
     def used_names(self) -> frozenset[Name]:
         return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
@@ -270,9 +283,14 @@ class File:
         return f"File({self.path!r}, {len(self.text)} characters)"
 
 
+def _start_of(entry: Entry) -> int:
+    return entry.start
+
+
 _ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written otherwise than it is
+_NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality blanks may stand
 _NAMES = ("path", "text", "origin", "included_paths", "defined_names", "used_names")  # they hold nothing of the tree
-_RARE_NAMES = ("kinds",)  # likewise, and seldom asked for
+_RARE_NAMES = ("kinds", "_names_of")  # likewise, and seldom asked for
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 
 

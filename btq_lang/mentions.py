@@ -176,19 +176,27 @@ def _ports(ports: Iterable[Port], owner: Model | Tree) -> Iterator[Mention]:
 
 def _node(node: Node, tree: Tree) -> Iterator[Mention]:
     kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
-    if node.kind is not None and node.kind.raw == "SubTreePlus" and (called := node.attribute("ID")) is not None:
-        yield from _word(What.NODE, node.kind, node=node)
-        yield from _word(What.TREE, called, node=node)
-    elif node.id is not None:
-        is_subtree = node.category is not None and node.category.raw == "SubTree"
-        yield from _word(What.TREE if is_subtree else What.NODE, node.id, node=node)
-    if (stood_for := placeholder(node)) is not None:
-        yield from _word(What.NODE, stood_for, node=node)
-    elif node.label is not None:
+    for word in kinds(node):
+        yield from _word(What.NODE, word, node=node)
+    yield from _word(What.TREE, called(node), node=node)
+    if node.label is not None and placeholder(node) is None:
         yield from _word(What.INSTANCE, node.label, defines=True, node=node, owner=tree)
     for pair in node.attributes:
         yield from _pair(pair, node, tree, kind)
     yield from _clauses(node.clauses, node)
+
+
+def kinds(node: Node) -> list[Word]:
+    """The words that say what a node is: its kind, if that is no tree, and the skill that a placeholder stands for."""
+    tree = called(node)
+    return [word for word in (node.id, placeholder(node)) if word is not None and word is not tree]
+
+
+def called(node: Node) -> Word | None:
+    """The tree that a node runs."""
+    if node.kind is not None and node.kind.raw == "SubTreePlus":
+        return node.attribute("ID")
+    return node.id if node.category is not None and node.category.raw == "SubTree" else None
 
 
 def placeholder(node: Node) -> Word | None:

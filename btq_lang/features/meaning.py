@@ -13,10 +13,10 @@ from functools import lru_cache
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.file import Definition
-from btq_lang.mentions import Mention, What
+from btq_lang.mentions import Mention, What, called
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
-from btq_lang.syntax import Entry, Model, Node, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
+from btq_lang.syntax import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, NAME
 from btq_lang.workspace import Workspace
@@ -140,10 +140,17 @@ def everywhere(workspace: Workspace, wanted: Subject, paths: tuple[str, ...] | N
         file = workspace.files[path]
         if words and not any(word in file.text for word in words):
             continue  # and need not be parsed to know it
-        names = words or [name for name in file.mentioned_names if _may_name(wanted, name)]
-        found = [Found(path, *one) for name in names for one in file.mentioned(name)]
-        if len(names) > 1:
-            found.sort(key=lambda one: one.span)
+        if words:
+            found = [Found(path, *one) for word in words for one in file.mentioned(word)]
+            if len(words) > 1:
+                found.sort(key=lambda one: one.span)
+        else:
+            found = [
+                Found(path, entry, one)
+                for entry in file.parsed.entries
+                for one in file.mentions_of(entry)
+                if _may_mean(wanted, one)
+            ]
         yield from (one for one in found if subject(workspace, one) == wanted)
 
 
@@ -165,11 +172,13 @@ def _spellings(wanted: Subject) -> tuple[str, ...]:
     return (wanted.name,)
 
 
-def _may_name(wanted: Subject, name: str) -> bool:
-    """Whether a word of a file may name a subject that has many spellings."""
-    if wanted.what is What.QUALITY and wanted.home != STANDARD:
-        return fold(name.rpartition(".")[2]) == fold(wanted.name)
-    return name == wanted.name or wanted.what in (What.QUALITY, What.INCLUDE)
+def _may_mean(wanted: Subject, mention: Mention) -> bool:
+    """Whether a mention may mean a subject that has many spellings."""
+    if wanted.what not in (What.QUALITY, What.INCLUDE):
+        return mention.name == wanted.name
+    if mention.what is not wanted.what or wanted.what is What.INCLUDE or wanted.home == STANDARD:
+        return mention.what is wanted.what
+    return fold(mention.name.rpartition(".")[2]) == fold(wanted.name)
 
 
 def quality_of(requirement: Definition) -> QualityPath | None:
@@ -283,7 +292,7 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, model.home or found.path)
     node = mention.node
     assert node is not None, "a port that is not declared is used at a node"
-    name = _called(node)
+    name = called(node)
     if name is not None:
         tree = workspace.scope(found.path).find(Kind.TREE, name.text)
         if tree is not None:
@@ -296,13 +305,6 @@ def _port(workspace: Workspace, found: Found) -> Subject:
         return Subject(What.PORT, mention.name, f"{ENGINE} {kind.tag}")
     owner = _defined(workspace, found.path, What.NODE, node.id.text)
     return Subject(What.PORT, mention.name, owner.home or f"node {node.id.text}")
-
-
-def _called(node: Node) -> Word | None:
-    """The tree that a SubTree runs."""
-    if node.category is not None and node.category.raw == "SubTree":
-        return node.id
-    return node.attribute("ID") if node.kind is not None and node.kind.raw == "SubTreePlus" else None
 
 
 def _blackboard(workspace: Workspace, path: str, entry: Entry, root: bool) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import pairwise
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
@@ -12,12 +13,12 @@ from btq_lang.catalog.language import beginning
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import qualities as standard_qualities
-from btq_lang.features.meaning import Found, edition, is_main
+from btq_lang.features.meaning import edition, is_main
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
-from btq_lang.mentions import What
+from btq_lang.mentions import Mention, What
 from btq_lang.record import Record, replace
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
@@ -191,7 +192,7 @@ def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Pr
 
 def tags(workspace: Workspace, path: str) -> Iterator[Proposal]:
     paths = [other for other, file in workspace.files.items() if "tag" in file.text]
-    for name in sorted({found.mention.name for found in _mentioned(workspace, paths, What.TAG)}):
+    for name in sorted({mention.name for mention in _mentioned(workspace, paths, What.TAG)}):
         yield Proposal(name, "tag", "", written(name))
 
 
@@ -201,8 +202,7 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for name in scope.names(Kind.TREE):
         yield Proposal(name, "tree", "tree", written(name), None, "", name)
     seen: set[str] = set()
-    for found in _mentioned(workspace, scope.paths, What.INSTANCE, What.NODE):
-        mention = found.mention
+    for mention in _mentioned(workspace, scope.paths, What.INSTANCE, What.NODE):
         if mention.name in seen or (mention.what is What.NODE and lookup(mention.name, mention.word.quoted)):
             continue
         seen.add(mention.name)
@@ -280,9 +280,7 @@ def nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for name in _unknown(workspace, workspace.scope(path).paths):
         if name not in seen:
             yield Proposal(name, "node", "custom node", written(name), None, "", name)
-    for kind in BUILTINS.values():
-        if available(kind, workspace.project.target) and not kind.tag.startswith("Switch"):
-            yield from _builtin(kind)
+    yield from _builtins(workspace.project.target)
     yield Proposal("Switch", "node", BUILTINS["Switch2"].doc, "Switch", _SWITCH, "", "Switch")
     yield Proposal("SubTree", "keyword", "run another tree", "SubTree")
     for category in ("Action", "Condition", "Decorator", "Control"):
@@ -424,10 +422,11 @@ def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defi
             yield found, ""
     seen = set(scope.names(kind))
     for other in sorted(workspace.files):
-        if other in scope.paths:
+        names = workspace.files[other].names_of(kind)
+        if seen.issuperset(names) or other in scope.paths:
             continue
-        new = {name for of, name in workspace.files[other].defined_names if of is kind} - seen
-        if new and not _clashes(workspace, path, other):
+        new = set(names) - seen
+        if not _clashes(workspace, path, other):
             seen |= new
             found_there = (one for one in workspace.defined_in(other) if one.symbol.kind is kind)
             yield from ((one, other) for one in found_there if one.symbol.name in new)
@@ -456,16 +455,13 @@ def _is_same_model(workspace: Workspace, path: str, other: str, kind: Kind, name
     )
 
 
-def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Found]:
-    """What is mentioned of some kinds, in the order of the text; what an item says twice only once."""
+def _mentioned(workspace: Workspace, paths: Iterable[str], *kinds: What) -> Iterator[Mention]:
+    """What is mentioned of one or two kinds, in the order of the text."""
+    first, last = kinds[0], kinds[-1]
     for path in paths:
         file = workspace.files[path]
         for entry in file.parsed.entries:
-            named = file.named(entry)
-            found = [mention for kind in kinds for mention in named.get(kind, ())]
-            if len(kinds) > 1:
-                found.sort(key=lambda mention: mention.span)
-            yield from [Found(path, entry, mention) for mention in found]
+            yield from [one for one in file.mentions_of(entry) if one.what is first or one.what is last]
 
 
 def _unknown(workspace: Workspace, paths: Iterable[str]) -> list[str]:
@@ -480,6 +476,12 @@ def _model(workspace: Workspace, found: Definition, item: Model, include: str) -
     text = item.text.text if item.text else ""
     detail = f"{item.category.raw}{f': {text}' if text else ''}"
     return Proposal(name, "node", detail, written(name), _with_ports(written(name), needed), "", name, include)
+
+
+@lru_cache(2)  # a project has one version of the engine
+def _builtins(target: str) -> tuple[Proposal, ...]:
+    kinds = [kind for kind in BUILTINS.values() if available(kind, target) and not kind.tag.startswith("Switch")]
+    return tuple([one for kind in kinds for one in _builtin(kind)])
 
 
 def _builtin(kind: NodeKind) -> Iterator[Proposal]:

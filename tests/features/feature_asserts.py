@@ -446,6 +446,10 @@ def answer_everything(text: str, offset: int) -> None:
     signature_help(*at)
     node_path(*at)
     completed = complete(*at)
+    file = workspace.files["main.btq"]
+    for entry in file.parsed.entries:
+        for mention in file.mentions_of(entry):
+            assert (entry, mention) in file.mentioned(mention.name)
     assert completed.span.start <= offset <= completed.span.end <= len(text)
     for one in completed.proposals[:3]:
         documentation(workspace, "main.btq", one.kind, one.name)
