@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
+OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 
 
 class Block:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from btq_lang.attributes import AttributeParser, meant_clause
-from btq_lang.blocks import MAX_DEPTH, Block
+from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.characters import SMALL_S, SMALL_T
 from btq_lang.clauses import VERBS
 from btq_lang.conditions import HEADS
@@ -118,7 +118,7 @@ class NodeParser(AttributeParser):
                     if len(blocks) > MAX_DEPTH:
                         if not told_too_deep:
                             told_too_deep = True
-                            self.complain("nested-too-deep", self.here(), _TOO_DEEP, (_OF_ITS_OWN,))
+                            self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
                         blocks.pop().close()
                         block = blocks[-1]
                     node = self.node(inner)
@@ -430,5 +430,4 @@ XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq f
 _ARROW: Final = r"[-=~]+ ?>"  # compiled when first used: it is the beginning of a mistake
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
-_OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"
 _MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"

@@ -1,12 +1,32 @@
-"""unknown-tree, duplicate-tree, recursive-tree, unused-tree, unreachable-tree, unknown-main-tree, tree-root-count,
-tree-named-like-node: what their pages do not show."""
+"""nested-too-deep, unknown-tree, duplicate-tree, recursive-tree, unused-tree, unreachable-tree, unknown-main-tree,
+tree-root-count, tree-named-like-node: what their pages do not show."""
 
 from __future__ import annotations
 
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
+from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.project import Project
+
 PICK = "BehaviorTree Pick\n    X\n"
+
+
+# ---- nested-too-deep -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("engines", "severity"), [(("4.6",), "error"), (("4.6", "4.10"), "error"), (("4.8",), None), (VERSIONS, "warning")]
+)
+def test_a_tree_that_4_6_does_not_read(engines: tuple[str, ...], severity: str | None) -> None:
+    def nested(levels: int) -> str:
+        lines = [f"{' ' * level}Inverter" for level in range(1, levels)]
+        return "\n".join(["BehaviorTree Main", *lines, f"{' ' * levels}Action Drive", ""])
+
+    project = Project(engines=engines)
+    assert_clean(nested(97), project=project)
+    told = f"99:106 {severity} nested-too-deep «Drive» more than 97 levels of nodes: BehaviorTree.CPP 4.6 reads no more"
+    assert_problems(nested(98), *([told] if severity is not None else []), project=project)
 
 
 # ---- unknown-tree ----------------------------------------------------------------------------------------------------

@@ -89,6 +89,7 @@ CHECKS: dict[type, tuple[Check, ...]] = {
         trees.unused_tree,
         trees.unknown_main_tree,
         trees.tree_root_count,
+        trees.nested_too_deep,
         trees.tree_named_like_node,
         kinds.unknown_node,
         kinds.no_models,
@@ -209,6 +210,7 @@ _STRUCTURE_IS_LOST = frozenset(
 _OF_STRUCTURE: frozenset[Check] = frozenset(
     (
         trees.tree_root_count,
+        trees.nested_too_deep,
         children.child_count,
         children.switch_cases,
         children.parallel_threshold,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.blocks import OF_ITS_OWN
+from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import include_fix
@@ -11,11 +13,13 @@ from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.file import Definition
+from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
 
 _MOST_NAMES = 5  # in one message
+_DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open
 _LAST_WINS = "the engine does not complain: it runs the last one it reads"
 
 
@@ -44,6 +48,27 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
         yield Diagnostic("unknown-tree", use.span, message, fixes=fixes)
+
+
+def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
+    """A node further down than 4.6 reads; what no version reads the parser tells."""
+    nodes, project = view.nodes(entry), view.project
+    if len(nodes) <= _DEEPEST_OF_4_6 or at_least(project.engines[0], "4.7"):
+        return
+    levels: dict[int, int] = {}
+    for seen in nodes:
+        level = levels[id(seen)] = 1 if seen.parent is None else levels[id(seen.parent)] + 1
+        if level <= _DEEPEST_OF_4_6:
+            continue
+        pin = f'if you run a later one, say `engine = "{project.target}"` in btq.toml'
+        yield Diagnostic(
+            "nested-too-deep",
+            seen.node.head.span,
+            f"more than {_DEEPEST_OF_4_6} levels of nodes: BehaviorTree.CPP 4.6 reads no more",
+            notes=(OF_ITS_OWN,) if project.pinned else (OF_ITS_OWN, pin),
+            severity=None if project.pinned else Severity.WARNING,
+        )
+        return
 
 
 def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
