@@ -31,7 +31,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     Returns:
         Where the next line begins, or -1 if none was read; and the node that the last line is, if it is one.
     """
-    read_line, read_between = patterns.read_line, patterns.read_between
+    read_line = patterns.read_line
     text, columns = lexer.text, lexer.columns
     column = lexer.blanks
     top = blocks[0].level
@@ -42,14 +42,11 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     kind: Any  # like all that `blank` makes
     at = lexer.line_start
     behind = -1
-    while True:
-        match = read_line(text, at)
-        if match is None:
-            between = read_between(text, at)
-            if between is None or (match := read_line(text, between.end())) is None:
-                break
-            at = between.end()
-        indent, first, second, third, key, value, key2, value2, key3, value3, bracket, end = match.groups()
+    while match := read_line(text, at):
+        indent, first, second, third, key, value, key2, value2, key3, value3, end = match.groups()
+        if first is None:
+            at = match.end()
+            continue
         if indent != column:
             if indent.startswith(column):
                 if node is None:
@@ -104,30 +101,27 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                     label = Word(value_kind(third[0], NAME), at + len(second) + 1, third)
         pairs: tuple[Pair, ...] = ()
         if key is not None:
-            at_of = match.start
-            pair = pair_of(key, at_of(5) - base, value, at_of(6) - base)
+            pair = pair_of(key, match.start(5) - base, value, match.start(6) - base)
             if key2 is None:
                 pairs = (pair,)
             else:
-                pairs = (pair, pair_of(key2, at_of(7) - base, value2, at_of(8) - base))
+                pairs = (pair, pair_of(key2, match.start(7) - base, value2, match.start(8) - base))
                 if key3 is not None:
-                    pairs += (pair_of(key3, at_of(9) - base, value3, at_of(10) - base),)
+                    pairs += (pair_of(key3, match.start(9) - base, value3, match.start(10) - base),)
         at = match.end()
         clauses: tuple[NodeClause, ...] = ()
-        if end and bracket != "":
-            node_end = match.start(12) - base
+        if end is not None:
+            node_end = at - base - len(end)
         else:
             try:
+                node_end = at
                 found = []
-                node_end = match.end(11)
-                if bracket is None:
-                    node_end = at
-                    if text[at] not in " ":
-                        break
-                elif not bracket:
+                if pairs or text.startswith(("(", " ("), at):
                     further = [*pairs]
-                    at = node_end = attributes(text, node_end, indent, base, further, found)
+                    at = node_end = _further_attributes(text, at, indent, base, further, found)
                     pairs = tuple(further)
+                elif text[at] != " ":
+                    break
                 if text[at] == "\n":
                     at += 1
                     node_end -= base
@@ -151,3 +145,16 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
         behind = at
         children.append(made)
     return behind, node
+
+
+def _further_attributes(
+    text: str, at: int, blanks: str, base: int, pairs: list[Pair], clauses: list[NodeClause]
+) -> int:
+    """What is left of the attributes in brackets, from behind the last pair or before the opening bracket"""
+    if not pairs:
+        at = text.index("(", at) + 1
+    elif text[at] == ",":
+        at += 1
+    elif text[at] not in " \r\n)":
+        raise Unusual
+    return attributes(text, at, blanks, base, pairs, clauses)

@@ -75,33 +75,32 @@ def read_list(text: str, start: int, base: int) -> NodeClause | None:
 
 def _last_clause(text: str, start: int, blanks: str, base: int) -> tuple[NodeClause | None, int]:
     """The clause with which the brackets end, and where they do"""
-    match = _bracketed_list().match(text, start)
-    if match is not None:
-        return _listed(match, base), match.end()
-    match = _definition().match(text, start)
+    match = _bracketed_clause().match(text, start)
     if match is None:
         return None, start
-    quality, bracket_line, name, line, description = match.group(2, 3, 5, 6, 7)
+    if match[1] is not None:
+        return _listed(match, base), match.end()
+    quality, bracket_line, name, line, description = match.group(5, 6, 8, 9, 10)
     if bracket_line is not None and not bracket_line.startswith(blanks):
         return None, start
     inner = blanks if quality is None else bracket_line
     if line is not None and (inner is None or not line.startswith(inner)):
         return None, start
     requirement = Requirement(
-        match.start(4) - base,
-        (match.end(5) if description is None else match.end(7)) - base,
-        Word(value_kind(name[0], NAME), match.start(5) - base, name),
+        match.start(7) - base,
+        (match.end(8) if description is None else match.end(10)) - base,
+        Word(value_kind(name[0], NAME), match.start(8) - base, name),
         True,
         (),
         None,
-        None if description is None else Word(value_kind(description[0], NAME), match.start(7) - base, description),
+        None if description is None else Word(value_kind(description[0], NAME), match.start(10) - base, description),
         (),
     )
-    end = match.end(1) - base
+    start, end = match.span(4)
     if quality is None:
-        return Satisfies(start - base, end, (requirement,)), match.end()
-    qualities = (Quality(_path(match.start(2) - base, quality), (requirement,)),)
-    return Satisfices(start - base, end, qualities), match.end()
+        return Satisfies(start - base, end - base, (requirement,)), match.end()
+    qualities = (Quality(_path(match.start(5) - base, quality), (requirement,)),)
+    return Satisfices(start - base, end - base, qualities), match.end()
 
 
 def _listed(match: re.Match[str], base: int) -> NodeClause:
@@ -156,11 +155,12 @@ def _path(start: int, raw: str) -> QualityPath:
 
 _NAME: Final = r"[A-Za-z_][A-Za-z0-9_]*"  # `\w` means more letters and takes the engine five times as long
 _STRING: Final = r"\"[^\"\\\r\n]*\"|'[^'\\\r\n]*'"
-_LABEL: Final = rf" (?!satisfi|tags)({_NAME}|{_STRING})"
+_LABEL: Final = rf" (?=[A-Za-z_\"'])(?!satisfi|tags)({_NAME}|{_STRING})"  # nearly always a bracket stands there
 # A number may have a unit; before a comma, a bracket, the line's end or the next key it has none.
 _VALUE: Final = rf"{_STRING}|{_NAME}|\{{[^{{}}\"'\r\n]*\}}|-?[0-9]+(?:\.[0-9]+|)(?=[,)\r\n]| \w+ ?=)"
-_PAIR: Final = rf"({_NAME}) ?= ?({_VALUE})"
-_NEXT: Final = rf",?(?: |\r?\n\1[ \t]*){_PAIR}"
+_PAIR: Final = rf"({_NAME})(?: = |= ?| =)({_VALUE})"
+_DEEPER: Final = r"[\r\n]+(?! *satisfi)\1[ \t]*"  # a line in the brackets of a node, seldom a clause
+_NEXT: Final = rf"(?: |, |,?{_DEEPER}){_PAIR}"
 _REMARK: Final = r"(?:\#|//)[^\r\n]*"
 _COMMENT: Final = rf"{_REMARK}|/\*[^*]*(?:\*+[^*/][^*]*)*\*+/[ \t]*"
 _LISTED: Final = rf"(?!satisfi|tags|parameters|Quality){_NAME}(?:-\w+)*"
@@ -189,24 +189,19 @@ def expect(size: int) -> None:
 
 
 def _compile() -> None:
-    global read_head, read_line, read_between, _ATTRIBUTE, _TOKEN
+    global read_head, read_line, _ATTRIBUTE, _TOKEN
     # The line that begins a tree: its name.
     read_head = re.compile(rf"BehaviorTree (?:ID ?= ?(?!=)|)({_NAME}|{_STRING})\r?\n").match
-    # A line of a tree; each group but the first may be missing:
+    # A line of a tree, or a blank one or a comment, of which there is only the first group; any other may be missing:
     #     1 blanks  2 to 4 up to three words  5 to 10 three pairs, the further ones within those before them
-    #     11 the closing bracket, empty where the brackets go on
-    #     12 the end of the line with the comment before it, empty where the line goes on
+    #     11 the end of the line, with the bracket that closes the pairs and the comment; empty where the line goes on
     read_line = re.compile(
-        rf"([ \t]*)(->|\?|\|\||[RAM]->|[RA]\?|All\|\||{_NAME})(?:{_LABEL}(?:{_LABEL}|)|)"
-        rf"(?: ?\((?:(?:\r?\n\1[ \t]*|){_PAIR}(?:{_NEXT}(?:{_NEXT}|)|),?|)(\)|(?=[ \r\n])|(?<=\())|)"
-        rf"(\n|\r\n| +{_REMARK}\r?\n|)"
+        rf"( *|\t*)(?:(->|\?|\|\||M->|[RA](?:->|\?)|All\|\||{_NAME})(?:{_LABEL}(?:{_LABEL}|)|)"
+        rf"(?: ?\((?:{_DEEPER}|){_PAIR}(?:{_NEXT}(?:{_NEXT}|)|)|)"
+        rf"(?:(?(5)\)|)(\n|\r\n| +{_REMARK}\r?\n)|)|(?:{_COMMENT}|)\r?\n)"
     ).match
-    # Blank lines and comments between two lines.
-    read_between = re.compile(rf"(?:[ \t]*(?:{_COMMENT}|)\r?\n)+").match
     # 1 the blanks of the line it begins, if it does  2, 3 a pair  4 a closing bracket; none of them: a clause follows
-    _ATTRIBUTE = re.compile(
-        rf"(?: |\r?\n([ \t]*)|)(?:({_NAME}) ?= ?({_VALUE})(?:,|(?=[ )\r\n]))|(\))|(?=satisfi))"
-    ).match
+    _ATTRIBUTE = re.compile(rf"(?: |\r?\n([ \t]*)|)(?:{_PAIR}(?:,|(?=[ )\r\n]))|(\))|(?=satisfi))").match
     # A name has a follower, for in `Ready?`, `M->` and `a#` it is more or less than a name.
     _TOKEN = re.compile(
         rf"[ \t]*(?:({_NAME}(?:-\w+)*)(?=[ \t,()=:.<>\r\n])|({_STRING})|([0-9]+)|(==?|,|::?|\.|[<>]=?))"
@@ -217,7 +212,7 @@ def _nothing(text: str, at: int) -> re.Match[str] | None:
     return None
 
 
-read_head = read_line = read_between = _ATTRIBUTE = _TOKEN = _nothing
+read_head = read_line = _ATTRIBUTE = _TOKEN = _nothing
 _TOKEN_KINDS: Final = (ERROR, NAME, STRING, NUMBER, OPERATOR)  # of the groups of _TOKEN
 _WORTH: Final = 25_000  # to read so many characters without patterns takes as long as to compile them
 _expected = 0
@@ -243,19 +238,12 @@ def _line_list() -> re.Pattern[str]:
 
 
 @cache
-def _bracketed_list() -> re.Pattern[str]:
-    """As of a line, and the closing bracket"""
-    return re.compile(_LIST + _BRACKETS_END)
-
-
-@cache
-def _definition() -> re.Pattern[str]:
-    """1 the clause; 2 the quality that encloses the requirement, if one does, and 3 the blanks of the line that its
-    bracket begins, if it does; 4 to 7 the requirement: its first word, its name, the blanks of the line that its
-    description begins, if it does, and the description; the closing bracket"""
-    return re.compile(
-        rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(2)\))){_BRACKETS_END}"
-    )
+def _bracketed_clause() -> re.Pattern[str]:
+    """1 to 3 as of a line, or else 4 a clause that defines a requirement; 5 the quality that encloses it, if one does,
+    and 6 the blanks of the line that its bracket begins, if it does; 7 to 10 the requirement: its first word, its name,
+    the blanks of the line that its description begins, if it does, and the description; the closing bracket"""
+    defining = rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(5)\)))"
+    return re.compile(rf"(?:{_LIST}|{defining}){_BRACKETS_END}")
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ def test_the_usual_reader_takes_the_short_cuts(monkeypatch: pytest.MonkeyPatch) 
 
 def test_a_small_file_is_read_before_patterns_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patterns, "_expected", 0)
-    for pattern in ("read_head", "read_line", "read_between", "_ATTRIBUTE", "_TOKEN"):
+    for pattern in ("read_head", "read_line", "_ATTRIBUTE", "_TOKEN"):
         monkeypatch.setattr(patterns, pattern, patterns._nothing)
     parse(SHORT)
     assert patterns.read_line is patterns._nothing
