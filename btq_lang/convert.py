@@ -24,6 +24,7 @@ from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
 if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
     from btq_lang.features.actions import Action
     from btq_lang.features.completion import Completion
+    from btq_lang.features.hover import Hover
     from btq_lang.features.outline import Match, Outline
     from btq_lang.features.signature import Signature
     from btq_lang.features.structure import Fold
@@ -158,13 +159,6 @@ class Converter:
             f'"end": {{"line": {end_line}, "character": {end_column}}}}}'
         )
 
-    def _plain_range(self, lines: LineIndex, span: Span) -> Plain:
-        start, end = lines.position(span.start, self.encoding), lines.position(span.end, self.encoding)
-        return {
-            "start": {"line": start.line, "character": start.column},
-            "end": {"line": end.line, "character": end.column},
-        }
-
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
         mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
         found = {"diagnostics": json.loads(self.diagnostics(workspace, path, [mends]))} if mends is not None else {}
@@ -213,30 +207,36 @@ class Converter:
         signature = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
         return types.SignatureHelp([signature], active_signature=0, active_parameter=found.active)
 
-    def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> Plain:
+    def hover(self, workspace: Workspace, path: str, found: Hover) -> Json:
+        """A hover; plain, for the first one made of lsprotocol's classes has a converter compiled for each."""
+        file = workspace.files[path]
+        span = file.origin.places.origin(found.span) if file.origin is not None else found.span
+        contents = f'{{"kind": "markdown", "value": {as_json(found.markdown)}}}'
+        return Json(f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, span)}}}')
+
+    def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> Json:
+        """Proposals, written at once: of a large file they are hundreds, for an editor that waits."""
         file = workspace.files[path]
         assert file.origin is None, "nobody is asked what may stand in XML"
-        range_ = self._plain_range(file.lines, found.span)
+        range_, of_path = self._range_as_json(file.lines, found.span), as_json(path)
         items = []
         for number, one in enumerate(found.proposals):
             snippet = one.snippet if snippets else None
-            item: Plain = {
-                "label": one.label,
-                "kind": _COMPLETION_KINDS[one.kind],
-                "sortText": f"{number:05}",
-                "textEdit": {"range": range_, "newText": snippet if snippet is not None else one.insert},
-                "data": {"path": path, "kind": one.kind, "name": one.name, "include": one.include},
-            }
-            if one.detail:
-                item["detail"] = one.detail
+            text = as_json(one.insert if snippet is None else snippet)
+            more = f', "detail": {as_json(one.detail)}' if one.detail else ""
             if one.filter:
-                item["filterText"] = one.filter
+                more += f', "filterText": {as_json(one.filter)}'
             if snippet is not None:
-                item["insertTextFormat"] = types.InsertTextFormat.Snippet
+                more += f', "insertTextFormat": {_SNIPPET}'
             if one.old:
-                item["tags"] = [types.CompletionItemTag.Deprecated]
-            items.append(item)
-        return {"isIncomplete": False, "items": items}
+                more += f', "tags": [{_DEPRECATED}]'
+            items.append(
+                f'{{"label": {as_json(one.label)}, "kind": {_COMPLETION_KINDS[one.kind].value}, '
+                f'"sortText": "{number:05}", "textEdit": {{"range": {range_}, "newText": {text}}}, '
+                f'"data": {{"path": {of_path}, "kind": "{one.kind}", "name": {as_json(one.name)}, '
+                f'"include": {as_json(one.include)}}}{more}}}'
+            )
+        return Json(f'{{"isIncomplete": false, "items": [{", ".join(items)}]}}')
 
 
 @lru_cache(_MOST_KEPT)
@@ -313,6 +313,8 @@ SYMBOL_KINDS = {
     "quality": types.SymbolKind.EnumMember,
     "apply": types.SymbolKind.Package,
 }
+_SNIPPET = types.InsertTextFormat.Snippet.value
+_DEPRECATED = types.CompletionItemTag.Deprecated.value
 _COMPLETION_KINDS = {
     "keyword": types.CompletionItemKind.Keyword,
     "node": types.CompletionItemKind.Function,

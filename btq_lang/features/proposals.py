@@ -140,8 +140,9 @@ def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for found, include in _defined(workspace, path, Kind.TREE):
         name = found.symbol.name
         ports = ports_of_tree(workspace, found.path, name)
-        snippet = _with_ports(written(name), [port for port in ports if port.required])
-        yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", written(name), snippet, "", name, include)
+        head = written(name)
+        snippet = _with_ports(head, [port for port in ports if port.required])
+        yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
 
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:

@@ -7,18 +7,16 @@ from lsprotocol import types
 from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
-from btq_lang.protocol import Plain
+from btq_lang.protocol import Json
 
 
 def register(server: Server) -> None:
     session, convert = server.session, server.convert
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
-    def show(params: types.HoverParams) -> types.Hover | None:
+    def show(params: types.HoverParams) -> Json | None:
         asked = server.ask(params.text_document, params.position, features.explain, reads=True)
-        if asked is None or asked[2] is None:
-            return None
-        return types.Hover(markdown(asked[2].markdown), convert.range(asked[0], asked[1], asked[2].span))
+        return convert.hover(asked[0], asked[1], asked[2]) if asked and asked[2] else None
 
     @server.feature(
         types.TEXT_DOCUMENT_SIGNATURE_HELP,
@@ -32,7 +30,7 @@ def register(server: Server) -> None:
         types.TEXT_DOCUMENT_COMPLETION,
         types.CompletionOptions(trigger_characters=list('({=.<"@:/,['), resolve_provider=True),
     )
-    def completion(params: types.CompletionParams) -> Plain | None:
+    def completion(params: types.CompletionParams) -> Json | None:
         asked = server.ask(params.text_document, params.position, features.complete)
         return convert.completion(*asked, snippets=server.takes_snippets) if asked else None
 
