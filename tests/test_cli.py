@@ -322,7 +322,17 @@ def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:
     assert btq("check").stdout == "No problems found in 1 file\n"
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+def test_an_error_in_an_included_file_is_told_once(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "lib.btq").write_text("BehaviorTree Lib\n    Pick (\n")
+    (tmp_path / "main.btq").write_text('include "lib.btq"\nBehaviorTree Main\n    SubTree Lib\n')
+    message = "this `(` has no `)`"
+    at_include = f"main.btq:1:9: error[include-with-errors] `lib.btq` has 1 error: {message}\n"
+    itself = f"lib.btq:2:10: error[unclosed-bracket] {message}\n"
+    for paths, told in ((["main.btq"], at_include), (["."], itself), (["main.btq", "lib.btq"], itself)):
+        done = btq("check", "--output-format", "concise", *paths)
+        assert (done.returncode, done.stdout) == (1, f"{told}Found 1 error\n")
+
+
 def test_an_error_in_included_xml_is_told_once(btq: Run, tmp_path: Path) -> None:
     tree = '<root BTCPP_format="4">\n<BehaviorTree ID="Old"><Sequence/></BehaviorTree>\n</root>\n'
     (tmp_path / "old.xml").write_text(tree)
@@ -337,6 +347,7 @@ def test_an_error_in_included_xml_is_told_once(btq: Run, tmp_path: Path) -> None
     assert "\nnote: here\n --> old.xml:2:25\n" in shown
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
 def test_an_output_that_cannot_be_written_is_trouble(tmp_path: Path) -> None:
     command = f"{sys.executable} -m btq_lang explain > /dev/full"
     done = subprocess.run(["bash", "-c", command], cwd=tmp_path, capture_output=True, text=True)

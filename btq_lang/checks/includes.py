@@ -85,12 +85,9 @@ def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
 
 
-def is_told_beside(workspace: Workspace, diagnostic: Diagnostic, checked: Container[str]) -> bool:
-    """Whether a diagnostic says of an included XML file no more than what is told of it, as it is checked, too."""
-    if diagnostic.rule != "include-with-errors":
-        return False
-    path = diagnostic.related[0].place.path or ""
-    return path in checked and path in workspace.origins
+def is_told_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
+    """Whether a diagnostic says of an included file no more than what is told of it, as it is checked, too."""
+    return diagnostic.rule == "include-with-errors" and diagnostic.related[0].place.path in checked
 
 
 def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:

@@ -187,12 +187,13 @@ def _has_errors(groups: tuple[Group, ...], options: Namespace) -> bool:
         included = dict.fromkeys(each for path in sources for each in workspace.closure(path) if each not in sources)
         made = _missions(group) if options.bundle else sources
         replaced = () if options.output else tuple(map(xml_name, made))  # what stands there now is written over
+        told = {*sources, *included}
         for path in (*sources, *(each for each in included if each not in replaced)):
             found = _read(workspace.files[path]) if options.verbatim else check(workspace, path)
             findings += [
                 Finding(path, workspace.files[path].source, each)
                 for each in found
-                if each.effective_severity is Severity.ERROR and not is_told_beside(workspace, each, included)
+                if each.effective_severity is Severity.ERROR and not is_told_beside(each, told)
             ]
     if not findings:
         return False

@@ -63,11 +63,12 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     for problem in problems:
         print(f"btq: {problem}", file=sys.stderr)
     checked = tuple(path for group in groups for path in group.given)
+    is_checked = frozenset(checked)
     findings: list[Finding] = []
     for group in groups:
         for path, found in _found(group, options.jobs):
             text = group.workspace.files[path].source
-            found = tuple(each for each in found if not is_told_beside(group.workspace, each, checked))
+            found = tuple(each for each in found if not is_told_beside(each, is_checked))
             if path in group.damaged:  # what cannot be read there is told already: the bytes
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]
