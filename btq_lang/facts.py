@@ -166,7 +166,9 @@ class Names:
         if "by_kind" in other.__dict__:
             self.by_kind = other.by_kind if before == now else other.by_kind | self._by_kind(touched)
         if "symbols" in other.__dict__:
-            self.symbols = other.symbols | self._symbols(touched)
+            self.symbols = other.symbols | (self._replaced(other, now) if before == now else self._symbols(touched))
+        if "repeated" in other.__dict__:  # what is gone and what has come is defined once
+            self.repeated = other.repeated
 
     @cached_property
     def all(self) -> frozenset[Name]:
@@ -186,6 +188,13 @@ class Names:
 
     def _symbols(self, kinds: Iterable[Kind]) -> dict[Kind, tuple[Symbol, ...]]:
         return {kind: tuple([same[0][1] for (of, _), same in self.found.items() if of is kind]) for kind in kinds}
+
+    def _replaced(self, other: Names, names: list[Name]) -> dict[Kind, tuple[Symbol, ...]]:
+        """The symbols of those kinds of which some are others, by the same names."""
+        symbols = {kind: [*other.symbols[kind]] for kind, _ in names}
+        for kind, name in names:
+            symbols[kind][self.by_kind[kind].index(name)] = self.found[kind, name][0][1]
+        return {kind: tuple(each) for kind, each in symbols.items()}
 
     @cached_property
     def repeated(self) -> frozenset[Name]:

@@ -21,10 +21,14 @@ from btq_lang.text import LineIndex, Span, changed
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
     from btq_lang.places import Places
     from btq_lang.project import Project
+
+    Kept = TypeVar("Kept", bound=Item)
 
 SUFFIXES = (".btq", ".qualitybtcpp")  # of files in this language; the second is that of the classic form
 
@@ -58,6 +62,10 @@ class File:
             gone = [each for item, each in known.items() if item not in facts]
             come = [each for item, each in facts.items() if item not in known]
             after._tallies = {of: tally.edited(gone, come) for of, tally in self._tallies.items()}
+            touched = {type(each.item) for each in (*gone, *come)}
+            after._of_type = {kind: each for kind, each in self._of_type.items() if kind not in touched}
+            if "includes" in self.__dict__ and Include not in touched:
+                after.includes = self.includes
             if "names" in self.__dict__:
                 names = self.names.edited(gone, come)
                 if names is not None:
@@ -115,6 +123,16 @@ class File:
             for entry, summary in zip(self.parsed.entries, self.summaries, strict=True)
             for symbol in summary.symbols
         )
+
+    def of_type(self, kind: type[Kept]) -> tuple[Kept, ...]:
+        """The file's items of a type, in the order of the text."""
+        if kind not in self._of_type:
+            self._of_type[kind] = tuple([entry.item for entry in self.parsed.entries if type(entry.item) is kind])
+        return self._of_type[kind]
+
+    @cached_property
+    def _of_type(self) -> dict[type, tuple[Any, ...]]:
+        return {}
 
     def first_users(self, kind: Kind) -> Mapping[str, Facts]:
         """The names of a kind that the file refers to, each with the first item that does."""
@@ -239,7 +257,7 @@ class File:
     def includes(self) -> tuple[Include, ...]:
         if "include" not in self.text:  # most files have none, and need not be parsed to know what another one means
             return ()
-        return tuple(entry.item for entry in self.parsed.entries if isinstance(entry.item, Include))
+        return self.of_type(Include)
 
     @cached_property
     def included_paths(self) -> tuple[tuple[str, bool], ...]:

@@ -237,14 +237,14 @@ class Workspace:
 
     def _main_tree(self, path: str) -> Definition | None:
         file = self.files[path]
-        for entry in file.parsed.entries:
-            if isinstance(entry.item, Root):
-                named = entry.item.name or _attribute(entry.item, "main_tree_to_execute")
-                if named is not None:
-                    return self.scope(path).find(Kind.TREE, named.text)
+        for root in file.of_type(Root):
+            named = root.name or _attribute(root, "main_tree_to_execute")
+            if named is not None:
+                return self.scope(path).find(Kind.TREE, named.text)
         trees = file.names.by_kind[Kind.TREE]
         if len(trees) > 1 or any(len(file.names.found[Kind.TREE, name]) > 1 for name in trees):
-            trees = tuple([name for name in trees if name not in file.runs])
+            runs = file.runs
+            trees = tuple([name for name in trees if name not in runs])
         found = file.definitions(Kind.TREE, trees[0]) if len(trees) == 1 else ()
         return found[0] if len(found) == 1 else None
 

@@ -232,7 +232,7 @@ class Answers:
     def _pass_on(self, question: Question) -> None:
         """An answer is another one: what rests on it is to be drawn again, the lowest first."""
         for asker in self._askers.get(question, ()):
-            if asker not in self._stale and asker in self._answers:
+            if asker not in self._stale and asker in self._answers and asker not in self._restless:
                 self._stale.add(asker)
                 if self._askers.get(asker) != _OUTSIDE:
                     self._count += 1

@@ -215,7 +215,7 @@ def is_crowded(workspace: Workspace, path: str, kind: Kind) -> bool:
 
 def edition(workspace: Workspace, path: str) -> str:
     """The edition of the quality model that holds for the file."""
-    for each in [each.item for each in workspace.files[path].facts.values() if type(each.item) is Qualities]:
+    for each in workspace.files[path].of_type(Qualities):
         named = each.edition
         if named is not None and named.text in EDITIONS:
             return named.text

@@ -381,7 +381,7 @@ class View:
                 or any(checkable for _, checkable in self.constraints(requirement))
             ):
                 return True
-        return any(isinstance(entry.item, Apply) for entry in self._file.parsed.entries)
+        return bool(self._file.of_type(Apply))
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """What stands behind SuccessIf and FailureIf in a description, and whether it is more than prose."""

@@ -162,7 +162,7 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
     of_each = [uses.get(name, ()) for name in reader.requirements]
     table = memory.table("held", reader)
     holding = _all(
-        table, reader, wanted, of_each, lambda at: held_by(reader, wanted[at], of_each[at], table.before(wanted[at]))
+        table, reader, wanted, of_each, lambda at: held_by(reader, wanted[at], of_each[at], table.before(at))
     )
     problems += [problem for rows in (read, attached, holding) for _, told in rows if told for problem in told]
     held = [each for each, _ in holding]

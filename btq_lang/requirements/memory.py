@@ -69,7 +69,8 @@ class Memory:
         Args:
             asker: who makes what stands in it; meanwhile none of its answers becomes another.
         """
-        table = self._tables[name] = Table(self._tables_before.get(name), asker)
+        before = self._tables.get(name) or self._tables_before.get(name)
+        table = self._tables[name] = Table(before, asker)
         return table
 
 
@@ -102,18 +103,19 @@ class Table:
         self._made_of: Sequence[object] = ()
         self._asked: list[tuple[Question, ...]] = []  # for each of them
         self._made: list[Any] = []
-        self._places: dict[int, int] | None = None  # of the owners, by their `id`s, once somebody asks
+        self._places: dict[int, int] | None = None  # of the owners before, by their `id`s, once somebody asks
         self._asker = asker
         self._before: Table | None = before
         self._changed: set[Question] = set()
         self._most: int = before._most if before is not None else 0
         if before is not None and before.answers:
-            self.answers = before._in_use() if len(before.answers) > self._most else before.answers.copy()
+            answers = before.answers
+            changed = [each for each, answer in answers.items() if not is_same(asker.answer(each), answer)]
+            self.answers = before._in_use() if len(answers) > self._most else answers
             self._most = max(self._most, 2 * len(self.answers))
-            for question, answer in before.answers.items():
-                if question in self.answers and not is_same(asker.answer(question), answer):
-                    self._changed.add(question)
-                    del self.answers[question]
+            self._changed.update(changed)
+            for question in changed:
+                self.answers.pop(question, None)
 
     def all(self, owners: Sequence[object], made_of: Sequence[object], make: Callable[[int], T]) -> list[T]:
         """What stands here for each owner: what stood here before, if it would be made of the same and every answer is
@@ -134,7 +136,7 @@ class Table:
         else:
             self._asked, self._made = [()] * count, [None] * count
         for at in places:
-            was = before._place(owners[at]) if before is not None else None
+            was = self._place_before(at)
             if (
                 before is not None
                 and was is not None
@@ -152,10 +154,21 @@ class Table:
         self._before = None
         return self._made
 
-    def before(self, owner: object) -> Any:
+    def before(self, at: int) -> Any:
         """What was made for an owner before, of whatever; None if nothing was."""
-        at = self._before._place(owner) if self._before is not None else None
-        return self._before._made[at] if self._before is not None and at is not None else None
+        was = self._place_before(at)
+        return self._before._made[was] if self._before is not None and was is not None else None
+
+    def _place_before(self, at: int) -> int | None:
+        """Where an owner stood before.  Of as many hardly one has moved, and what is not found is made."""
+        before, owner = self._before, self._owners[at]
+        if before is None:
+            return None
+        if len(before._owners) == len(self._owners):
+            return at if before._owners[at] is owner else None
+        if self._places is None:
+            self._places = {id(each): place for place, each in enumerate(before._owners)}
+        return self._places.get(id(owner))
 
     def _not_as_before(self, before: Table) -> list[int]:
         """Where another owner stands than before, or one that is made of something else."""
@@ -165,12 +178,6 @@ class Table:
         if changed := self._changed:
             found.update([at for at, asked in enumerate(before._asked) if asked and not changed.isdisjoint(asked)])
         return sorted(found)
-
-    def _place(self, owner: object) -> int | None:
-        if self._places is None:
-            self._places = {id(each): at for at, each in enumerate(self._owners)}
-        at = self._places.get(id(owner))
-        return at if at is not None and self._owners[at] is owner else None
 
     def _in_use(self) -> dict[Question, object]:
         """The answers that anything here rests on."""
