@@ -16,6 +16,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btq_lang.checks.swallowing import WaysUp
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.trees import TreeNodes
 
@@ -36,8 +37,8 @@ class Demanded:
         claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
             a span the one that takes as long), and where to tell of it.
         noted: what was asked of other trees.
-        ways_up: what was found out of the ways from trees to the mission's root; kept while no SubTree node becomes
-            another one.
+        ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was; it holds
+            while the SubTree nodes on them are the same.
         ends_at: of SubTree nodes on these ways, what a failure below them ends at.
     """
 
@@ -53,15 +54,10 @@ class Demanded:
         self.budgets: Budgets = view.budgets
         self.noted: dict[Question, object] = {}
         self._answers: dict[Question, object] = {}
-        mission = self.requirements.mission
-        ways = (
-            mission.tree if mission is not None else None,
-            [tree.calls for tree in self.requirements.nodes.trees if tree.calls],
-        )
-        known = view.resolved.ways_up
-        self.ways_up: dict[str | None, Any] = known[1] if known[0] == ways else {}
+        self.ways_up: dict[str | None, WaysUp] = {}
+        self.ways_up_before: dict[str | None, WaysUp] = view.resolved.ways_up
         self.ends_at: dict[SourceNode, Any] = {}
-        view.resolved.ways_up = ways, self.ways_up
+        view.resolved.ways_up = self.ways_up
 
     def look_at(self, tree: TreeNodes) -> None:
         """What follows is about the nodes of this tree."""

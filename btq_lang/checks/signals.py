@@ -117,6 +117,7 @@ def _of_text(demanded: Demanded, here: list[Signal], entries: list[_Entries]) ->
     throws where it is no number."""
     mission = demanded.requirements.mission
     numbers = {(signal.key or "").removeprefix("@"): signal for signal in here if signal.sort == "number"}
+    entries = [each for each in entries if not numbers.keys().isdisjoint(each.pointers)]
     for key, signal in numbers.items():
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
             if not is_of_root and (mission is None or node.tree != mission.tree):

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
 Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
+# Where a failure ends, and the SubTree nodes that run the trees on the ways up, by these.
+WaysUp: TypeAlias = "tuple[Swallower | None, dict[str | None, tuple[SourceNode, ...]]]"
 
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
@@ -49,17 +51,19 @@ def _above(demanded: Demanded, tree: str | None) -> Swallower | None:
 
 def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
-    if tree not in demanded.ways_up:
-        demanded.ways_up[tree] = _end_of_ways(demanded, tree)
-    answer: Swallower | None = demanded.ways_up[tree]
-    return answer
+    known = demanded.ways_up_before.get(tree)
+    if known is None or any(_callers(demanded.requirements, at) != callers for at, callers in known[1].items()):
+        known = _end_of_ways(demanded, tree)
+    demanded.ways_up[tree] = known
+    return known[0]
 
 
-def _end_of_ways(demanded: Demanded, tree: str | None) -> Swallower | None:
+def _end_of_ways(demanded: Demanded, tree: str | None) -> WaysUp:
     found, ends_at = demanded.requirements, demanded.ends_at
     first: Swallower | None = None
     seen: set[int] = set()
-    waiting = list(_callers(found, tree))
+    of_tree = {tree: _callers(found, tree)}
+    waiting = [*of_tree[tree]]
     ends = not waiting
     while waiting:
         at = waiting.pop()
@@ -71,10 +75,10 @@ def _end_of_ways(demanded: Demanded, tree: str | None) -> Swallower | None:
         end = ends_at[at]
         first = first or end
         if end is None:
-            callers = _callers(found, at.tree)
+            callers = of_tree[at.tree] = _callers(found, at.tree)
             ends = ends or not callers
             waiting += callers
-    return None if ends else first
+    return None if ends else first, of_tree
 
 
 def _callers(found: Requirements, tree: str | None) -> tuple[SourceNode, ...]:

@@ -137,9 +137,9 @@ class Budgets:
             if (
                 known is not None
                 and known.tree is tree
-                and is_same(by_tree.get(id(tree.item), ()), known.applied)
+                and ((applied := by_tree.get(id(tree.item), ())) is known.applied or is_same(applied, known.applied))
                 and (
-                    (is_ordered_as_before and others.isdisjoint(known.asked))
+                    (is_ordered_as_before and (not others or others.isdisjoint(known.asked)))
                     or all(is_as_before(tree, name, known.asked[name]) for name in known.asked)
                 )
             ):

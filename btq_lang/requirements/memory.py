@@ -46,7 +46,7 @@ class Memory:
         held: what each requirement holds for, in their order.
         by_tree: what holds for nodes, by the tree that they stand in.
         budgets: those of the nodes of each tree.
-        ways_up: how trees run each other, and what was found out of that alone, by the names of trees.
+        ways_up: what was found out of how trees run each other, by their names.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class Memory:
         self.held: list[Held] = []
         self.by_tree: dict[int, tuple[Applied, ...]] = {}
         self.budgets: dict[int, _TreeBudgets] = {}
-        self.ways_up: tuple[object, dict[str | None, Any]] = (None, {})
+        self.ways_up: dict[str | None, Any] = {}
         self._tables: dict[str, Table] = {}
         self._tables_before: dict[str, Table] = {}
 
@@ -128,13 +128,13 @@ class Table:
         """
         before, count = self._before, len(owners)
         self._owners, self._made_of = owners, made_of
-        places: Iterable[int] = range(count)
-        is_as_long = before is not None and len(before._owners) == count
-        if before is not None and is_as_long:
-            self._asked, self._made = before._asked.copy(), before._made.copy()
-            places = self._not_as_before(before)
+        if before is not None and len(before._owners) == count:
+            self._asked, self._made = before._asked, before._made  # which nobody asks for these any more
+            places: Iterable[int] = self._not_as_before(before)
+            self.others = []
         else:
             self._asked, self._made = [()] * count, [None] * count
+            places = range(count)
         for at in places:
             was = self._place_before(at)
             if (
@@ -149,8 +149,8 @@ class Table:
             self._made[at] = make(at)
             self._asked[at] = tuple(self._asker.noted)
             self.answers.update(self._asker.noted)
-        if before is not None and is_as_long:
-            self.others = [at for at in places if self._made[at] is not before._made[at]]
+            if self.others is not None:
+                self.others.append(at)
         self._before = None
         return self._made
 

@@ -6,13 +6,14 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
+from itertools import chain
 
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
-from btq_lang.symbols import Kind
-from btq_lang.syntax import Item, Model, Node, Tree
+from btq_lang.symbols import Kind, Symbol
+from btq_lang.syntax import Model, Node, Tree
 from btq_lang.workspace import Scope, Workspace
 
 
@@ -27,35 +28,25 @@ class Nodes:
     def __init__(self, workspace: Workspace, scope: Scope, before: Nodes | None = None) -> None:
         """before: those of an earlier workspace, to take over the trees that are the same."""
         files = [workspace.files[path] for path in scope.paths]
-        counting: dict[str, Item] = {}  # the trees that count, where several have one name
-        self._categories: dict[str, str] = {}
-        for file in files:
-            names = file.names
-            for name in names.by_kind[Kind.TREE]:
-                counting.setdefault(name, names.found[Kind.TREE, name][0][0])
-            for name in names.by_kind[Kind.MODEL]:
-                if isinstance(model := names.found[Kind.MODEL, name][0][1].target, Model):
-                    self._categories.setdefault(name, model.category.raw)
-        self._of_item: dict[int, TreeNodes] = {}
+        self._categories: dict[str, str]
+        self._models = [file.names.symbols[Kind.MODEL] for file in files]
+        has_same = before is not None and before._models == self._models
+        self._categories = before._categories if before is not None and has_same else _categories(self._models)
         known = before._of_item if before is not None else {}
-        has_same = before is not None and before._categories == self._categories
+        self._of_item: dict[int, TreeNodes] = {}
         for file in files:
-            for entry in file.parsed.entries:
-                item = entry.item
-                if isinstance(item, Tree):
-                    tree = known.get(id(item))
-                    if tree is None or tree.item is not item or not (has_same or tree.fits(self._categories)):
-                        tree = TreeNodes(file.path, item, self._categories)
-                    self._of_item[id(item)] = tree
+            for item in file.of_type(Tree):
+                tree = known.get(id(item))
+                if tree is None or not (has_same or tree.fits(self._categories)):
+                    tree = TreeNodes(file.path, item, self._categories)
+                self._of_item[id(item)] = tree
         self.trees = tuple(self._of_item.values())
-        self._roots = {
-            tree.name: tree.root
-            for tree in self.trees
-            if tree.root is not None and tree.name is not None and counting[tree.name] is tree.item
-        }
-        # Which tree runs which.
-        self._shape = [(tree.name, tree.called, tree.root is not None) for tree in self.trees]
-        self.is_ordered_as_before = before is not None and before._shape == self._shape
+        counting: dict[str, TreeNodes] = {}  # of several trees of one name the first one
+        for tree in self.trees:
+            if tree.name is not None:
+                counting.setdefault(tree.name, tree)
+        self._roots = {name: tree.root for name, tree in counting.items() if tree.root is not None}
+        self.is_ordered_as_before = before is not None and _have_same_shape(before.trees, self.trees)
         if before is not None and self.is_ordered_as_before:
             self._order = before._order
         self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
@@ -259,6 +250,24 @@ class Nodes:
                     found.add(id(child))
                     waiting.append(child)
         return found
+
+
+def _categories(models: Iterable[Iterable[Symbol]]) -> dict[str, str]:
+    """The categories of models, by their names."""
+    found: dict[str, str] = {}
+    for symbol in chain.from_iterable(models):
+        if isinstance(model := symbol.target, Model):
+            found.setdefault(symbol.name, model.category.raw)
+    return found
+
+
+def _have_same_shape(before: Sequence[TreeNodes], now: Sequence[TreeNodes]) -> bool:
+    """Whether as many trees run the same ones."""
+    others = [(one, other) for one, other in zip(before, now, strict=False) if one is not other]
+    return len(before) == len(now) and all(
+        (one.name, one.called, one.root is None) == (other.name, other.called, other.root is None)
+        for one, other in others
+    )
 
 
 def _runs(node: SourceNode, tree: str) -> bool:
