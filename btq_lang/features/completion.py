@@ -122,7 +122,7 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
 
 
 def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
-    """Behind a number: units; those that a port or a verb asks for first."""
+    """Behind a number: units; those that a port, a signal or a verb asks for first."""
     line = text[_line_start(text, offset) : offset]
     begun = re.search(r"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)([^\W\d_]*|%)$", line)
     if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
@@ -133,7 +133,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     in_brackets = place.depth > 0 and place.node is not None
     if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
         return None
-    wanted = None
+    wanted = measured = None
     if in_brackets and place.node is not None:
         before = [word.text for word in place.group if word.kind in (NAME, STRING, OPERATOR)]
         key = (
@@ -144,12 +144,22 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
         wanted = offer.port_unit(workspace, path, place.node, key)
         if begun[1] and wanted is None:
             return None  # `num_attempts = 6 |`: the next attribute
-    elif {"takes", "within", "every"} & {word.text for word in place.words}:
-        wanted = "s"
+    else:
+        wanted = measured = _unit_of_clause(workspace, path, place)
     separator = "" if begun[1] else " "
-    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted))
+    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted, measured))
     behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
     return Completion(Span(offset - len(begun[2]), offset), (*found, *behind))
+
+
+def _unit_of_clause(workspace: Workspace, path: str, place: Place) -> str | None:
+    """What a number is compared with: the nearest signal before it, or the time that a verb asks for."""
+    for word in reversed(place.words):
+        if word.text in ("takes", "within", "every"):
+            return "s"
+        if word.kind == NAME and (unit := offer.signal_unit(workspace, path, word.text)) is not None:
+            return unit
+    return None
 
 
 def _line_start(text: str, offset: int) -> int:

@@ -152,6 +152,13 @@ def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(found.symbol.name, "signal", unit, found.symbol.name, None, "", found.symbol.name, include)
 
 
+def signal_unit(workspace: Workspace, path: str, name: str) -> str | None:
+    """The unit of a signal; None where none is called so."""
+    found = workspace.scope(path).find(Kind.SIGNAL, name)
+    item = found.symbol.target if found is not None else None
+    return item.unit.text if isinstance(item, Signal) and item.unit is not None else None
+
+
 def contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for found, include in _defined(workspace, path, Kind.CONTEXT):
         item = found.symbol.target
@@ -396,12 +403,12 @@ def qualities(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
 
 
-def units(wanted: str | None) -> Iterator[Proposal]:
-    """Units, those that measure the same as `wanted` first."""
+def units(wanted: str | None, first: str | None = None) -> Iterator[Proposal]:
+    """Units, those that measure the same as `wanted` first, and of them the one that is spelt as `first` is."""
     target = parse_unit(wanted) if wanted else None
     known = [*symbols(), *(unit for text in _COMPOUNDS if (unit := parse_unit(text)) is not None)]
     if target is not None:
-        known.sort(key=lambda unit: unit.dimension != target.dimension)
+        known.sort(key=lambda unit: (unit.dimension != target.dimension, unit.symbol != first))
     for unit in known:
         yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
 

@@ -116,6 +116,9 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ("BehaviorTree X\n    Pick (satisfices Quality = $0", ("gentleness", "safety"), ("satisfies",)),
         ('QualityReq a : $0 "t"', ("gentleness", "safety"), ("takes at most",)),
         ('QualityReq a "t" takes at most 30 $0', ("s", "min", "m", "if", "takes at most", "on violation"), ()),
+        ('QualityReq a "t"\n    keeps battery >= 30$0', ("%", "m", "s"), ()),
+        ('signal far : km\nQualityReq a "t"\n    keeps far < 3 $0', ("km", "m", "s", "%"), ()),
+        ('signal far : km\nQualityReq a "t"\n    takes at most 3 s while far < 3 $0', ("km", "m", "s", "%"), ()),
         (
             'QualityReq a "t"\n    goal 1 s\n    $0',
             ("takes at most", "needs", "while", "in at least", "confidence", "over last", "on violation", "because"),
