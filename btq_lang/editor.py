@@ -11,6 +11,7 @@ import json
 import logging
 import sys
 from collections.abc import Callable, Iterable
+from itertools import chain
 from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
@@ -20,7 +21,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
-from btq_lang import __version__
+from btq_lang import __version__, features
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.garbage import collect_in_pause
@@ -78,6 +79,8 @@ class Server(LanguageServer):
         self.count = 0
         self.waiting: dict[str, None] = {}
         self._pause: asyncio.TimerHandle | None = None
+        self._preparing: asyncio.Task[None] | None = None
+        self._ready: set[str] = set()  # the files for whose first questions everything is there
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
 
@@ -220,6 +223,8 @@ class Server(LanguageServer):
     def check_soon(self, paths: Iterable[str]) -> None:
         """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
         self.waiting = dict.fromkeys((*paths, *self.waiting))
+        if self._preparing is not None:
+            self._preparing.cancel()
         if self.task is None or self.task.done():
             self.task = asyncio.ensure_future(self._check())
 
@@ -230,7 +235,6 @@ class Server(LanguageServer):
             self.waiting.clear()
             if self.can_refresh("diagnostics"):
                 self.workspace_diagnostic_refresh(None)
-            return
         while self.waiting:
             path = next(iter(self.waiting))
             del self.waiting[path]
@@ -245,7 +249,22 @@ class Server(LanguageServer):
             self.publish(path)
         if self._pause is not None:
             self._pause.cancel()
-        self._pause = asyncio.get_running_loop().call_later(A_PAUSE, collect_in_pause)
+        self._pause = asyncio.get_running_loop().call_later(A_PAUSE, self._use_pause)
+
+    def _use_pause(self) -> None:
+        """Do what would be in the way while somebody waits."""
+        collect_in_pause()
+        self._preparing = asyncio.ensure_future(self._prepare())
+
+    async def _prepare(self) -> None:
+        """Get ready for the first questions about what is open, and listen between two steps: an edit ends it."""
+        self._ready.intersection_update(self.session.open)
+        for path in [path for path in self.session.open if path not in self._ready]:
+            place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
+            if place is not None:
+                for _ in chain(self.protocol.getting_ready(), features.getting_ready(*place)):
+                    await asyncio.sleep(0)
+            self._ready.add(path)
 
     def publish(self, path: str) -> None:
         """Tell the diagnostics of a file, unless the editor knows them."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+from collections.abc import Iterator
 from concurrent.futures import Future
 from typing import Any, BinaryIO
 
@@ -43,6 +44,13 @@ class Protocol(LanguageServerProtocol):
             self._write(f'{{"jsonrpc": "2.0", "id": {json.dumps(msg_id)}, "result": {result}}}')
         else:  # what is of lsprotocol in it is made plain by `_serialize_message`
             self._send_data({"jsonrpc": self.VERSION, "id": msg_id, "result": result})
+
+    def getting_ready(self) -> Iterator[None]:
+        """Read a question of each usual kind: pygls has a reader compiled for the first one."""
+        place = {"textDocument": {"uri": ""}, "position": {"line": 0, "character": 0}}
+        for method in _USUAL:
+            self.structure_message({"jsonrpc": self.VERSION, "id": 0, "method": method, "params": place})
+            yield
 
     def tell(self, method: str, params: Plain | Json) -> None:
         """Send a notification of plain data, or of what is JSON already."""
@@ -99,4 +107,10 @@ class Messages:
             self._body = self._stream.read(length)
 
 
+_USUAL = (
+    types.TEXT_DOCUMENT_COMPLETION,
+    types.TEXT_DOCUMENT_HOVER,
+    types.TEXT_DOCUMENT_DEFINITION,
+    types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT,
+)
 _LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)

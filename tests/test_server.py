@@ -14,8 +14,10 @@ from pathlib import Path
 
 import pytest
 from lsp_editor import SERVER, Editor, Message, part
+from lsprotocol import types
 
 from btq_lang.editor import Server
+from btq_lang.workspace import Workspace
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 RIGHT = WRONG.replace("Sequnce", "Sequence")
@@ -452,6 +454,34 @@ def test_semantic_tokens(editor: Editor) -> None:
     line = {"start": {"line": 2, "character": 0}, "end": {"line": 2, "character": 99}}
     part = editor.request("textDocument/semanticTokens/range", **editor.document("main.btq"), range=line)
     assert part["data"] == [2, 8, 8, 6, 2]
+
+
+def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0)
+    path = str(tmp_path / "main.btq")
+    steps: list[str] = []
+
+    def making(workspace: Workspace, path: str) -> Iterator[None]:
+        for _ in range(100):
+            steps.append(workspace.files[path].text)
+            yield
+
+    async def type_meanwhile() -> None:
+        server = Server()
+        server.protocol.client_capabilities = types.ClientCapabilities()
+        server.check_soon(server.session.edit(path, WRONG))
+        while len(steps) < 3:
+            await asyncio.sleep(0)
+        server.check_soon(server.session.edit(path, RIGHT))
+        while len(steps) < 103:
+            await asyncio.sleep(0)
+        await asyncio.sleep(0.05)
+        server.check_soon(server.session.edit(path, WRONG))  # all is there already
+        await asyncio.sleep(0.05)
+
+    monkeypatch.setattr("btq_lang.features.getting_ready", making, raising=False)
+    asyncio.run(type_meanwhile())
+    assert steps == [WRONG] * 3 + [RIGHT] * 100
 
 
 def test_what_the_server_does_not_know_is_nothing(editor: Editor) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from btq_lang.features.on_type import linked_ranges
     from btq_lang.features.on_type import on_type as typed
     from btq_lang.features.outline import document_symbols, workspace_symbols
+    from btq_lang.features.readiness import getting_ready
     from btq_lang.features.relations import goto_implementation, goto_type
     from btq_lang.features.rename import Refusal, prepare_rename
     from btq_lang.features.rename import rename as renamed
@@ -54,6 +55,7 @@ __all__ = [
     "explain",
     "find_references",
     "folding_ranges",
+    "getting_ready",
     "goto_definition",
     "goto_implementation",
     "goto_type",
@@ -86,6 +88,7 @@ _HOMES = {
     "node_path": ("path_of_node",),
     "on_type": ("linked_ranges", "typed"),
     "outline": ("document_symbols", "workspace_symbols"),
+    "readiness": ("getting_ready",),
     "relations": ("goto_implementation", "goto_type"),
     "rename": ("Refusal", "prepare_rename", "renamed"),
     "semantic_tokens": ("coloured", "encode"),

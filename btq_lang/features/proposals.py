@@ -429,9 +429,9 @@ def _defined(workspace: Workspace, path: str, kind: Kind) -> Iterator[tuple[Defi
         if (found := scope.find(kind, name)) is not None:
             yield found, ""
     seen = set(scope.names(kind))
-    for other in sorted(workspace.files):
+    for other in sorted(workspace.files.keys() - scope.paths):
         names = workspace.files[other].names_of(kind)
-        if seen.issuperset(names) or other in scope.paths:
+        if seen.issuperset(names):
             continue
         new = set(names) - seen
         if not _clashes(workspace, path, other):

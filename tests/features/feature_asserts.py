@@ -27,6 +27,7 @@ from btq_lang.features.node_path import node_path
 from btq_lang.features.on_type import linked_ranges, on_type
 from btq_lang.features.outline import Outline, document_symbols, workspace_symbols
 from btq_lang.features.proposals import Proposal
+from btq_lang.features.readiness import getting_ready
 from btq_lang.features.relations import goto_implementation, goto_type
 from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import TYPES, encode, semantic_tokens, stretches
@@ -445,6 +446,8 @@ def answer_everything(text: str, offset: int) -> None:
     assert found is None or _lies_in(found.span, whole)
     signature_help(*at)
     node_path(*at)
+    for _ in getting_ready(workspace, "main.btq"):
+        pass
     completed = complete(*at)
     file = workspace.files["main.btq"]
     for entry in file.parsed.entries:
