@@ -444,6 +444,7 @@ def test_the_authors_example_builds_for_every_target(btq: Btq, shared: Path) -> 
 
 
 def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
+    btq.write(nameless="BehaviorTree\n    AlwaysSuccess\n")  # the engine runs it
     btq.write(empty="", models=SKILLS, mission='include "nothing.btq"\nBehaviorTree Main\n    A\n', nothing="# none\n")
     told = "btq build: empty.btq has no tree, so there is nothing in it to run\n"
     code, _, messages = btq.build(".")

@@ -25,7 +25,7 @@ from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
+from btq_lang.syntax import Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
@@ -171,7 +171,8 @@ def _without_tree(group: Group) -> Iterator[str]:
         workspace = group.workspace
         if path in workspace.included_files or not is_mission(workspace, path) or workspace.defined_in(path):
             continue
-        if not workspace.scope(path).names(Kind.TREE):
+        entries = (entry for each in workspace.closure(path) for entry in workspace.files[each].parsed.entries)
+        if not any(isinstance(entry.item, Tree) for entry in entries):  # a lone one needs no name
             yield path
 
 
