@@ -144,6 +144,16 @@ def test_an_included_file_holds_what_it_asks_for_itself() -> None:
     assert '<Script name="btq_start" code="@safe_stop := false" _btq="*"/>' in main
 
 
+def test_what_no_bundle_enforces_either_has_that_reason() -> None:
+    texts = {
+        "skills.btq": "BehaviorTree Skill\n    Condition Look\n",
+        "main.btq": 'include "skills.btq"\nQualityReq quick\n    Look takes at most 5 s\n    on violation fail\n'
+        "Root Main\nBehaviorTree Main\n    SubTree Skill\n",
+    }
+    told = ["quick: monitored: `Look` completes within one tick"]
+    assert states(Workspace.of(texts), "main.btq") == states(Workspace.of(texts), "main.btq", bundled=True) == told
+
+
 def test_a_mission_begins_with_what_included_files_need() -> None:
     workspace = Workspace.of(FILES | {"main.btq": MAIN.replace("apply safe to Look, Drive\n", "")})
     main = xml_of(workspace, "main.btq")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 ADVICE: Final = "the next build writes it as it was, so change the requirement that it enforces"
 
 
-class Guarded(Record):
+class NodeGuards(Record):
     """One of the mission's nodes, with the guards that a build put around and beside it.
 
     Attributes:
@@ -50,14 +50,14 @@ class ByHand(Record):
         return "changed" if self.sum else "taken out"
 
 
-def guarded(root: Element) -> Iterator[Guarded]:
+def node_guards(root: Element) -> Iterator[NodeGuards]:
     """The nodes of a file that have guards, in order."""
     for key, _, guards in _nodes(root):
         if guards:
-            yield Guarded(key, tuple(guards.items()))
+            yield NodeGuards(key, tuple(guards.items()))
 
 
-def changed_by_hand(root: Element, built: Iterable[Guarded]) -> tuple[ByHand, ...]:
+def changed_by_hand(root: Element, built: Iterable[NodeGuards]) -> tuple[ByHand, ...]:
     """What was changed since a build, in the order of the file.
 
     Args:

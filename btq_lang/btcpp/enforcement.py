@@ -191,6 +191,14 @@ def _plan(
     return _Plan(held, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
 
 
+class _Elsewhere(NotEnforced):
+    """A node stands in a file that is not written together with the clause's."""
+
+    def __init__(self, node: SourceNode) -> None:
+        super().__init__()
+        self.node: Final = node
+
+
 class _Planner:
     def __init__(
         self,
@@ -207,6 +215,7 @@ class _Planner:
         self.stops: Final[dict[str, None]] = {}
         self._workspace: Final = workspace
         self._found: Final = found
+        self._path: Final = path
         self._files: Final = files
         self._others: Final = others
         self._shared: Final = path in workspace.included_files
@@ -228,13 +237,23 @@ class _Planner:
             if known is None and node.path not in self._files:
                 known = next((each for other in self._others if (each := other.enforced.get(identity))), None)
                 if known is None:
-                    raise NotEnforced(_where_else(self._workspace, node))
+                    raise _Elsewhere(node)
             if known is None:
                 known = replace(held, way="enforced", why=self._guard(requirement, claim, node))
                 self.enforced[identity] = known
+        except _Elsewhere as elsewhere:
+            bundled = self._bundled.held(applied, claim)
+            is_helped = bundled.way == "enforced"
+            return replace(held, why=_where_else(self._workspace, elsewhere.node) if is_helped else bundled.why)
         except NotEnforced as reason:
             return replace(held, why=str(reason))
         return known
+
+    @cached_property
+    def _bundled(self) -> _Planner:
+        """The same for a bundle: what cannot be enforced there either has another reason than where its node stands."""
+        files = _written(self._workspace, self._path, True)
+        return _Planner(self._workspace, self._found, self._path, files, ())
 
     def _node(self, applied: Applied, claim: Claim) -> SourceNode:
         requirement, subject = applied.requirement, applied.subject
@@ -294,7 +313,7 @@ class _Planner:
             raise NotEnforced(f"{node.shown} completes within one tick")
         for each in dict.fromkeys(each for each, _ in made.wrappers):
             if each.path not in self._files:
-                raise NotEnforced(_where_else(self._workspace, each))
+                raise _Elsewhere(each)
             _can_stand_around(each, self._budget_of(each).skip is not None)
 
     def _budget_of(self, node: SourceNode) -> Budget:

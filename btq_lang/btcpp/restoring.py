@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-from btq_lang.btcpp.by_hand import ByHand, Guarded, changed_by_hand
+from btq_lang.btcpp.by_hand import ByHand, NodeGuards, changed_by_hand
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSION
 from btq_lang.catalog.names import legal_name
@@ -93,7 +93,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
         place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))
         guards = tuple(
-            Guarded(str(each["node"]), tuple((name, str(sum_)) for name, sum_ in dict(each["guards"]).items()))
+            NodeGuards(str(each["node"]), tuple((name, str(sum_)) for name, sum_ in dict(each["guards"]).items()))
             for each in data.get("guards", ())
         )
     except (ValueError, LookupError, TypeError, RecursionError):

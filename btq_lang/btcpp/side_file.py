@@ -10,7 +10,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator, Mapping
 
-from btq_lang.btcpp.by_hand import guarded
+from btq_lang.btcpp.by_hand import node_guards
 from btq_lang.btcpp.document import Document, Element
 from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
@@ -179,7 +179,7 @@ class _Running:
 
 def _guards(root: Element) -> dict[str, Json]:
     """What enforces in the file, by the nodes that it stands at."""
-    found: list[Json] = [{"node": each.node, "guards": dict(each.guards)} for each in guarded(root)]
+    found: list[Json] = [{"node": each.node, "guards": dict(each.guards)} for each in node_guards(root)]
     return {"guards": found} if found else {}
 
 
