@@ -10,6 +10,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
+from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.record import replace
@@ -40,7 +41,8 @@ class Session:
         self._workspaces: list[Workspace] = []
         self._home: dict[str, int] = {}
         self._answers: dict[str, Answers] = {}  # of open files, for only these are edited
-        self._checked: dict[str, tuple[Workspace, tuple[Diagnostic, ...]]] = {}
+        # Weak, for what the others said when a file was checked is not to stay until it is checked again.
+        self._checked: dict[str, tuple[ReferenceType[Workspace], tuple[Diagnostic, ...]]] = {}
 
     # ---- what changes ----
 
@@ -163,7 +165,7 @@ class Session:
         if workspace is None:
             return ()
         known = self._checked.get(path)
-        if known is not None and known[0] is workspace:
+        if known is not None and known[0]() is workspace:
             return known[1]
         from btq_lang.checks import check
         from btq_lang.checks.answers import Answers
@@ -172,7 +174,7 @@ class Session:
         found = check(workspace, path, answers)
         if known is not None and known[1] == found:
             found = known[1]  # the same object: nothing new to tell
-        self._checked[path] = workspace, found
+        self._checked[path] = ref(workspace), found
         return found
 
     def forget(self, path: str) -> None:
