@@ -34,6 +34,7 @@ COMPILED = (
     "token_list",
     "cursor",
     "conditions",
+    "claims",
     "clauses",
     "plain_requirements",
     "plain_models",

@@ -5,64 +5,45 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from btq_lang.conditions import HEADS, SUBJECT_HEADS, ConditionParser
-from btq_lang.cursor import shown
+from btq_lang.claims import VERBS, ClaimParser
+from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.near import near
 from btq_lang.scan import is_unit, line_end, path_end, unit_run
 from btq_lang.slips import unknown_unit
 from btq_lang.syntax import (
-    Amount,
     Argument,
     Because,
-    Between,
-    Bound,
-    Bounded,
-    Case,
-    Claim,
     Clause,
-    Condition,
     Confidence,
-    Event,
-    Every,
     Goal,
     How,
-    Mission,
     Odds,
     OnViolation,
     Parameter,
-    Path,
     QualityPath,
     ReqRef,
     Requirement,
     Scope,
-    Subject,
-    Sum,
-    Table,
     Window,
     Word,
     quote,
     unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
-VERBS: Final = frozenset(
-    ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
-)
-HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 ACTIONS: Final = ("fail", "halt", "warn", "log")
 METHODS: Final = ("monitor", "analysis", "test", "review")
-RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
 
 
-class ClauseParser(ConditionParser):
+class ClauseParser(ClaimParser):
     """A cursor that can read requirements."""
 
     # ---- requirements ----
@@ -329,245 +310,7 @@ class ClauseParser(ConditionParser):
         self.advance()
         return None
 
-    # ---- claims ----
-
-    def claim(self) -> Claim | None:
-        """Claim = [ Subject ] Verb"""
-        start = self.start()
-        subject: Subject | None = None
-        if not (self.kind == NAME and self.raw in VERBS):
-            subject = self.subject()
-        if not (self.kind == NAME and self.raw in VERBS):
-            if subject is not None:
-                self.no_verb(subject)
-            return None
-        verb = self.take()
-        bound: Bound | None = None
-        condition: Condition | None = None
-        resource: Word | None = None
-        per: Path | Word | None = None
-        event: Event | None = None
-        every = False
-        word = verb.raw
-        if word == "takes":
-            bound = self.bound()
-        elif word == "succeeds":
-            bound = self.within() if self.accept_word("within") else None
-        elif word in _OF_CONDITIONS:
-            if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
-                note = (
-                    "a node that never fails is one that `succeeds`; nodes that run are conditions: `never node Dock`"
-                )
-                self.expected("a condition", (note,))
-            else:
-                condition = self.cond()
-        elif word == "uses":
-            bound = self.bound()
-            resource = self.plain_name("a signal") if self.expect_word("of", forgotten=self.kind == NAME) else None
-        elif word == "tries":
-            bound = self.bound()
-            per = self.path("a node") if self.accept_word("per") else None
-        elif word == "runs":
-            if self.accept_word("every"):
-                every = True
-                bound = self.within()
-            else:
-                bound = self.bound()
-                if self.kind == NEWLINE:
-                    self.expected("`per` and a time", ("a rate is written `runs at least 10 per 1 s`",))
-                else:
-                    per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
-        elif word == "follows":
-            event = self.event()
-        else:
-            bound = self.within() if self.expect_word("within") else None
-            event = self.event() if self.expect_word("after", ("of", "from", "since")) else None
-        return Claim(start, self.last_end(), subject, verb, bound, condition, resource, per, event, every)
-
-    def every_meant(self) -> bool:
-        """`all MoveBase`: complain, and pass it as `every`."""
-        if self.kind != NAME or self.raw not in ("all", "each", "any"):
-            return False
-        if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERBS:
-            return False
-        fix = replace_fix(f"Replace `{self.raw}` by `every`", self.here(), "every")
-        self.complain("syntax-error", self.here(), "all nodes of a kind are `every …`", (), (fix,))
-        self.advance()
-        return True
-
-    def is_verb(self, further: int) -> bool:
-        """Whether the next word but `further` is a verb."""
-        index = self.index + further
-        return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERBS
-
-    def no_verb(self, subject: Subject) -> None:
-        """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
-        first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-        if isinstance(subject, Path) and self.kind == NAME and self.raw in _MODALS:
-            self.expected("a verb: takes, succeeds, needs, keeps, …", (_MEANT[self.raw],))
-        elif isinstance(subject, Path) and self.at("."):
-            fix = replace_fix("Write `/`", self.here(), "/")
-            self.complain("syntax-error", self.here(), "the names of a path have `/` between them", (), (fix,))
-            self.recover()
-        elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
-            note = "a clause speaks of one node: write it for each, or `sum of A, B` for the time of both"
-            self.expected(_A_VERB, (note,))
-        elif first is not None and first.kind == NAME and first.raw in _MEANT:
-            self.expected(f"a verb behind `{first.raw}` (takes, succeeds, needs, keeps, …)", (_MEANT[first.raw],))
-        elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
-            at = first.start + self.base
-            fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
-            message = "a condition stands behind its verb: `keeps`, `never`, `needs` or `leaves`"
-            notes = ("`keeps` while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
-            self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
-            self.recover()
-        elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
-            self.misspelt(self.here(), self.raw, likely[0])
-        elif not isinstance(subject, Path):
-            self.expected(_A_VERB)
-        elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERBS | HEADS, limit=1)):
-            self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
-        else:
-            name = "/".join(word.raw for word in subject.names)
-            note = _INSTEAD_OF_A_NODE
-            if subject.names[0].kind == STRING:
-                note = "a requirement has one title; reasons are written `because …`"
-            elif self.kind == STRING:
-                note = '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"'
-            self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
-
-    def misspelt(self, span: Span, word: str, likely: str) -> None:
-        """Complain of a word that begins no clause, and pass over the rest."""
-        fix = replace_fix(f"Replace `{word}` by `{likely}`", span, likely)
-        self.complain("syntax-error", span, f"`{word}` begins no clause: did you mean `{likely}`?", (), (fix,))
-        self.recover()
-
-    def subject(self) -> Subject | None:
-        """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
-        start = self.start()
-        if self.accept_word("mission"):
-            return Mission(start, self.last_end())
-        if self.accept_word("every") or self.every_meant():
-            name = self.name("a node's ID or kind")
-            return Every(start, self.last_end(), name) if name else None
-        if self.accept_word("from"):
-            first = self.event()
-            last = self.event() if self.expect_word("to") else None
-            return Between(start, self.last_end(), first, last)
-        if self.accept_word("sum"):
-            paths: list[Path] = []
-            if not self.expect_word("of"):
-                return None
-            while path := self.path("a node"):
-                paths.append(path)
-                if self.at_word("and"):
-                    gone = Span(self.last_end() + self.base, self.here().end)
-                    fix = replace_fix("Write `,`", gone, ",", safe=True)
-                    self.complain("syntax-error", self.here(), "`,` stands between them", (), (fix,))
-                    self.advance()
-                elif not self.accept(","):
-                    break
-            return Sum(start, self.last_end(), tuple(paths))
-        return self.path("a node")
-
-    def event(self) -> Event | None:
-        """Event = ( Path | "mission" ) ( "starts" | "succeeds" | … ) | "when" Cond"""
-        start = self.start()
-        if self.accept_word("when"):
-            condition = self.cond()
-            return Event(start, self.last_end(), None, "when", condition)
-        path = None if self.accept_word("mission") else self.path("an event: a node and what happens to it")
-        if not (self.kind == NAME and self.raw in HAPPENINGS):
-            note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
-            self.expected("starts, succeeds, fails, finishes or halts", (note,), self.replaced_by(HAPPENINGS))
-            return None
-        happening = self.take().raw
-        return Event(start, self.last_end(), path, happening)
-
-    # ---- bounds ----
-
-    def bound(self) -> Bound | None:
-        """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
-        self.skip_colon()
-        start = self.start()
-        if self.accept_word("between"):
-            lower = self.amount()
-            upper = self.amount() if self.expect_word("and") else None
-            return Bound(start, self.last_end(), "between", lower, upper)
-        relation = None
-        if self.kind == NAME and self.kinds[self.index + 1] == NAME:
-            relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
-        if relation is None and (said := self.bound_in_other_words()):
-            relation = said
-        elif relation is None:
-            meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
-            if meant is None:
-                example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
-                note = f"how much is said before the value: `at most {example}`"
-                if self.kind in (QUANTITY, NUMBER) and self.raws[self.index + 1] == "-":
-                    note = "a range is written `between 10 s and 20 s`"
-                self.expected("a bound: at most, at least, less than, more than or between", (note,))
-                return None
-            relation = RELATIONS[meant]
-            written = " ".join(meant)
-            fix = replace_fix(f"Write `{written}`", self.here(), written, safe=True)
-            self.complain("syntax-error", self.here(), f"this bound is written `{written}`", (), (fix,))
-        else:
-            self.advance()
-        self.advance()
-        value = self.bounded()
-        return Bound(start, self.last_end(), relation, value)
-
-    def bound_in_other_words(self) -> str | None:
-        """`no more than`, `up to`: complain, and leave their last word at hand."""
-        for length in (3, 2):
-            words = tuple(self.raws[self.index : self.index + length])
-            meant = _BOUNDS_IN_WORDS.get(words)
-            if meant is not None:
-                span = Span(self.here().start, self.starts[self.index + length - 1] + len(words[-1]))
-                written = " ".join(meant)
-                fix = replace_fix(f"Write `{written}`", span, written, safe=True)
-                self.complain("syntax-error", span, f"this bound is written `{written}`", (), (fix,))
-                self.go_to(self.index + length - 1)
-                return RELATIONS[meant]
-        return None
-
-    def within(self) -> Bound:
-        """Bounded, as the upper bound that `within` and `every` mean"""
-        start = self.start()
-        value = self.bounded()
-        end = self.last_end()
-        return Bound(min(start, end), end, "<=", value)
-
-    def bounded(self) -> Bounded | None:
-        """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
-        value = self.amount()
-        if value is None or not self.at_word("if"):
-            return value
-        cases: list[Case] = []
-        while self.accept_word("if"):
-            cases.append(Case(value, self.cond()))
-            if not self.accept(","):
-                break
-            value = self.amount()
-            if value is None:
-                return Table(tuple(cases))
-            if not self.at_word("if"):
-                self.expected("`if` and a condition, or `else` instead of the comma")
-                return Table(tuple(cases))
-        otherwise = self.amount() if self.expect_word("else") else None
-        return Table(tuple(cases), otherwise)
-
-    def amount(self, strings: bool = False) -> Amount | None:
-        """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-        self.skip_colon()
-        negative = self.accept("-")
-        if self.kind == QUANTITY or self.kind == NUMBER:
-            return Amount(self.take(), negative)
-        if not negative and (self.kind == NAME or (strings and self.kind == STRING)):
-            return Amount(self.take())
-        self.expected("a value with its unit: 30 s")
-        return None
+    # ---- units ----
 
     def unit(self) -> Word | None:
         """UNIT, behind the `:` of a signal or a parameter, where it is not part of a QUANTITY"""
@@ -595,61 +338,16 @@ class ClauseParser(ConditionParser):
         return Word(NAME, start, self.text[first:end])
 
 
-_MEANT: Final = {  # by what is read as a node in front of a verb
-    "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
-    "violation": "write `on violation fail`",
-    "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
-    "if": "what holds in a situation only is followed by `while humans_near`, or `when fragile`",
-    "unless": "write `while not humans_near`",
-    "after": "write `follows Look succeeds`, or `starts within 2 s after Look succeeds`",
-    "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
-    "between": "a range is written `keeps 0 N <= force <= 3 N`",
-    "always": "write `keeps battery >= 15 %`",
-    "not": "write `never lamp_on`, or `keeps not lamp_on`",
-    **dict.fromkeys(
-        ("must", "shall", "should", "will", "may"),
-        "a clause begins with its verb, without such a word: `takes at most 30 s`",
-    ),
-}
 _OTHER_WORDS: Final = {  # for actions and methods
     **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
     **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
     **dict.fromkeys(("inspection", "demonstration"), ("review", "test")),
     **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
 }
-_MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 _OTHER_SORTS: Final = {
     **dict.fromkeys(("boolean", "Boolean", "Bool", "flag"), "bool"),
     **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
     **dict.fromkeys(("int", "integer", "float", "double", "number", "count"), "1"),
 }
-_COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
-_A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
-_INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"
-_OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
-_BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
-    **dict.fromkeys(
-        (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),
-        ("at", "most"),
-    ),
-    **dict.fromkeys(
-        (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
-    ),
-    **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
-    **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
-}
-_INSTEAD_OF_BOUNDS: Final = {
-    "<=": ("at", "most"),
-    ">=": ("at", "least"),
-    "<": ("less", "than"),
-    ">": ("more", "than"),
-    "under": ("less", "than"),
-    "below": ("less", "than"),
-    "above": ("more", "than"),
-    "within": ("at", "most"),
-    "over": ("more", "than"),
-    **dict.fromkeys(("max", "maximum", "maximal", "maximally"), ("at", "most")),
-    **dict.fromkeys(("min", "minimum", "minimal", "minimally"), ("at", "least")),
-}

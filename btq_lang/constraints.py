@@ -10,7 +10,7 @@ import re
 from collections.abc import Container
 from functools import cache, lru_cache
 
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.parser import parse
 from btq_lang.record import Record

@@ -10,7 +10,7 @@ import re
 from btq_lang.attributes import AttributeParser, meant_clause
 from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.characters import SMALL_S, SMALL_T
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node

@@ -10,7 +10,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from operator import attrgetter
 
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS, RELATIONS
+from btq_lang.claims import RELATIONS
+from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, HEADS
 from btq_lang.scan import is_name, is_unit, unit_at
 from btq_lang.syntax import (

@@ -24,6 +24,7 @@ ROWS: tuple[frozenset[str], ...] = (
         {"tokens", "characters", "scan", "slips", "lexer", "token_list", "words", "node_clauses", "syntax", "cursor"}
         | {
             "conditions",
+            "claims",
             "clauses",
             "attributes",
             "nodes",

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, HAPPENINGS, METHODS, VERBS
+from btq_lang.claims import HAPPENINGS, VERBS
+from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.parser import ITEM_WORDS, parse
 from btq_lang.tokens import NODE_CLAUSES

@@ -9,7 +9,8 @@ from typing import TypeAlias
 
 import pytest
 
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, HAPPENINGS, METHODS, VERBS
+from btq_lang.claims import HAPPENINGS, VERBS
+from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.parser import ITEM_WORDS, parse
 from btq_lang.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS

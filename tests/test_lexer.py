@@ -9,7 +9,8 @@ from __future__ import annotations
 import pytest
 from syntax_asserts import assert_fix, assert_invariants, assert_parse, escaped, show_problems, written
 
-from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, VERBS
+from btq_lang.claims import HAPPENINGS, VERBS
+from btq_lang.clauses import EXPERIMENTS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.lexer import Lexer
 from btq_lang.parser import ITEM_WORDS, parse

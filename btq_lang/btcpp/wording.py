@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from btq_lang.btcpp.document import unescape
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.parser import ITEM_WORDS
 from btq_lang.syntax import is_name

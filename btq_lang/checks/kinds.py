@@ -11,7 +11,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, a
 from btq_lang.checks import lookups
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, misspelt_clause
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.facts import Facts

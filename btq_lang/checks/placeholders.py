@@ -10,7 +10,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View
-from btq_lang.clauses import VERBS
+from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.facts import Facts

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, HAPPENINGS, METHODS
+from btq_lang.claims import HAPPENINGS
+from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS
 from btq_lang.record import Record
 from btq_lang.tokens import BRACED, CLOSE, NAME, NUMBER, QUANTITY, STRING, Token

@@ -10,8 +10,9 @@ from itertools import pairwise
 from operator import itemgetter
 
 from btq_lang.catalog.nodes import lookup
+from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
-from btq_lang.clauses import EXPERIMENTS, HAPPENINGS, METHODS, VERBS
+from btq_lang.clauses import EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
