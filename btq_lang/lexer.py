@@ -20,6 +20,7 @@ from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import (
     COMPILED,
     blanks_end,
+    braced_end,
     line_end,
     line_opening,
     name_end,
@@ -268,7 +269,7 @@ class Lexer:
         if len(word) <= 3 and (symbol := symbol_at(text, start)):
             if len(symbol) >= len(word):
                 kind, end = SYMBOL, start + len(symbol)
-        elif end < self.size and text[end] in "#/" and _COMMENT_SIGN.match(text, end):
+        elif end < self.size and text[end] in "#/" and text.startswith(_COMMENT_SIGNS, end):
             return self._quote_this(start)
         return self._add(kind, start, end)
 
@@ -289,9 +290,9 @@ class Lexer:
             and not self._after_operand(start)
         ):
             return self._number(start)
-        if character == "{" and (braced := _BRACED.match(text, start)):
-            return self._add(BRACED, start, braced.end())
-        if character in "#/" and _COMMENT_SIGN.match(text, start):
+        if character == "{" and (braced := braced_end(text, start)) > start:
+            return self._add(BRACED, start, braced)
+        if character in "#/" and text.startswith(_COMMENT_SIGNS, start):
             return self._quote_this(start)
         if text[start : start + 2] in _TWO or character in ":.<>+-*/%^":
             return self._operator(start)
@@ -300,7 +301,7 @@ class Lexer:
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
         in_value = self._brackets and (character == "[" or character not in INSTEAD)
-        if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
+        if in_value and re.compile(_WHOLE_WORD).match(text, start) and self._in_value(start):
             return self._quote_value(start)
         if character == "{" or character == "}":
             return self._half_braced(start, character)
@@ -334,7 +335,7 @@ class Lexer:
             self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
             self._strange = True
             return self._add(NAME, start, twice.end())
-        word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
+        word = re.compile(_WHOLE_WORD).match(self.text, start + 1) if character == "{" else None
         end = self._add(NAME, start, word.end()) if word else start + 1
         if self._strange:
             return end
@@ -417,7 +418,7 @@ class Lexer:
         what is no word a blank is missing."""
         text = self.text
         start, end = self._whole_word(at)
-        sign = _COMMENT_SIGN.search(text, start)
+        sign = re.compile(_COMMENT_SIGN).search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
         message = f"`{sign[0]}` begins a comment only behind a blank"
         insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
@@ -458,7 +459,7 @@ class Lexer:
 
     def _whole_word(self, at: int) -> tuple[int, int]:
         """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
-        word = _WHOLE_WORD.match(self.text, at)
+        word = re.compile(_WHOLE_WORD).match(self.text, at)
         assert word is not None, "a word or a sign begins here"
         while self.raws and self._joins(len(self.raws) - 1, at):
             at = self.starts.pop()
@@ -538,7 +539,7 @@ class Lexer:
                 start = at + 1
             at += 1
         self._last_line = start
-        if at >= size or text[at] == ")" or _COMMENT_SIGN.match(text, at):
+        if at >= size or text[at] == ")" or text.startswith(_COMMENT_SIGNS, at):
             return at
         blanks = text[start:at]
         if self._at_top_column(blanks) and _top_line().match(text, at):
@@ -662,9 +663,10 @@ def _top_line() -> re.Pattern[str]:
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _BLANKS: Final = re.compile(r"[ \t]*")
 _LINE_START: Final = re.compile(r"\r\n|\n|\r")
-_BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}")
-_COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
-_WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
+_COMMENT_SIGNS: Final = ("#", "//", "/*")
+# Compiled when first used: they say what is wrong.
+_COMMENT_SIGN: Final = r"#|//|/\*"
+_WHOLE_WORD: Final = r"[^\s(),\"'{}]+"
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
 # Compiled when first used: most files need none of these.

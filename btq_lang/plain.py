@@ -250,7 +250,7 @@ def _string(text: str, start: i64, quote: i64) -> str:
         raise Unusual
     if not COMPILED:
         raw = text[start : text.find(text[start], start + 1) + 1]
-        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE(raw)):
+        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and re.search(_OUTER_LINE, raw)):
             raise Unusual
         return raw
     end = start + 1
@@ -511,4 +511,4 @@ _LONGEST: Final = max(map(len, _NO_KINDS))  # of those; to look a word up costs 
 # NAMEs that are none, all with a capital: two are symbols, and a line that begins with one of the others ends all
 # brackets.
 _NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))
-_OUTER_LINE: Final = re.compile(r"[\r\n][^ \t\r\n]").search
+_OUTER_LINE: Final = r"[\r\n][^ \t\r\n]"  # compiled when first used: few strings have several lines

@@ -168,9 +168,6 @@ def string_end(text: str, start: i64, quote: str) -> i64:
 
 def braced_end(text: str, start: i64) -> i64:
     """Behind the BRACED that begins at `start`; `start` where none does."""
-    if not COMPILED:
-        braced = _BRACED(text, start)
-        return braced.end() if braced else start
     size: i64 = len(text)
     if start == size or ord(text[start]) != LEFT_BRACE:
         return start
@@ -302,7 +299,6 @@ def unit_run(text: str, start: i64) -> i64:
 _USUAL_LINE: Final = 200  # characters that a comment seldom has
 _WORD: Final = re.compile(r"\w*").match
 _BLANKS: Final = re.compile(r"[ \t]*").match
-_BRACED: Final = re.compile(r"\{[^{}\"'\r\n]*\}").match
 # The first way over line ends spares the engine from looking back over the blanks it has passed.
 _OPENING: Final = re.compile(r"(?:[\r\n]+|[ \t\r\n]*[\r\n]|)([ \t]*)(?![ \t\r\n])").match
 _LINE: Final = re.compile(r"[^\r\n]*").match
