@@ -129,7 +129,8 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
     memory = memory or Memory()
     memory.begin()
     scope = workspace.scope(path)
-    nodes = memory.nodes = Nodes(workspace, scope, memory.nodes)
+    before = memory.nodes
+    nodes = memory.nodes = Nodes(workspace, scope, before)
     reader = Reader(workspace, path, scope, nodes)
     files = [workspace.files[each] for each in scope.paths]
     problems: list[Problem] = []
@@ -167,6 +168,8 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
     problems += [problem for rows in (read, attached, holding) for _, told in rows if told for problem in told]
     held = [each for each, _ in holding]
     by_tree = _by_tree(held, table.others, memory)
+    if before is not None:
+        nodes.let_go(before)
     return Requirements(
         reader.signals,
         reader.contexts,

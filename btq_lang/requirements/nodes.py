@@ -52,6 +52,11 @@ class Nodes:
         self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
         self._found: dict[tuple[str, ...], tuple[Target, ...]] = {}
 
+    def let_go(self, before: Nodes) -> None:
+        """Let go of those trees of an earlier workspace that are not among these."""
+        for item in before._of_item.keys() - self._of_item.keys():
+            before._of_item[item].let_go()
+
     @cached_property
     def all(self) -> tuple[SourceNode, ...]:
         """In the order of the files and of their text."""

@@ -85,6 +85,12 @@ class TreeNodes:
         """Whether it would come out the same if it were made of these."""
         return all(categories.get(name) == category for name, category in self._asked.items())
 
+    def let_go(self) -> None:
+        """Nobody asks for these nodes any more.  As parents and children know each other they would stay, with the
+        whole tree, until Python looks for garbage: while somebody types, for as long as a frame of the screen."""
+        for node in self.all:
+            node.children.clear()
+
     def _note(self, clauses: tuple[NodeClause, ...], nodes: list[SourceNode]) -> None:
         for clause in clauses:
             if isinstance(clause, Tags):
