@@ -140,7 +140,9 @@ class Converter:
             said = _said(
                 one.rule, one.message, one.notes, one.effective_severity, one.tags, self.uri(page_path(one.rule))
             )
-            related = ", ".join([self._information(workspace, path, each) for each in one.related])
+            related = (
+                ", ".join([self._information(workspace, path, each) for each in one.related]) if one.related else ""
+            )
             written.append(
                 f'{{"range": {self._range_as_json(lines, one.span)}, {said}, "relatedInformation": [{related}]}}'
             )

@@ -251,10 +251,11 @@ def _declared(demanded: Demanded, node: SourceNode, port: str) -> Port | None:
 
 
 def _ports(demanded: Demanded, name: str) -> tuple[Port, ...]:
-    ports: tuple[Port, ...] = ()
-    for kind in (Kind.TREE, Kind.MODEL):
-        found = [file.names.found[kind, name] for file in demanded.files if (kind, name) in file.names.found]
-        target = found[0][0][1].target if found else None
-        if isinstance(target, Tree | Model):
-            ports = ports or target.ports
-    return ports
+    for key in ((Kind.TREE, name), (Kind.MODEL, name)):
+        for file in demanded.files:
+            if (found := file.names.found.get(key)) is not None:
+                target = found[0][1].target
+                if isinstance(target, (Tree, Model)) and target.ports:
+                    return target.ports
+                break
+    return ()

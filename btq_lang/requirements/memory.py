@@ -110,7 +110,12 @@ class Table:
         self._most: int = before._most if before is not None else 0
         if before is not None and before.answers:
             answers = before.answers
-            changed = [each for each, answer in answers.items() if not is_same(asker.answer(each), answer)]
+            ask = asker.answer
+            changed = [
+                each
+                for each, answer in answers.items()
+                if (now := ask(each)) is not answer and not is_same(now, answer)
+            ]
             self.answers = before._in_use() if len(answers) > self._most else answers
             self._most = max(self._most, 2 * len(self.answers))
             self._changed.update(changed)
