@@ -137,7 +137,7 @@ class Names:
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Names | None:
         """The names after an edit that has put other items in the place of some; None where that says too little: a
-        name has several definitions, or nothing says where the new ones stand."""
+        name has several definitions, or nothing says where the new ones stand, as where they are in several places."""
         before = [(symbol.kind, symbol.name) for each in gone for symbol in each.summary.symbols]
         now = {(one.kind, one.name): [(each.item, one)] for each in come for one in each.summary.symbols}
         if any(len(self.found[key]) > 1 for key in before):
@@ -151,8 +151,10 @@ class Names:
         elif now.keys() - before & self.found.keys():
             return None
         else:
-            known = [*self.found.items()]
-            at = [*self.found].index(before[0])
+            known, names = [*self.found.items()], [*self.found]
+            at = names.index(before[0])
+            if names[at : at + len(before)] != before:
+                return None
             found = dict([*known[:at], *now.items(), *known[at + len(before) :]])
         after = Names(found)
         after._take_over(self, before, [*now])

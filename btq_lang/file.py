@@ -55,7 +55,7 @@ class File:
         after = File(self.path, text)
         if self.origin is None and "parsed" in self.__dict__ and is_btq(self.path):
             change = changed(self.text, text)
-            after.parsed = reparse(self.parsed, text, change)
+            after.parsed = _sharing(self.parsed, reparse(self.parsed, text, change), change)
             known = self.facts
             items = [entry.item for entry in after.parsed.entries]
             facts = after.facts = {id(item): known.get(id(item)) or Facts(item) for item in items}
@@ -299,6 +299,17 @@ class File:
 
     def __repr__(self) -> str:
         return f"File({self.path!r}, {len(self.text)} characters)"
+
+
+def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
+    """The same, but where the item before the change was read again and says what it said, it is the same object: a
+    change in the first line of an item may touch the one before it."""
+    old, new = before.entries, now.entries
+    at = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
+    is_first_one = 0 <= at < len(new) and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
+    if not is_first_one or new[at] != old[at]:
+        return now  # and those that are others stay in one row
+    return Parsed(now.text, (*new[:at], old[at], *new[at + 1 :]), now.starts)
 
 
 def _start_of(entry: Entry) -> int:
