@@ -14,16 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Final
 
-    from mypy_extensions import mypyc_attr as mypyc_attr
-else:
-
-    def mypyc_attr(**_: object) -> Callable[[type], type]:
-        """`@mypyc_attr(acyclic=True)`: no instance is ever part of a cycle, so the collector need not know of them.
-
-        The compiler reads it; the class stays as it is.
-        """
-        return lambda cls: cls
-
 
 class NotCollecting:
     """`with NotCollecting():` nothing made inside is garbage, so none is looked for."""

@@ -6,7 +6,6 @@ them too.  What a requirement demands, its clauses, is rarer and stands there.
 
 from __future__ import annotations
 
-from btq_lang.garbage import mypyc_attr
 from btq_lang.text import Span
 from btq_lang.words import Word
 
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from btq_lang.syntax import Argument, Clause, Parameter
 
 
-@mypyc_attr(acyclic=True)
 class _Part:
     """What all of them do alike: they are equal if their fields are."""
 
@@ -40,7 +38,6 @@ class _Part:
         return f"{type(self).__name__}{self._values!r}"
 
 
-@mypyc_attr(acyclic=True)
 class QualityPath(_Part):
     """`performance-efficiency.time-behaviour`, or as the paper prints it: `performance <time-behavior>`."""
 
@@ -55,7 +52,6 @@ class QualityPath(_Part):
         return Span(self.names[0].start, self.names[-1].end)
 
 
-@mypyc_attr(acyclic=True)
 class Quality(_Part):
     """A quality in a satisfices list, with the requirements it encloses in the classic form."""
 
@@ -67,7 +63,6 @@ class Quality(_Part):
         self.requirements: Final = requirements
 
 
-@mypyc_attr(acyclic=True)
 class Satisfices(_Part):
     """`satisfices Quality, …`: a concern, not yet measured."""
 
@@ -80,7 +75,6 @@ class Satisfices(_Part):
         self.qualities: Final = qualities
 
 
-@mypyc_attr(acyclic=True)
 class ReqRef(_Part):
     """A requirement named, not defined: `rq1`, `slow(limit = 0.1 m/s)`."""
 
@@ -92,7 +86,6 @@ class ReqRef(_Part):
         self.arguments: Final = arguments
 
 
-@mypyc_attr(acyclic=True)
 class Satisfies(_Part):
     """`satisfies rq1, QualityReq rq2 …`: requirements attached to the node."""
 
@@ -105,7 +98,6 @@ class Satisfies(_Part):
         self.uses: Final = uses
 
 
-@mypyc_attr(acyclic=True)
 class Tags(_Part):
     """`tags heavy, indoor`."""
 
@@ -118,7 +110,6 @@ class Tags(_Part):
         self.names: Final = names
 
 
-@mypyc_attr(acyclic=True)
 class Requirement(_Part):
     """A requirement, defined in place, or at file level, where it is an item.
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btq_lang.garbage import mypyc_attr
 from btq_lang.text import Span
 from btq_lang.tokens import STRING
 
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from btq_lang.syntax import NodeClause, Verbatim
 
 
-@mypyc_attr(acyclic=True)
 class Word:
     """A word of the source: a name, a string, a symbol or a value.
 
@@ -70,7 +68,6 @@ class Word:
         return f"{self.raw}@{self.start}"
 
 
-@mypyc_attr(acyclic=True)
 class TypeWord(Word):
     """The type of a port, `std::string`: several words of the source, with or without blanks between them."""
 
@@ -82,7 +79,6 @@ class TypeWord(Word):
         return re.sub(r"\s+|/\*.*?\*/", "", self.raw, flags=re.DOTALL)
 
 
-@mypyc_attr(acyclic=True)
 class Pair:
     """`key = value`: a port, a subtree argument, or `_skipIf`, `_while`, …; no value: it is missing."""
 
@@ -107,7 +103,6 @@ class Pair:
         return f"{self.key!r} = {self.value!r}"
 
 
-@mypyc_attr(acyclic=True)
 class Node:
     """A node of a tree.
 

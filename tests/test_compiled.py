@@ -51,12 +51,18 @@ def answers(package: Path, texts: list[str]) -> tuple[list[Path], list[str]]:
         [sys.executable, "-c", TELL],
         input="".join(json.dumps(text) + "\n" for text in texts),
         cwd=package,  # which stands first in the path of `-c`
-        env=os.environ | {"PYTHONPATH": str(package)},
+        env=os.environ | {"PYTHONPATH": str(package), "PYTHONMALLOC": "debug"},  # writing beside an object is fatal
         capture_output=True,
         text=True,
         check=True,
     ).stdout.splitlines()
     return [Path(file) for file in json.loads(said[0])], said[1:]
+
+
+def deep(levels: int) -> str:
+    """A tree of nodes in nodes: letting go of it is nested deeper than Python lets go of objects in one go."""
+    inner = "".join(f"{'  ' * level}->\n" for level in range(1, levels))
+    return f"BehaviorTree A\n{inner}{'  ' * levels}Action X (a = b) satisfies r\n"
 
 
 def hatch_build() -> Any:
@@ -89,6 +95,7 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts = [path.read_bytes().decode("utf-8") for path in EXAMPLES]
     texts += [text for _, language, text in blocks() if language == "btq"]
     texts += [mission(1_000, 2, "classic"), mission(1_000, 2, "short")]
+    texts += [deep(60), f"context c : {' * '.join('a' * 80)}"]
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts)

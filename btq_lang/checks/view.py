@@ -6,7 +6,7 @@ It decides nothing; a check that only one rule needs does not belong here.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cache
 
 from btq_lang.attributes import meant_clause
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
@@ -84,6 +84,13 @@ class View:
         self._scripts: dict[str, Script] = {}
         self.model_ports: dict[int, KnownPorts] = {}
         self._in_order: set[Callable[[View, str], object]] = set()
+
+    def _once(self, make: Callable[[View], T]) -> T:
+        """What is made once for this view; properties that Python keeps cannot be compiled."""
+        known = self._given.get(make, _UNKNOWN)
+        if known is _UNKNOWN:
+            known = self._given[make] = make(self)
+        return known  # type: ignore[no-any-return]  # it is what `make` returns
 
     # ---- what is asked, and noted ----
 
@@ -204,11 +211,10 @@ class View:
     def trees(self) -> tuple[Entry, ...]:
         """The file's trees, in order."""
         self.note_everything()
-        return self._trees
+        return self._once(View._find_trees)
 
-    @cached_property
-    def _trees(self) -> tuple[Entry, ...]:
-        return tuple(entry for entry in self._file.parsed.entries if isinstance(entry.item, Tree))
+    def _find_trees(self) -> tuple[Entry, ...]:
+        return tuple([entry for entry in self._file.parsed.entries if isinstance(entry.item, Tree)])
 
     @property
     def has_trees(self) -> bool:
@@ -332,19 +338,21 @@ class View:
     def requirements(self) -> Requirements | None:
         """The requirements in scope, resolved; None where none has a clause and nothing is declared for one."""
         self.note_everything()
-        return self._requirements
+        return self._once(View._resolve)
 
-    @cached_property
-    def _requirements(self) -> Requirements | None:
-        if not self._has_clauses:
+    def _resolve(self) -> Requirements | None:
+        if not self._has_clauses():
             return None
         from btq_lang.requirements import requirements  # most files have no use for it, and it is large
 
         return requirements(self._workspace, self.path, self.resolved)
 
-    @cached_property
+    @property
     def resolved(self) -> Memory:
         """What was resolved and found of the requirements before; nothing where nobody keeps it."""
+        return self._once(View._remember)
+
+    def _remember(self) -> Memory:
         from btq_lang.requirements import Memory  # as above
 
         memory = self._answers.resolved if self._answers is not None else None
@@ -358,17 +366,15 @@ class View:
     def budgets(self) -> Budgets | None:
         """How long the nodes take if what is demanded of those below them holds; None where nothing is demanded."""
         self.note_everything()
-        return self._budgets
+        return self._once(View._find_budgets)
 
-    @cached_property
-    def _budgets(self) -> Budgets | None:
+    def _find_budgets(self) -> Budgets | None:
         if self.requirements is None:
             return None
         from btq_lang.requirements.budgets import Budgets  # as above
 
         return Budgets(self.requirements, self.resolved)
 
-    @cached_property
     def _has_clauses(self) -> bool:
         if self._scope.names(Kind.SIGNAL) or self._scope.names(Kind.CONTEXT):
             return True
@@ -430,10 +436,9 @@ class View:
         if not isinstance(entry.item, Include):
             return ()
         self.note_everything()
-        return [clash for clash in self._clashes.get(id(entry), ()) if clash[1].symbol.kind in kinds]
+        return [clash for clash in self._once(View._find_clashes).get(id(entry), ()) if clash[1].symbol.kind in kinds]
 
-    @cached_property
-    def _clashes(self) -> dict[int, list[tuple[Definition, Definition]]]:
+    def _find_clashes(self) -> dict[int, list[tuple[Definition, Definition]]]:
         found: dict[int, list[tuple[Definition, Definition]]] = {}
         includes = [entry for entry in self._file.parsed.entries if isinstance(entry.item, Include)]
         before: set[str] = set()

@@ -8,7 +8,7 @@ holds for some activations only (a scope, some instances) is none here.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf
+from math import fsum, inf
 
 from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements
@@ -248,9 +248,9 @@ def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
     """By the union bound: what all its parts do is as unlikely to be missed as the sum of what each of them misses."""
     first = parts[0]
     together = tuple(part for each in parts for part in each.parts)
-    missed = sum(1.0 - part.probability for part in parts)
+    missed = fsum([1.0 - part.probability for part in parts])
     if node.tag in ("Sequence", "AsyncSequence", "SequenceWithMemory"):
-        return Success(sum(part.seconds for part in parts), max(0.0, 1.0 - missed), together)
+        return Success(fsum([part.seconds for part in parts]), max(0.0, 1.0 - missed), together)
     if node.tag == "Parallel" and port_count(node, "success_count", -1) in (-1, len(parts)):
         return Success(max(part.seconds for part in parts), max(0.0, 1.0 - missed), together)
     if node.tag == "Repeat" and (count := port_count(node, "num_cycles") or 0) > 0:

@@ -8,7 +8,7 @@ requirements: `budgets` brings them in.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import inf
+from math import fsum, inf
 
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record, replace
@@ -508,7 +508,7 @@ def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
         return 1.0
     if count is None or count < 0:
         return 0.0
-    return max(0.0, 1.0 - count * sum(1.0 - probability for probability in probabilities))
+    return max(0.0, 1.0 - count * fsum([1.0 - probability for probability in probabilities]))
 
 
 _ANSWERS: Final = Budget(ZERO, ZERO, None, False)
