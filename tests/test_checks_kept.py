@@ -165,6 +165,27 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
             assert check(workspace, each, kept[each]) == check(fresh, each), (step, each, texts)
 
 
+@pytest.mark.parametrize("spelling", ["classic", "short"])
+def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
+    """In a file of so many trees that what is kept of all of them is brought up to date, and not made anew."""
+    chance = random.Random(1)
+    lines = missions.mission(300, 3, spelling).split("\n")
+    kept = Answers()
+    workspace = Workspace.of({"/p/main.btq": "\n".join(lines)})
+    for step in range(40):
+        named = [at for at, line in enumerate(lines) if line.lstrip().startswith(("BehaviorTree", "QualityReq"))]
+        one, other = chance.choice(named), chance.choice(named)
+        change = chance.randrange(3)
+        if change == 0:
+            lines[one], lines[other] = lines[other], lines[one]
+        else:
+            lines[one] = lines[one][:-1] if change == 1 else f"{lines[one]}a"
+        text = "\n".join(lines)
+        workspace = workspace.with_file("/p/main.btq", text)
+        fresh = Workspace.of({"/p/main.btq": text})
+        assert check(workspace, "/p/main.btq", kept) == check(fresh, "/p/main.btq"), (step, text)
+
+
 def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
     """The trees of a file that the checks are asked for when some files become others."""
     asked: list[str] = []
