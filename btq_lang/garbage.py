@@ -43,14 +43,17 @@ def keep_what_is_there() -> None:
     """What a server has read stays: looking through all of it again would halt every answer that comes meanwhile."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(*_SELDOM)
+    gc.set_threshold(*_IN_PAUSES)
 
 
 def collect_in_pause() -> None:
     """For a server that has nothing to do: what the last edits have left goes now, and not while somebody waits."""
-    if gc.get_count()[0] > _ENOUGH:
-        gc.collect(0)
+    young, older, _ = gc.get_count()
+    if young > _ENOUGH:
+        gc.collect(1 if older > _OFTEN else 0)
 
 
 _SELDOM: Final = (20_000, 50, 10)
+_IN_PAUSES: Final = (100_000, 50, 10)  # who types without any pause waits for 0.1 s once in a thousand keys
 _ENOUGH: Final = 4_000  # objects, of some 50 edits: what is found of fewer would be looked at too often
+_OFTEN: Final = 20  # pauses, after which what was in use in one of them may be garbage
