@@ -146,6 +146,10 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
             {"btq_lang.parser", "btq_lang.workspace", "btq_lang.catalog", "btq_lang.requirements", "dataclasses"},
         ),
         ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "re", "btq_lang.parser"}),
+        (
+            "import site; site.main(); import btq_lang.server",  # what an editor waits for
+            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
+        ),
     ],
 )
 def test_what_a_start_does_not_import(statement: str, absent: set[str]) -> None:

@@ -7,7 +7,6 @@ import asyncio
 from lsprotocol import types
 
 from btq_lang.editor import Server
-from btq_lang.file import SUFFIXES
 from btq_lang.garbage import keep_what_is_there
 from btq_lang.handlers.progress import checking
 from btq_lang.session import Session
@@ -69,7 +68,8 @@ async def _register_watchers(server: Server) -> None:
     watching = workspace.did_change_watched_files if workspace else None
     if watching is None or not watching.dynamic_registration:
         return
-    watchers = [types.FileSystemWatcher(f"**{ending}" if ending[0] == "/" else f"**/*{ending}") for ending in _ENDINGS]
+    patterns = [f"**{ending}" if ending[0] == "/" else f"**/*{ending}" for ending in _endings()]
+    watchers = [types.FileSystemWatcher(pattern) for pattern in patterns]
     # Of a folder that goes as a whole an editor tells nothing but that.
     watchers.append(types.FileSystemWatcher("**/*", types.WatchKind.Delete))
     options = types.DidChangeWatchedFilesRegistrationOptions(watchers)
@@ -79,7 +79,7 @@ async def _register_watchers(server: Server) -> None:
 
 def _concerns(session: Session, changed: set[str]) -> bool:
     """Whether changes on the disk may change what is known: most that is deleted is a file or folder of others."""
-    return any(path.endswith(_ENDINGS) for path in changed) or not changed.isdisjoint(session.places())
+    return any(path.endswith(_endings()) for path in changed) or not changed.isdisjoint(session.places())
 
 
 async def _ask_settings(server: Server) -> None:
@@ -109,5 +109,8 @@ async def _first_check(server: Server) -> None:
             await asyncio.wait((server.task,), timeout=0.2)
 
 
-# Of the names of files that missions and projects are read from.
-_ENDINGS = (*SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml")
+def _endings() -> tuple[str, ...]:
+    """Of the names of files that missions and projects are read from."""
+    from btq_lang.file import SUFFIXES  # the parser comes with it, and an editor waits for the server to start
+
+    return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
