@@ -197,5 +197,5 @@ def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
     return frozenset().union(*(workspace.files[each].defined_names for each in workspace.closure(path)))
 
 
-_MOST_IDLE = 100_000  # characters, of which each costs some 40 bytes when it is parsed
+_MOST_IDLE = 30_000  # characters, of which each costs some 40 bytes when it is parsed
 _SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
