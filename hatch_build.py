@@ -8,8 +8,8 @@ for tracebacks, and Python prefers the compiled ones.
 Which modules: those where a check of many files spends its time.  A record in them stays a class as Python makes it,
 for it is made while the module is loaded; a class with a `cached_property` must not be there, for mypyc makes one of it
 that is worked out every time.  No class is said to be `acyclic`, though most are: mypyc 2.4 has Python let go of such
-an object in a way that writes before it, where 50 objects are let go of inside each other.  It takes every
-`sum` for one of whole numbers: floats are added up by `fsum`.
+an object in a way that writes before it, where 50 objects are let go of inside each other.  It took a
+`sum` of floats, multiplied, for a whole number: `fsum` is none.
 """
 
 from __future__ import annotations
