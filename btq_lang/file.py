@@ -187,7 +187,8 @@ class File:
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether the file defines a name; not parsed where its text says that it cannot."""
-        return (name in self.text or not _ESCAPED.isdisjoint(name)) and (kind, name) in self.defined_names
+        may = "defined_names" in self.__dict__ or name in self.text or not _ESCAPED.isdisjoint(name)
+        return may and (kind, name) in self.defined_names
 
     @cached_property
     def problems(self) -> tuple[Diagnostic, ...]:

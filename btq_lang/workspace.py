@@ -181,16 +181,17 @@ class Workspace:
         """What a file itself defines, in the order of its text."""
         return self.files[path].defined
 
+    def files_defining(self, kind: Kind, name: str) -> tuple[str, ...]:
+        """The files of the project that define a name, to say where it could have come from; of a file whose tree was
+        let go that is known still."""
+        return tuple([path for path, file in self.files.items() if file.defines(kind, name)])
+
     def defined_anywhere(self, kind: Kind, name: str) -> tuple[Definition, ...]:
-        """Every definition of a name in the project, to say where it could have come from."""
+        """Every definition of a name in the project."""
         key = kind, name
         if key not in self._everywhere:
-            self._everywhere[key] = tuple(
-                definition
-                for file in self.files.values()
-                if file.defines(kind, name)
-                for definition in file.definitions(kind, name)
-            )
+            files = [self.files[path] for path in self.files_defining(kind, name)]
+            self._everywhere[key] = tuple([each for file in files for each in file.definitions(kind, name)])
         return self._everywhere[key]
 
     def uses_in(self, path: str) -> Iterator[Reference]:

@@ -4,7 +4,7 @@ tree-root-count, tree-named-like-node: what their pages do not show."""
 from __future__ import annotations
 
 import pytest
-from check_asserts import assert_clean, assert_fix, assert_problems
+from check_asserts import assert_clean, assert_fix, assert_problems, problems
 
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.project import Project
@@ -60,6 +60,11 @@ def test_an_include_brings_the_tree() -> None:
     )
     fixed = text.replace('include "a.btq"\n', 'include "a.btq"\n        include "../parts/pick.btq"\n')
     assert_fix(text, "Include `../parts/pick.btq`", fixed)
+
+
+def test_a_file_with_several_definitions_is_proposed_once() -> None:
+    (one,) = problems("BehaviorTree Main\n    SubTree Pick\n", "unknown-tree", parts=2 * PICK)
+    assert [fix.title for fix in one.fixes] == ["Include `parts.btq`"]
 
 
 def test_an_include_goes_where_the_others_are() -> None:

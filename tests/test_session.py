@@ -142,6 +142,23 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
     assert held() == set(FILES)  # all of one mission
 
 
+def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    other = f"{folder}/other.btq"
+    session = session_of(folder, {other: OTHER})
+    for path in session.paths():
+        session.diagnostics(path)
+    session.let_go()
+    session.edit(other, OTHER.replace("Pick", "SubTree Carry"))
+    (unknown,) = session.diagnostics(other)
+    assert [fix.title for fix in unknown.fixes] == ["Include `skills.btq`"]
+    workspace = session.workspace_of(other)
+    assert workspace is not None
+    assert [path for path, file in workspace.files.items() if file.has_tree] == [other]
+
+
 def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None:
     session = session_of(folder, {})
     skills = f"{folder}/skills.btq"

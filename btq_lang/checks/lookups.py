@@ -264,8 +264,8 @@ def is_included(workspace: Workspace, path: str) -> bool:
 
 
 def elsewhere(workspace: Workspace, path: str, kind: Kind, name: str) -> tuple[str, ...]:
-    """The files that define a name, whether they are in scope or not: once for each definition."""
-    return tuple([each.path for each in workspace.defined_anywhere(kind, name)])
+    """The files that define a name, whether they are in scope or not."""
+    return workspace.files_defining(kind, name)
 
 
 def other_files(workspace: Workspace, path: str) -> tuple[str, ...]:

@@ -175,7 +175,7 @@ class View:
         return self.ask(_has_names, kind)
 
     def elsewhere(self, kind: Kind, name: str) -> tuple[str, ...]:
-        """The files that define a name, whether they are in scope or not: once for each definition."""
+        """The files that define a name, whether they are in scope or not."""
         return self.look_up(lookups.elsewhere, kind, name)
 
     # ---- one entry ----
