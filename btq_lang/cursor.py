@@ -8,7 +8,6 @@ nor is one where the lexer has said what is wrong.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable
 
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer
@@ -21,6 +20,7 @@ from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from typing import Final
 
 

@@ -11,7 +11,10 @@ from enum import Enum
 
 from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.text import Span
 
 
 class Tag(Enum):

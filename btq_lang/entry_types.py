@@ -9,18 +9,19 @@ Source: instantiateTreeFromXML in src/xml_parsing.cpp of 4.10.0.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
-from btq_lang.file import Definition
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Node, Pair, Port, Tree
-from btq_lang.workspace import Scope
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final
+
+    from btq_lang.file import Definition
+    from btq_lang.workspace import Scope
 
 
 class Meeting(Record):

@@ -8,7 +8,6 @@ of files, nor of what a name means.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
 from functools import cached_property
 from itertools import chain
 
@@ -17,6 +16,7 @@ from btq_lang.syntax import Item, Model, Signal, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
     from typing import TypeAlias
 
     from btq_lang.mentions import Mention

@@ -8,25 +8,25 @@ they bring.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.facts import Facts, Names, Tally
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.record import Record
-from btq_lang.symbols import Kind, Summary, Symbol
 from btq_lang.syntax import Entry, Include, Item
 from btq_lang.text import LineIndex, Span, changed
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from typing import Any, TypeVar
 
+    from btq_lang.diagnostics import Diagnostic, Place
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
     from btq_lang.places import Places
     from btq_lang.project import Project
+    from btq_lang.symbols import Kind, Summary, Symbol
 
     Kept = TypeVar("Kept", bound=Item)
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from btq_lang import patterns
 from btq_lang.blocks import MAX_DEPTH, Block
-from btq_lang.lexer import Lexer
 from btq_lang.patterns import NO_NODE, blank, pair_of, role_of, value_kind
 from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
@@ -18,6 +17,8 @@ from btq_lang.tokens import NAME, NODE_CLAUSES
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Any
+
+    from btq_lang.lexer import Lexer
 
 
 def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node | None]:

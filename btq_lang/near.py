@@ -6,7 +6,9 @@ what the candidates are; a caller that wants only names of one kind passes only 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 
 def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:

@@ -7,7 +7,6 @@ them too.  What a requirement demands, its clauses, is rarer and stands there.
 from __future__ import annotations
 
 from btq_lang.text import Span
-from btq_lang.words import Word
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from mypy_extensions import i64
 
     from btq_lang.syntax import Argument, Clause, Parameter
+    from btq_lang.words import Word
 
 
 class _Part:

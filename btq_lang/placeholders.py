@@ -10,7 +10,10 @@ from functools import lru_cache
 
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.near import near
-from btq_lang.syntax import Node
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.syntax import Node
 
 
 def is_placeholder(node: Node) -> bool:

@@ -18,10 +18,8 @@ from __future__ import annotations
 
 import os.path
 import re
-from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
-from btq_lang.diagnostics import Diagnostic
 from btq_lang.near import near
 from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, UNREADABLE, Severity
@@ -29,7 +27,10 @@ from btq_lang.text import LineIndex, Position
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from typing import Any, Literal, TypeAlias
+
+    from btq_lang.diagnostics import Diagnostic
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 

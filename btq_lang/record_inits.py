@@ -6,10 +6,9 @@ stands here in full because to compile those that one check needs would take as 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any, Final
 
 INITS: Final[dict[int, Callable[..., Any]]] = {

@@ -7,7 +7,6 @@ Which definition a use means is the workspace's to say.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from enum import Enum
 
 from btq_lang.record import Record, fields_of
@@ -32,12 +31,14 @@ from btq_lang.syntax import (
     Word,
     shape,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import NAME
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import TypeAlias
+
+    from btq_lang.text import Span
 
 
 class Kind(Enum):

@@ -7,9 +7,6 @@ meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be mi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-
-from btq_lang.diagnostics import Diagnostic
 from btq_lang.node_clauses import Quality as Quality
 from btq_lang.node_clauses import QualityPath as QualityPath
 from btq_lang.node_clauses import ReqRef as ReqRef
@@ -29,7 +26,10 @@ from btq_lang.words import unquote as unquote
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from typing import TypeAlias
+
+    from btq_lang.diagnostics import Diagnostic
 
 # ---- Qualities and requirements on nodes ----------------------------------------------------------------------------
 

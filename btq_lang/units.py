@@ -9,7 +9,6 @@ grammar needs behind a number (`in`, `per`, `to`, `count` …), save `min`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from math import inf, pi
 
@@ -18,6 +17,7 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final
 
 # Exponents over length, mass, time, current, temperature, angle, data, count, percent.

@@ -8,13 +8,13 @@ their fields, as it does those of a record: a compiled class has no `__slots__`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from btq_lang.text import Span
 from btq_lang.tokens import STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import ClassVar, Final
 
     from mypy_extensions import i64

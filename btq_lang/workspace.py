@@ -10,7 +10,6 @@ only to say where a name could have come from.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 
@@ -19,12 +18,14 @@ from btq_lang.project import Project, include_candidates
 from btq_lang.record import Record
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Include, Root, Word
-from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
     from btq_lang.facts import Name, Names
     from btq_lang.file import Origin
+    from btq_lang.text import Span
 
 
 class Workspace:

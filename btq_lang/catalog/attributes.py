@@ -7,12 +7,11 @@ misspelling: the engine keeps it silently and nobody reads it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Final, Literal
 
 

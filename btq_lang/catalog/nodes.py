@@ -6,8 +6,6 @@ nor its placeholders: whether a name that is found nowhere is a custom node is d
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
 from btq_lang.catalog.kinds import (
     DEFAULT_VERSION,
@@ -23,6 +21,7 @@ from btq_lang.catalog.words import KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS, KnownWo
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Final
 
 __all__ = [

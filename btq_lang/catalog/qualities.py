@@ -11,7 +11,6 @@ is understood is an alias (another word, or another word in front), another edit
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import lru_cache
 
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
@@ -21,6 +20,7 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from typing import Final, Literal, TypeAlias
 
 Edition: TypeAlias = "Literal['2011', '2023']"

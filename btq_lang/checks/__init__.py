@@ -41,7 +41,6 @@ from btq_lang.checks import (
 )
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
-from btq_lang.facts import Facts
 from btq_lang.project import configured
 from btq_lang.record import Record
 from btq_lang.rules import Severity
@@ -60,13 +59,14 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
-from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import TypeAlias
 
     from btq_lang.checks.answers import Answers
+    from btq_lang.facts import Facts
+    from btq_lang.workspace import Workspace
 
 Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cache
 from math import ceil, floor, isfinite
 
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.symbols import Kind
@@ -17,7 +15,10 @@ from btq_lang.units import Dimension, parse_unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final
+
+    from btq_lang.checks.view import View
 
 
 def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 
 from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.composition import port_seconds
 from btq_lang.requirements.durations import Term, together
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:

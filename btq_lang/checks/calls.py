@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, KeysView, Mapping
 from functools import cached_property
 
 from btq_lang.checks import lookups
@@ -10,6 +9,7 @@ from btq_lang.symbols import Kind, Use
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, KeysView, Mapping
     from typing import TypeAlias
 
     from btq_lang.checks.view import View

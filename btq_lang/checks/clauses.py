@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.symbols import Kind
 from btq_lang.syntax import (
@@ -22,6 +19,12 @@ from btq_lang.syntax import (
     walk,
 )
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
 
 _ONCE: dict[type, str] = {
     Odds: "how often it is to hold",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.symbols import Kind, requirements_at
 from btq_lang.syntax import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.tokens import NAME
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.checks.view import View
 
 
 def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from math import inf
 
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place
-from btq_lang.requirements import Requirements
-from btq_lang.requirements.budgets import Budgets
-from btq_lang.requirements.durations import Term
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from typing import Any, TypeAlias
 
     from btq_lang.checks.swallowing import WaysUp
+    from btq_lang.checks.view import View
+    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.budgets import Budgets
+    from btq_lang.requirements.durations import Term
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.trees import TreeNodes
 

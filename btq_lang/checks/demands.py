@@ -7,19 +7,17 @@ find of the nodes of a tree is kept for as long as what they look at stays the s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
-from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic
-from btq_lang.syntax import Entry
-
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from typing import TypeAlias
 
     from btq_lang.checks.demanded import Demanded, Found, Guard
+    from btq_lang.checks.view import View
+    from btq_lang.diagnostics import Diagnostic
     from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.syntax import Entry
 
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
@@ -29,7 +27,10 @@ from btq_lang.syntax import (
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import TypeAlias
+
+    from btq_lang.checks.view import View
 
 _Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
 

@@ -6,16 +6,11 @@ the robot's program does with entries, nor whether a name is right.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
-from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.strings import in_source
-from btq_lang.checks.view import View
-from btq_lang.facts import Facts
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Pair, Port, Signal, Tree
@@ -23,7 +18,12 @@ from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
     from typing import TypeAlias
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.checks.view import View
+    from btq_lang.facts import Facts
 
 # A name in a tree; an empty tree stands for the root blackboard.
 Name: TypeAlias = tuple[str, str]

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Container, Iterator
 from operator import is_
 
 from btq_lang.checks import lookups
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.file import is_btq
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterator
+
+    from btq_lang.checks.view import View
+    from btq_lang.workspace import Workspace
 
 
 def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:

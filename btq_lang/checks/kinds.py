@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from functools import lru_cache
 
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
-from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.facts import Facts
 from btq_lang.near import distance
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Symbol
@@ -24,7 +21,11 @@ from btq_lang.tokens import CATEGORIES
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.facts import Facts
 
 # How many children the nodes of a category have; None: any number.
 CHILDREN: dict[str, tuple[int, int | None]] = {

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
@@ -14,7 +12,13 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Goal
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.text import Span
-from btq_lang.units import Dimension
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
+    from btq_lang.units import Dimension
 
 _OF_TIME = frozenset(("takes", "succeeds"))
 

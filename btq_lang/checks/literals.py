@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
 from math import isfinite
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
 from btq_lang.checks.kinds import written
-from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.quantities import parse_quantity
@@ -19,6 +17,12 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
 from btq_lang.units import convert, dimension_name, parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from btq_lang.checks.seen import SeenNode
 
 _NUMBER = r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?"
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")

@@ -12,13 +12,16 @@ import posixpath
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import EDITIONS
-from btq_lang.facts import Facts
-from btq_lang.file import Origin
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
-from btq_lang.text import Span
-from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.facts import Facts
+    from btq_lang.file import Origin
+    from btq_lang.text import Span
+    from btq_lang.workspace import Workspace
 
 # ---- a name: what these say depends on nothing but the items that define it ----
 

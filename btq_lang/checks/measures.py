@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.syntax import Entry, Requirement
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
 
 
 def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -8,14 +8,18 @@ differs from it as only slips do.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 from btq_lang.checks.entries import Mention, blackboards
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.near import distance
 from btq_lang.syntax import Entry, Tree, Verbatim
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.checks.view import View
 
 
 def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -7,15 +7,11 @@ type was that of texts or of anything.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers, is_circular
 from btq_lang.checks.pointers import pointed_at, remaps_all
-from btq_lang.checks.seen import SeenNode
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.entry_types import declared_type, is_text
 from btq_lang.record import Record
@@ -25,7 +21,11 @@ from btq_lang.syntax import Entry, Pair, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final, TypeAlias
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.checks.view import View
 
 
 class _Port(Record):

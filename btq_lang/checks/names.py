@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
-from btq_lang.checks.seen import SeenNode
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.record import replace
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Model, Models, Tree, Word
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.checks.view import View
 
 _UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
 

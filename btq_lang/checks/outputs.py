@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from functools import cache
 
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import lookups
-from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.facts import Facts
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.facts import Facts
 
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
-from btq_lang.checks.seen import SeenNode
-from btq_lang.checks.view import View
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
-from btq_lang.facts import Facts
 from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.seen import SeenNode
+    from btq_lang.checks.view import View
+    from btq_lang.facts import Facts
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"

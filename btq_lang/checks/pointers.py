@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.checks.seen import SeenNode
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.checks.seen import SeenNode
 
 
 def pointed_at(port: str, text: str) -> str | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
@@ -10,7 +9,6 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks.kinds import is_torn, written
-from btq_lang.checks.seen import SeenNode
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import distance, near
@@ -19,6 +17,12 @@ from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.seen import SeenNode
 
 _OWN = frozenset(("ID", "name"))
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Qualities
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
 
 
 def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.checks.clauses import with_blanks
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.record import Record
 from btq_lang.syntax import (
@@ -22,6 +19,12 @@ from btq_lang.syntax import (
     shape,
 )
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
 
 
 class _Named(Record):

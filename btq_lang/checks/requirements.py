@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, written
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.symbols import Kind, Symbol, same_requirement
 from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
 
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:

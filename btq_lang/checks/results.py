@@ -7,8 +7,6 @@ the blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import is_circular
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
@@ -18,6 +16,7 @@ from btq_lang.syntax import Node, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Final
 
     from btq_lang.checks.seen import SeenNode

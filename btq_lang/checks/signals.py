@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
@@ -11,13 +9,18 @@ from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.entry_types import is_text
 from btq_lang.near import near
 from btq_lang.record import Record
-from btq_lang.requirements import Memory, Requirements
-from btq_lang.requirements.memory import Table
-from btq_lang.requirements.model import Signal, SourceNode
-from btq_lang.requirements.trees import TreeNodes
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Pair, Port, Tree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.requirements import Memory, Requirements
+    from btq_lang.requirements.memory import Table
+    from btq_lang.requirements.model import Signal, SourceNode
+    from btq_lang.requirements.trees import TreeNodes
 
 _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
 

@@ -6,13 +6,12 @@ a missing or surplus child is one that can return anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-
-from btq_lang.syntax import Node
-
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from typing import Final
+
+    from btq_lang.syntax import Node
 
 SUCCESS: Final = 1
 FAILURE: Final = 2

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.blocks import OF_ITS_OWN
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
-from btq_lang.checks.view import View
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.file import Definition
 from btq_lang.rules import Severity
 from btq_lang.symbols import Kind, Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.checks.view import View
+    from btq_lang.file import Definition
 
 _MOST_NAMES = 5  # in one message
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open

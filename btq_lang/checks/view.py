@@ -5,7 +5,6 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 
 from btq_lang.attributes import meant_clause
@@ -15,8 +14,6 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
-from btq_lang.facts import Facts
-from btq_lang.file import Definition, File
 from btq_lang.near import near
 from btq_lang.symbols import Kind, Summary, Use
 from btq_lang.syntax import (
@@ -34,6 +31,7 @@ from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from typing import Any, Final, TypeVar
 
     from btq_lang.checks.answers import Answers
@@ -41,6 +39,8 @@ if TYPE_CHECKING:
     from btq_lang.checks.ports import KnownPorts
     from btq_lang.constraints import Constraint
     from btq_lang.diagnostics import Diagnostic
+    from btq_lang.facts import Facts
+    from btq_lang.file import Definition, File
     from btq_lang.requirements import Memory, Requirements
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.script import Script

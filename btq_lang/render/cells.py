@@ -8,8 +8,11 @@ emoji joined by U+200D count as their parts, for terminals do not agree on them.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
 from functools import lru_cache
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 TAB = 4
 

@@ -6,12 +6,14 @@ Invariant: a mark stands below what it marks, whatever tabs and wide characters 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from btq_lang.record import Record
 from btq_lang.render.cells import cut, laid_out
 from btq_lang.render.location import clamped, line_index
 from btq_lang.text import LineIndex, Position, Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 _CONTEXT = 1  # lines shown above and below: above stands the parent or the opener
 _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its end

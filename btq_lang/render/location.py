@@ -7,10 +7,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from btq_lang.diagnostics import Place
 from btq_lang.record import Record
-from btq_lang.render import Finding, Report
 from btq_lang.text import LineIndex, Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.diagnostics import Place
+    from btq_lang.render import Finding, Report
 
 
 class Location(Record):

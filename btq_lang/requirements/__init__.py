@@ -20,29 +20,30 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from operator import is_
 
-from btq_lang.file import File
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.memory import Memory, Table
-from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace, Use
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
-from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.tokens import NAME
-from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
     from typing import Any, Final
+
+    from btq_lang.file import File
+    from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace, Use
+    from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.workspace import Workspace
 
 __all__ = ["Memory", "Problem", "Requirements", "requirements"]
 

@@ -6,8 +6,6 @@ where two are equally specific and differ, a problem says so and neither counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btq_lang.diagnostics import Diagnostic, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.record import Record, fields_of, replace
@@ -29,7 +27,6 @@ from btq_lang.requirements.model import (
     Use,
 )
 from btq_lang.requirements.paths import Problem
-from btq_lang.requirements.reader import Reader
 from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
@@ -39,7 +36,10 @@ from btq_lang.text import Span as TextSpan
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Final
+
+    from btq_lang.requirements.reader import Reader
 
 
 class Uses(Record):

@@ -7,20 +7,21 @@ holds for some activations only (a scope, some instances) is none here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import fsum, inf
 
 from btq_lang.record import Record, replace
-from btq_lang.requirements import Requirements
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.memory import Memory, is_same
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
-from btq_lang.requirements.trees import TreeNodes
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Final
+
+    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.trees import TreeNodes
 
 __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from math import inf
 
-from btq_lang.file import Definition
 from btq_lang.record import replace
 from btq_lang.requirements.model import (
     NO_DIMENSION,
@@ -52,6 +51,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final
 
+    from btq_lang.file import Definition
     from btq_lang.requirements.model import Sort
 
 

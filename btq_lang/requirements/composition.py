@@ -7,7 +7,6 @@ requirements: `budgets` brings them in.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from math import fsum, inf
 
 from btq_lang.quantities import parse_quantity
@@ -24,13 +23,15 @@ from btq_lang.requirements.durations import (
     total,
     without_end,
 )
-from btq_lang.requirements.model import SourceNode
 from btq_lang.tokens import QUANTITY
 from btq_lang.units import to_si
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from typing import Final
+
+    from btq_lang.requirements.model import SourceNode
 
 
 class Budget(Record):

@@ -6,7 +6,6 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
 from operator import is_
 
 from btq_lang.diagnostics import Place
@@ -15,6 +14,7 @@ from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable, Sequence
     from typing import Any, Protocol, TypeAlias, TypeVar
 
     from btq_lang.requirements.attach import Held, Uses

@@ -6,7 +6,6 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import chain
 
@@ -14,7 +13,12 @@ from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Kind, Symbol
 from btq_lang.syntax import Model, Node, Tree
-from btq_lang.workspace import Scope, Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from btq_lang.workspace import Scope, Workspace
 
 
 class Nodes:

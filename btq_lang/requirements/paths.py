@@ -6,23 +6,22 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
-
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.record import Record
-from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
-from btq_lang.requirements.nodes import Nodes
-from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Item, Path, Tree, Word, is_name, quote
-from btq_lang.text import Span
-from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable, Iterator
     from typing import Any, Final
 
     from btq_lang.requirements.memory import Question
+    from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
+    from btq_lang.requirements.nodes import Nodes
+    from btq_lang.rules import Severity
+    from btq_lang.text import Span
+    from btq_lang.workspace import Scope, Workspace
 
 
 class Problem(Record):

@@ -7,7 +7,6 @@ The first error that no certain reading mends ends the reading, as it does in th
 
 from __future__ import annotations
 
-from btq_lang.diagnostics import Diagnostic
 from btq_lang.script import mistakes
 from btq_lang.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
 from btq_lang.script.tree import (
@@ -35,6 +34,8 @@ from btq_lang.text import Span
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final, NoReturn
+
+    from btq_lang.diagnostics import Diagnostic
 
 # Operators within each other, needless brackets counted too.  The engine has no limit and a stack; the engines up to
 # 4.8 refuse more than 256 operators, and nobody reads a tenth of them.

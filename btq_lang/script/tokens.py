@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from btq_lang.diagnostics import Diagnostic
 from btq_lang.script import mistakes
 from btq_lang.script.tree import ASSIGNMENT, RANK
 from btq_lang.text import Span
@@ -18,6 +17,8 @@ from btq_lang.text import Span
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
+
+    from btq_lang.diagnostics import Diagnostic
 
 # A token's kind is one of these; an operator's is the operator itself, or what a misspelt one means.
 NAME: Final = "name"

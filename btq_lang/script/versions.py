@@ -9,7 +9,6 @@ groups "cannot be mixed", and the accidents of its ranks, which were found by ru
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
@@ -34,6 +33,7 @@ from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from typing import Final, TypeGuard
 
 
