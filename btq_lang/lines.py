@@ -102,7 +102,15 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
                     label = Word(value_kind(third[0], NAME), at + len(second) + 1, third)
         pairs: tuple[Pair, ...] = ()
         if key is not None:
-            pair = pair_of(key, match.start(5) - base, value, match.start(6) - base)
+            pair = blank(Pair)  # as `pair_of` makes the further ones, of which few lines have any
+            pair.key = word = blank(Word)
+            word.kind = NAME
+            word.start = match.start(5) - base
+            word.raw = key
+            pair.value = word = blank(Word)
+            word.kind = value_kind(value[0], NAME)
+            word.start = match.start(6) - base
+            word.raw = value
             if key2 is None:
                 pairs = (pair,)
             else:

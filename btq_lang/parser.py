@@ -517,16 +517,16 @@ class Parser(NodeParser):
             return self.plain_req_item(start, level)
         if lexer.ended_early:
             return None
-        if (model := plain_model(self.text, start, self.base)) is not None:
-            category, id_, behind = model
-            self.open_next(behind)
-            return Model(category.start, id_.end, category, id_, (), None, self.model_block(level))
         name, behind = plain_head(self.text, start, self.base)
-        if name is None:
+        if name is not None:
+            self.open_next(behind)
+            ports, clauses, children = self.tree_block(level)
+            return Tree(start - self.base, name.end, name, (), ports, clauses, children)
+        if (model := plain_model(self.text, start, self.base)) is None:
             return None
+        category, id_, behind = model
         self.open_next(behind)
-        ports, clauses, children = self.tree_block(level)
-        return Tree(start - self.base, name.end, name, (), ports, clauses, children)
+        return Model(category.start, id_.end, category, id_, (), None, self.model_block(level))
 
     def skipped(self, level: int) -> Skipped:
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
