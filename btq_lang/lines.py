@@ -47,6 +47,8 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
         indent, first, second, third, key, value, key2, value2, key3, value3, end = match.groups()
         if first is None:
             at = match.end()
+            if behind >= 0:
+                behind = at
             continue
         if indent != column:
             if indent.startswith(column):
