@@ -24,6 +24,7 @@ from btq_lang.syntax import (
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
+    COMMENT,
     DIRECTIONS,
     ERROR,
     NAME,
@@ -129,6 +130,34 @@ def read_tokens(text: str, at: int, kinds: list[int], starts: list[int], raws: l
     return at
 
 
+def read_pieces(text: str) -> list[tuple[int, int, str]] | None:
+    """Kind, start and text of all words, signs and comments of a text; None where anything needs a second look"""
+    found: list[tuple[int, int, str]] = []
+    at = 0
+    kind = last_kind = ERROR
+    last = ""
+    for between, raw in _piece().findall(text):
+        at += len(between)
+        if not raw:
+            break
+        kind = _piece_kind(raw[0], NAME)
+        if kind == ERROR:
+            kind = SYMBOL if raw in _SYMBOLS else NUMBER if raw[0] == "-" else NAME
+        if kind == NUMBER:
+            if raw[0] == "-" and (last_kind != OPERATOR or ")" in between):
+                return None
+            kind, end = number_at(text, at)
+            if kind == ERROR or end != at + len(raw):
+                return None
+        elif kind == COMMENT and last == "=":
+            return None
+        found.append((kind, at, raw))
+        at += len(raw)
+        last_kind = kind
+        last = raw
+    return found if at == len(text) else None  # else some characters were passed over
+
+
 def pair_of(key: str, start: int, value: str, value_start: int) -> Pair:
     """`key = value` of two words that a pattern has found"""
     pair = blank(Pair)
@@ -173,6 +202,8 @@ _REQUIREMENT: Final = (
 )
 _BRACKETS_END: Final = r"(?:\)|\r?\n[ \t]*\))"
 _LINE_END: Final = r"(?=[\r\n]| (?:\#|//))"
+_UNIT: Final = r" (?:ms|s|min|h|%|m/s|m)(?![\w?!^*/-]|[ \t]*[=(])"  # the commonest
+_BETWEEN: Final = " \t\r\n()"  # what may stand between two words and says nothing of either
 
 # ---- patterns -------------------------------------------------------------------------------------------------------
 
@@ -246,6 +277,18 @@ def _bracketed_clause() -> re.Pattern[str]:
     return re.compile(rf"(?:{_LIST}|{defining}){_BRACKETS_END}")
 
 
+@cache
+def _piece() -> re.Pattern[str]:
+    """1 what is between, 2 a word, a sign or a comment, nothing at the end"""
+    strings = "|".join(rf"{quote}[^{quote}\\]*(?:\\[\s\S][^{quote}\\]*)*{quote}" for quote in "\"'")
+    symbols = "|".join(map(re.escape, sorted(SYMBOLS, key=len, reverse=True)))
+    return re.compile(
+        rf"([{_BETWEEN}]*)({_NAME}(?:-\w+)*(?=[ \t,()=:.<>\r\n]|\Z)|==?|,|::?|\.|[<>]=?"
+        rf"|{strings}|-?[0-9]+(?:\.[0-9]+|)(?:{_UNIT}|)|\{{[^{{}}\"'\r\n]*\}}|(?:{symbols})(?=[ \t\r\n(]|\Z)"
+        rf"|(?<![^{_BETWEEN},])(?:{_REMARK}|/\*[^*]*(?:\*+[^*/][^*]*)*\*+/)|\Z)"
+    )
+
+
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 # An instance without its values: who sets them one by one pays half of what calling the class costs, whose `__init__`
@@ -253,6 +296,15 @@ def _bracketed_clause() -> re.Pattern[str]:
 # `__init__` may set what is final.
 blank: Final[Callable[[type], Any]] = object.__new__
 value_kind: Final = (dict.fromkeys("\"'", STRING) | dict.fromkeys("-0123456789", NUMBER) | {"{": BRACED}).get
+_SYMBOLS: Final = frozenset(SYMBOLS)
+_piece_kind: Final = (  # what the first character says; ERROR: not enough
+    dict.fromkeys([symbol[0] for symbol in SYMBOLS], ERROR)
+    | dict.fromkeys("\"'", STRING)
+    | dict.fromkeys("0123456789", NUMBER)
+    | dict.fromkeys("=,:.<>", OPERATOR)
+    | dict.fromkeys("#/", COMMENT)
+    | {"{": BRACED}
+).get
 CATEGORY: Final = -1
 NO_NODE: Final = -2  # a line may begin with it and perhaps be no node, or end brackets
 role_of: Final = (

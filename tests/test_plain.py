@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from missions import mission
 
-from btq_lang import lexer, lines, nodes, parser, patterns, plain, scan
+from btq_lang import lexer, lines, nodes, parser, patterns, plain, scan, token_list
 from btq_lang.parser import Parsed, parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -273,3 +273,36 @@ def test_the_usual_reader_reads_plain_clauses_without_tokens(monkeypatch: pytest
     assert [
         line for line in scanned if line.split()[0] not in ("Action", "Condition", "input", "signal", "context")
     ] == []
+
+
+# ---- pieces of items ------------------------------------------------------------------------------------------------
+
+
+def pieces_by_lexer(text: str) -> list[tuple[int, int, str]]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(token_list, "COMPILED", True)
+        return token_list.pieces(text)
+
+
+@pytest.mark.parametrize("spelling", ["classic", "short"])
+def test_pieces_are_cut_alike(spelling: str) -> None:
+    items = re.split(r"\n(?=\S)", mission(300, 1, spelling))  # type: ignore[arg-type]  # one of the two spellings
+    at_once = 0
+    for item in items:
+        read = patterns.read_pieces(item)
+        at_once += read is not None
+        assert token_list.pieces(item) == (pieces_by_lexer(item) if read is None else read) == pieces_by_lexer(item)
+    assert at_once > 0.9 * len(items)
+
+
+@pytest.mark.parametrize("text", [CLASSIC, SHORT], ids=["classic", "short"])
+def test_torn_pieces_are_cut_alike(text: str) -> None:
+    draw = random.Random(len(text))
+    at_once = 0
+    for _ in range(6_000):
+        at = draw.randrange(len(text))
+        part = torn(text[at : at + draw.randint(1, 80)], draw)
+        read = patterns.read_pieces(part)
+        at_once += read is not None
+        assert read is None or read == pieces_by_lexer(part), part
+    assert at_once > 1_000
