@@ -7,8 +7,9 @@ keys, parameters and the names in conditions too.  What a mention means in its f
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from enum import Enum
+from operator import attrgetter
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
@@ -51,9 +52,15 @@ from btq_lang.syntax import (
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, NAME, QUANTITY, STRING
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
 
 class What(Enum):
     """What a word may name, as far as its place says it."""
+
+    __hash__ = object.__hash__  # that of `Enum` is worked out in Python
 
     TREE = "tree"
     NODE = "node"  # a kind: a built-in, a model, or a custom node
@@ -74,6 +81,9 @@ class What(Enum):
     UNIT = "unit"
     EDITION = "edition"
     RULE = "rule"
+
+
+Owner: TypeAlias = "Requirement | Model | Tree | str | None"
 
 
 class Mention(Record):
@@ -98,7 +108,7 @@ class Mention(Record):
     word: Word
     defines: bool = False
     node: Node | None = None
-    owner: Requirement | Model | Tree | str | None = None
+    owner: Owner = None
     pair: Pair | None = None
     writes: bool = False
     root: bool = False
@@ -107,83 +117,134 @@ class Mention(Record):
 
 def mentions(item: Item) -> tuple[Mention, ...]:
     """All words of an item that name something, in the order of the text."""
-    found = (mention for mention in _of_item(item) if mention.span.start < mention.span.end)
-    return tuple(sorted(found, key=lambda mention: mention.span))
+    told = _Mentions()
+    tell(item, told)
+    return tuple(sorted(told.found, key=attrgetter("span")))
 
 
-def _of_item(item: Item) -> Iterator[Mention]:
+def tell(item: Item, to: Listener) -> None:
+    """Tell the words of an item that name something, nearly in the order of the text."""
     if isinstance(item, Tree):
-        yield from _word(What.TREE, item.name, defines=True)
-        yield from _ports(item.ports, item)
-        yield from _clauses(item.clauses, None)
+        to.word(What.TREE, item.name, defines=True)
+        _ports(item.ports, item, to)
+        _clauses(item.clauses, None, to)
         for node in item.walk():
-            yield from _node(node, item)
+            _node(node, item, to)
     elif isinstance(item, Model):
-        yield from _model(item)
+        _model(item, to)
     elif isinstance(item, Models):
         for model in item.models:
             if isinstance(model, Model):
-                yield from _model(model)
+                _model(model, to)
     elif isinstance(item, Requirement):
-        yield from _requirement(item, None, attached=False)
+        _requirement(item, None, False, to)
     elif isinstance(item, Signal):
-        yield from _word(What.SIGNAL, item.name, defines=True)
-        yield from _word(What.UNIT, item.unit)
+        to.word(What.SIGNAL, item.name, defines=True)
+        to.word(What.UNIT, item.unit)
         if item.source is not None:
-            yield from _keys_of(item.source, None, None, root=True)
-        yield from _quantities(item)
+            _keys_of(item.source, None, None, None, to, root=True)
+        _quantities(item, to)
     elif isinstance(item, Context):
-        yield from _word(What.CONTEXT, item.name, defines=True)
-        yield from _values(item.condition, None)
+        to.word(What.CONTEXT, item.name, defines=True)
+        _values(item.condition, None, to)
     elif isinstance(item, QualityDecl):
-        yield from _word(What.QUALITY, item.name, defines=True)
-        yield from _quality(item.parent, None)
+        to.word(What.QUALITY, item.name, defines=True)
+        _quality(item.parent, None, to)
     elif isinstance(item, Qualities):
-        yield from _word(What.EDITION, item.edition)
+        to.word(What.EDITION, item.edition)
     elif isinstance(item, Apply):
         for use in item.uses:
-            yield from _reference(use, None)
+            _reference(use, None, to)
         for selector in (*item.targets, *item.exceptions):
-            yield from _word(What.PLACE, selector.every)
-            yield from _word(What.TAG, selector.tag)
-            yield from _path(selector.path)
+            to.word(What.PLACE, selector.every)
+            to.word(What.TAG, selector.tag)
+            _path(selector.path, to)
     elif isinstance(item, Root):
-        yield from _word(What.TREE, item.name)
+        to.word(What.TREE, item.name)
         for pair in item.attributes:
             if pair.key.text == "main_tree_to_execute":
-                yield from _word(What.TREE, pair.value)
+                to.word(What.TREE, pair.value)
     elif isinstance(item, Include):
-        yield from _word(What.INCLUDE, item.path)
+        to.word(What.INCLUDE, item.path)
 
 
-def _model(model: Model) -> Iterator[Mention]:
-    yield from _word(What.NODE, model.name, defines=True)
-    yield from _ports(model.ports, model)
+class Listener:
+    """Who is told the words of an item: for some a mention of each is too much."""
+
+    def word(
+        self,
+        what: What,
+        word: Word | None,
+        defines: bool = False,
+        node: Node | None = None,
+        owner: Owner = None,
+        pair: Pair | None = None,
+    ) -> None:
+        """A whole word, or none where one might stand; all of it as in a mention."""
+        raise NotImplementedError
+
+    def part(self, mention: Mention) -> None:
+        """Some of a word, or several of them."""
+        raise NotImplementedError
 
 
-def _ports(ports: Iterable[Port], owner: Model | Tree) -> Iterator[Mention]:
+class _Mentions(Listener):
+    """Who makes a mention of each."""
+
+    def __init__(self) -> None:
+        self.found: list[Mention] = []
+
+    def word(
+        self,
+        what: What,
+        word: Word | None,
+        defines: bool = False,
+        node: Node | None = None,
+        owner: Owner = None,
+        pair: Pair | None = None,
+    ) -> None:
+        if word is not None:
+            self.part(Mention(what, word.text, word.span, word, defines, node, owner, pair))
+
+    def part(self, mention: Mention) -> None:
+        if mention.span.start < mention.span.end:
+            self.found.append(mention)
+
+
+def _model(model: Model, to: Listener) -> None:
+    to.word(What.NODE, model.name, defines=True)
+    _ports(model.ports, model, to)
+
+
+def _ports(ports: Iterable[Port], owner: Model | Tree, to: Listener) -> None:
     """The port of a tree is an entry of its blackboard."""
     for port in ports:
         name = port.name or next((pair.value for pair in port.attributes if pair.key.text == "name"), None)
         what = What.KEY if isinstance(owner, Tree) else What.PORT
-        yield from _word(what, name, defines=True, owner=owner)
+        to.word(what, name, defines=True, owner=owner)
         if port.default is not None:
-            yield from _quantities(port.default)
+            _quantities(port.default, to)
 
 
 # ---- nodes ----
 
 
-def _node(node: Node, tree: Tree) -> Iterator[Mention]:
-    kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
-    for word in kinds(node):
-        yield from _word(What.NODE, word, node=node)
-    yield from _word(What.TREE, called(node), node=node)
-    if node.label is not None and placeholder(node) is None:
-        yield from _word(What.INSTANCE, node.label, defines=True, node=node, owner=tree)
-    for pair in node.attributes:
-        yield from _pair(pair, node, tree, kind)
-    yield from _clauses(node.clauses, node)
+def _node(node: Node, tree: Tree, to: Listener) -> None:
+    run = called(node)
+    stands_for = placeholder(node)
+    for word in (node.id, stands_for):
+        if word is not None and word is not run:
+            to.word(What.NODE, word, node=node)
+    if run is not None:
+        to.word(What.TREE, run, node=node)
+    if node.label is not None and stands_for is None:
+        to.word(What.INSTANCE, node.label, defines=True, node=node, owner=tree)
+    if node.attributes:
+        kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
+        for pair in node.attributes:
+            _pair(pair, node, tree, kind, to)
+    if node.clauses:
+        _clauses(node.clauses, node, to)
 
 
 def kinds(node: Node) -> list[Word]:
@@ -208,49 +269,49 @@ def placeholder(node: Node) -> Word | None:
     return name
 
 
-def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None) -> Iterator[Mention]:
+def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None, to: Listener) -> None:
     key = pair.key.text
     if key == "name":
-        yield from _word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
+        to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
         if placeholder(node) is None:
-            yield from _word(What.INSTANCE, pair.value, defines=True, node=node, owner=tree)
+            to.word(What.INSTANCE, pair.value, defines=True, node=node, owner=tree)
         return
     if key == "ID" or key.startswith("_"):
-        yield from _word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
+        to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
     else:
-        yield from _word(What.PORT, pair.key, node=node, pair=pair, owner=tree)
+        to.word(What.PORT, pair.key, node=node, pair=pair, owner=tree)
     value = pair.value
     if value is None:
         return
     port = kind.port(key) if kind is not None else None
     attribute = RESERVED_ATTRIBUTES.get(key)
     if value.kind == BRACED or (value.kind == STRING and value.text.startswith("{") and value.text.endswith("}")):
-        yield from _keys_of(value, node, tree, pair)
+        _keys_of(value, node, tree, pair, to)
     elif (attribute is not None and attribute.is_script) or (port is not None and port.content == "script"):
-        yield from _script(value, node, tree, pair)
+        _script(value, node, tree, pair, to)
     elif port is not None and port.content == "key" and value.kind in (NAME, STRING):
-        yield from _word(What.KEY, value, node=node, owner=tree, pair=pair)
+        to.word(What.KEY, value, node=node, owner=tree, pair=pair)
     elif value.kind == QUANTITY:
-        yield from _word(What.QUANTITY, value, node=node, pair=pair)
+        to.word(What.QUANTITY, value, node=node, pair=pair)
 
 
 def _keys_of(
-    word: Word, node: Node | None, tree: Tree | None, pair: Pair | None = None, root: bool = False
-) -> Iterator[Mention]:
+    word: Word, node: Node | None, tree: Tree | None, pair: Pair | None, to: Listener, root: bool = False
+) -> None:
     """`{key}`, `{@key}`, and `{=}`, which is the entry that is called as the port."""
     quotes = 1 if word.kind == STRING else 0
     inside = word.raw[quotes + 1 : -1 - quotes]
     name = inside.strip()
     start = word.start + quotes + 1 + len(inside) - len(inside.lstrip())
     if name == "=" and pair is not None:
-        yield Mention(What.KEY, pair.key.text, Span(start, start + 1), word, False, node, tree, pair)
+        to.part(Mention(What.KEY, pair.key.text, Span(start, start + 1), word, False, node, tree, pair))
         return
     if name.startswith("@"):
         name, start, root = name[1:], start + 1, True
-    yield Mention(What.KEY, name, Span(start, start + len(name)), word, False, node, tree, pair, False, root)
+    to.part(Mention(What.KEY, name, Span(start, start + len(name)), word, False, node, tree, pair, False, root))
 
 
-def _script(word: Word, node: Node, tree: Tree, pair: Pair) -> Iterator[Mention]:
+def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> None:
     """The entries that a script reads and writes; one with escapes in it is left alone, for its offsets are others."""
     from btq_lang.script import Assign, Name, parse_script  # most files have no script, and it is large
     from btq_lang.script import children as parts
@@ -269,92 +330,79 @@ def _script(word: Word, node: Node, tree: Tree, pair: Pair) -> Iterator[Mention]
             span = Span(offset + part.end - len(name), offset + part.end)
             operator = written.get(id(part))
             is_update = operator not in (None, ":=", "=")
-            yield Mention(What.KEY, name, span, word, False, node, tree, pair, operator is not None, root, is_update)
+            to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, operator is not None, root, is_update))
         else:
             stack += parts(part)
 
 
-def _clauses(clauses: Iterable[NodeClause], node: Node | None) -> Iterator[Mention]:
+def _clauses(clauses: Iterable[NodeClause], node: Node | None, to: Listener) -> None:
     for clause in clauses:
         if isinstance(clause, Tags):
             for name in clause.names:
-                yield from _word(What.TAG, name, defines=True, node=node)
+                to.word(What.TAG, name, defines=True, node=node)
             continue
         if isinstance(clause, Satisfices):
             for quality in clause.qualities:
-                yield from _quality(quality.path, node)
+                _quality(quality.path, node, to)
         for requirement in requirements_at((clause,)):
             if isinstance(requirement, ReqRef):
-                yield from _reference(requirement, node)
+                _reference(requirement, node, to)
             else:
-                yield from _requirement(requirement, node, attached=True)
+                _requirement(requirement, node, True, to)
 
 
 # ---- requirements ----
 
 
-def _reference(reference: ReqRef, node: Node | None) -> Iterator[Mention]:
-    yield from _word(What.REQUIREMENT, reference.name, node=node)
+def _reference(reference: ReqRef, node: Node | None, to: Listener) -> None:
+    to.word(What.REQUIREMENT, reference.name, node=node)
     for argument in reference.arguments:
-        yield from _word(What.PARAMETER, argument.name, owner=reference.name.text)
-        yield from _values(argument.value, None)
+        to.word(What.PARAMETER, argument.name, owner=reference.name.text)
+        _values(argument.value, None, to)
 
 
-def _requirement(requirement: Requirement, node: Node | None, attached: bool) -> Iterator[Mention]:
+def _requirement(requirement: Requirement, node: Node | None, attached: bool, to: Listener) -> None:
     refers = attached and requirement.is_reference
-    yield from _word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
-    yield from _quality(requirement.quality, node)
+    to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
+    _quality(requirement.quality, node, to)
     for parameter in requirement.parameters:
-        yield from _word(What.PARAMETER, parameter.name, defines=True, owner=requirement)
-        yield from _word(What.UNIT, parameter.unit)
-        yield from _values(parameter.default, requirement)
+        to.word(What.PARAMETER, parameter.name, defines=True, owner=requirement)
+        to.word(What.UNIT, parameter.unit)
+        _values(parameter.default, requirement, to)
     for clause in requirement.clauses:
-        yield from _values(clause, requirement)
+        _values(clause, requirement, to)
 
 
-def _quality(path: QualityPath | None, node: Node | None) -> Iterator[Mention]:
+def _quality(path: QualityPath | None, node: Node | None, to: Listener) -> None:
     if path is not None:
         name = ".".join(word.text for word in path.names)
-        yield Mention(What.QUALITY, name, path.span, path.names[-1], False, node)
+        to.part(Mention(What.QUALITY, name, path.span, path.names[-1], False, node))
 
 
-def _values(part: Clause | Parameter | Argument | object, owner: Requirement | None) -> Iterator[Mention]:
+def _values(part: Clause | Parameter | Argument | object, owner: Requirement | None, to: Listener) -> None:
     """The names and quantities in clauses, conditions and bounds."""
     for found in walk(part):
         if isinstance(found, Operand | Amount):
             if found.word.kind == NAME and found.word.raw not in ("true", "false"):
-                yield from _word(What.VALUE, found.word, owner=owner)
+                to.word(What.VALUE, found.word, owner=owner)
         elif isinstance(found, Call):
-            yield from _word(What.VALUE, found.signal, owner=owner)
+            to.word(What.VALUE, found.signal, owner=owner)
         elif isinstance(found, Claim):
-            yield from _word(What.VALUE, found.resource, owner=owner)
+            to.word(What.VALUE, found.resource, owner=owner)
         elif isinstance(found, Path):
-            yield from _path(found)
+            _path(found, to)
         elif isinstance(found, Every):
-            yield from _word(What.PLACE, found.name)
+            to.word(What.PLACE, found.name)
         elif isinstance(found, Word) and found.kind == QUANTITY:
-            yield from _word(What.QUANTITY, found)
+            to.word(What.QUANTITY, found)
 
 
-def _quantities(part: object) -> Iterator[Mention]:
+def _quantities(part: object, to: Listener) -> None:
     for found in walk(part):
         if isinstance(found, Word) and found.kind == QUANTITY:
-            yield from _word(What.QUANTITY, found)
+            to.word(What.QUANTITY, found)
 
 
-def _path(path: Path | None) -> Iterator[Mention]:
+def _path(path: Path | None, to: Listener) -> None:
     for name in path.names if path is not None else ():
-        yield from _word(What.PLACE, name)
-
-
-def _word(
-    what: What,
-    word: Word | None,
-    *,
-    defines: bool = False,
-    node: Node | None = None,
-    owner: Requirement | Model | Tree | str | None = None,
-    pair: Pair | None = None,
-) -> Iterator[Mention]:
-    if word is not None:
-        yield Mention(what, word.text, word.span, word, defines, node, owner, pair)
+        to.word(What.PLACE, name)
