@@ -136,7 +136,7 @@ def _parts(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[Part
 def _made(file: File, stretch: Stretch, known: Known, encoding: Encoding) -> Part:
     known.asked = set()
     text = file.text[stretch.start : stretch.end]
-    data = encode(tokens_of_stretch(file, stretch, known), text, encoding)
+    data = encode(tokens_of_stretch(file.text, stretch, known), text, encoding)
     rest = len(LINE_END.findall(text)) - sum(data[::5])
     return Part(tuple(data), rest, "".join([f",{number}" for number in data[1:]]))
 

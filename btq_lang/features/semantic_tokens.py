@@ -5,9 +5,10 @@ One invariant: tokens are in the order of the text, none overlaps another, none 
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from operator import itemgetter
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nodes import lookup
 from btq_lang.claims import HAPPENINGS, VERBS
@@ -16,13 +17,12 @@ from btq_lang.clauses import EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
-from btq_lang.file import File
-from btq_lang.mentions import Mention, What
+from btq_lang.mentions import Listener, What, tell
 from btq_lang.parser import Parsed
 from btq_lang.record import Record
 from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Requirement
-from btq_lang.text import LINE_END, Encoding, Span
+from btq_lang.text import LINE_END, Span
 from btq_lang.token_list import pieces
 from btq_lang.tokens import (
     BRACED,
@@ -37,15 +37,44 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
-from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:
+    from typing import NamedTuple, TypeAlias
+
+    from btq_lang.mentions import Mention, Owner
+    from btq_lang.syntax import Node, Pair, Word
+    from btq_lang.text import Encoding
+    from btq_lang.workspace import Workspace
+
+    class _Token(NamedTuple):
+        start: int
+        end: int
+        number: int
+        bits: int
+else:
+    _Token = namedtuple("_Token", ("start", "end", "number", "bits"))
+
+Look: TypeAlias = tuple[int, int]  # the number of its type, and bits for its modifiers
+Token: TypeAlias = tuple[int, int, int, int]  # where a token starts and ends, and its look
+Place: TypeAlias = tuple[int, int, int, Look]  # where a name starts and ends, the how manyth it is, and its look
 
 
-class SemanticToken(Record):
-    """A coloured stretch.  type: one of TYPES; modifiers: some of MODIFIERS."""
+class SemanticToken(_Token):
+    """A coloured stretch: where it starts and ends, the number of its type in TYPES, and a bit for each modifier."""
 
-    span: Span
-    type: str
-    modifiers: tuple[str, ...] = ()
+    __slots__ = ()
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.end)
+
+    @property
+    def type(self) -> str:
+        return TYPES[self.number]
+
+    @property
+    def modifiers(self) -> tuple[str, ...]:
+        return tuple([modifier for bit, modifier in enumerate(MODIFIERS) if self.bits & 1 << bit])
 
 
 def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None) -> tuple[SemanticToken, ...]:
@@ -56,12 +85,10 @@ def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None)
     for stretch in stretches(file.parsed, len(file.text)):
         if within is None or (stretch.start <= within.end and stretch.end >= within.start):
             by = stretch.start
-            found += [
-                SemanticToken(one.span.shifted(by), one.type, one.modifiers)
-                for one in tokens_of_stretch(file, stretch, known)
-            ]
+            tokens = tokens_of_stretch(file.text, stretch, known)
+            found += [SemanticToken(start + by, end + by, number, bits) for start, end, number, bits in tokens]
     if within is not None:
-        found = [one for one in found if one.span.end >= within.start and one.span.start <= within.end]
+        found = [one for one in found if one.end >= within.start and one.start <= within.end]
     return tuple(found)
 
 
@@ -112,57 +139,128 @@ def stretches(parsed: Parsed, size: int) -> Iterator[Stretch]:
         yield Stretch(entries[begin].start, entries[end].start if end < len(entries) else size, entries[begin:end])
 
 
-def tokens_of_stretch(file: File, stretch: Stretch, known: Known) -> list[SemanticToken]:
-    """The tokens of a stretch, counted from its start."""
-    text = file.text[stretch.start : stretch.end]
-    named: list[tuple[Span, Mention]] = []
-    for entry in stretch.entries:
-        by = entry.start - stretch.start
-        named += [(mention.span.shifted(by), mention) for mention in file.mentions_of(entry)]
-    named.sort(key=itemgetter(0))
-    found: list[SemanticToken] = []
+def tokens_of_stretch(whole: str, stretch: Stretch, known: Known) -> list[Token]:
+    """The tokens of a stretch of a text, counted from its start."""
+    text = whole[stretch.start : stretch.end]
+    named = _names(stretch, known)
     index = 0
+    place, place_end, _, look = named[0]
+    found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
         end = start + len(raw)
-        while index < len(named) and named[index][0].end <= start:
+        if place == start and place_end == end and kind in _NAMING:
+            tokens = [(start, end, *look)]
             index += 1
-        inside: list[tuple[Span, Mention]] = []
-        while index < len(named) and named[index][0].end <= end:
-            place, mention = named[index]
-            inside.append((place if place.start >= start else Span(start, place.end), mention))
-            index += 1
-        if index < len(named) and named[index][0].start < end and kind in (NAME, STRING):
-            # A path of a quality or a compound unit: several tokens, one name.
-            inside.append((Span(start, end), named[index][1]))
-        if inside or kind in _COLOURED:
-            for one in _of_token(known, kind, Span(start, end), raw, inside, before):
-                found += _lines(one, text) if kind in _OVER_LINES else (one,)
-        if kind in _WORDS:
+            place, place_end, _, look = named[index]
+        elif place < end:
+            while named[index][1] <= start:
+                index += 1
+            inside: list[Place] = []
+            while named[index][1] <= end:
+                inside.append(named[index])
+                index += 1
+            place, place_end, _, look = named[index]
+            if place < end and kind in (NAME, STRING):
+                inside.append((start, end, 0, look))  # a path of a quality or a compound unit: several tokens, one name
+            tokens = _of_token(kind, start, end, _plain(kind, raw, before), inside)
+        else:
+            plain = _plain(kind, raw, before)
+            tokens = [(start, end, *plain)] if plain is not None else []
+        found += _by_line(tokens, text) if kind in _OVER_LINES and _has_line_end(raw) else tokens
+        if kind <= OPERATOR:
             before = raw
     return found
 
 
-def encode(tokens: Iterable[SemanticToken], text: str, encoding: Encoding) -> list[int]:
+def _names(stretch: Stretch, known: Known) -> list[Place]:
+    """The words of a stretch that name something, in the order of the text, and an end of them."""
+    names = _Names(known)
+    for entry in stretch.entries:
+        names.by = entry.start - stretch.start
+        tell(entry.item, names)
+    names.found.sort()
+    end = stretch.end - stretch.start + 1
+    return [*names.found, (end, end, 0, _KEYWORD)]
+
+
+class _Names(Listener):
+    """How the words look that name something.
+
+    Attributes:
+        by: where the item begins whose words are told.
+    """
+
+    def __init__(self, known: Known) -> None:
+        self.by = 0
+        self.found: list[Place] = []
+        self._known = known
+
+    def word(
+        self,
+        what: What,
+        word: Word | None,
+        defines: bool = False,
+        node: Node | None = None,
+        owner: Owner = None,
+        pair: Pair | None = None,
+    ) -> None:
+        if word is not None and word.raw:
+            look = (_DEFINED if defines else _USED).get(what)
+            if look is None:
+                look = self._look(what, word, word.text, defines, owner)
+            start = word.start + self.by
+            self.found.append((start, start + len(word.raw), len(self.found), look))
+
+    def part(self, mention: Mention) -> None:
+        start, end = mention.span
+        if start < end:
+            look = _WRITTEN if mention.writes else (_DEFINED if mention.defines else _USED).get(mention.what)
+            if look is None:
+                look = self._look(mention.what, mention.word, mention.name, mention.defines, mention.owner)
+            self.found.append((start + self.by, end + self.by, len(self.found), look))
+
+    def _look(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> Look:
+        """Of what can be several things."""
+        if what is What.NODE:
+            if word.kind == SYMBOL:
+                return _SIGN
+            builtin = None if defines else lookup(name, word.quoted)
+            if builtin is None:
+                return _OWN_NODES[defines]
+            return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
+        if what is What.QUALITY:
+            return _STANDARD if not defines and self._known.is_standard(name) else _OWN_QUALITIES[defines]
+        if what is What.VALUE:
+            is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
+            return _USED[What.PARAMETER] if is_own else _VALUE
+        assert what is What.PLACE, "rules stand in no item, and of all others it is known how they look"
+        return _USED[What.TREE] if self._known.is_tree(name) else _OWN_NODES[0]
+
+
+def encode(tokens: Iterable[Token], text: str, encoding: Encoding) -> list[int]:
     """Five integers a token: lines and columns from the token before, length, type, modifiers as bits."""
-    starts = [0, *(end.end() for end in LINE_END.finditer(text))]
+    ends = [end.end() for end in LINE_END.finditer(text)]
+    ends.append(len(text) + 1)
     plain = encoding == "code-points" or text.isascii()
     data: list[int] = []
-    line = last_line = last_column = 0
-    for token in tokens:
-        start, end = token.span
-        while line + 1 < len(starts) and starts[line + 1] <= start:
+    begin = line = last_line = last_column = 0
+    next_line = ends[0]
+    for start, end, number, bits in tokens:
+        while next_line <= start:
+            begin = next_line
             line += 1
-        column, length = start - starts[line], end - start
+            next_line = ends[line]
+        column, length = start - begin, end - start
         if not plain:
-            column = _width(text[starts[line] : start], encoding)
+            column = _width(text[begin:start], encoding)
             length = _width(text[start:end], encoding)
-        same = line == last_line
-        bits = 0
-        for modifier in token.modifiers:
-            bits |= _BITS[modifier]
-        data += (line - last_line, column - last_column if same else column, length, _NUMBERS[token.type], bits)
-        last_line, last_column = line, column
+        if line == last_line:
+            data += (0, column - last_column, length, number, bits)
+        else:
+            data += (line - last_line, column, length, number, bits)
+            last_line = line
+        last_column = column
     return data
 
 
@@ -172,88 +270,75 @@ def _width(text: str, encoding: Encoding) -> int:
     return len(text) + sum(character > "\uffff" for character in text)
 
 
-def _of_token(
-    known: Known, kind: int, span: Span, raw: str, inside: list[tuple[Span, Mention]], before: str
-) -> list[SemanticToken]:
-    if inside and kind in (NAME, STRING, SYMBOL) and inside[0][0] == span:
-        named = _of_mention(known, inside[0][1])
-        return [SemanticToken(span, *named)] if named else []
-    plain = _PLAIN.get(kind)
-    if kind == NAME and raw in KEYWORDS and before != "=":
-        plain = "keyword"
-    elif kind == NAME and before == ":":
-        plain = "type"
-    elif kind == NAME and before == "=":
-        plain = "string"
-    found: list[SemanticToken] = []
-    at = span.start
-    for place, mention in inside:  # keys in braces and scripts
-        named = _of_mention(known, mention)
-        if named is None or not at <= place.start:
+def _plain(kind: int, raw: str, before: str) -> Look | None:
+    """How a token looks that names nothing; None: it has no colour."""
+    if kind != NAME:
+        return _PLAIN.get(kind)
+    if before == "=":
+        return _TEXT
+    if raw in KEYWORDS:
+        return _KEYWORD
+    return _TYPE if before == ":" else None
+
+
+def _of_token(kind: int, start: int, end: int, plain: Look | None, inside: list[Place]) -> list[Token]:
+    """The tokens of a piece with names in it: all of it, or keys in braces and scripts."""
+    if inside and kind in _NAMING and inside[0][0] <= start and inside[0][1] == end:
+        return [(start, end, *inside[0][3])]
+    found: list[Token] = []
+    at = start
+    for place, place_end, _, look in inside:
+        begin = max(place, start)
+        if begin < at:
             continue
-        if plain is not None and at < place.start:
-            found.append(SemanticToken(Span(at, place.start), plain))
-        found.append(SemanticToken(place, *named))
-        at = place.end
-    if plain is not None and at < span.end:
-        found.append(SemanticToken(Span(at, span.end), plain))
+        if plain is not None and at < begin:
+            found.append((at, begin, *plain))
+        found.append((begin, place_end, *look))
+        at = place_end
+    if plain is not None and at < end:
+        found.append((at, end, *plain))
     return found
 
 
-def _of_mention(known: Known, mention: Mention) -> tuple[str, tuple[str, ...]] | None:
-    what = mention.what
-    modifiers: tuple[str, ...] = ("definition",) if mention.defines else ()
-    if what is What.NODE:
-        if mention.word.kind == SYMBOL:
-            return "operator", ("defaultLibrary",)
-        builtin = None if mention.defines else lookup(mention.name, mention.word.quoted)
-        if builtin is None:
-            return "function", modifiers
-        return "function" if builtin.category in ("Action", "Condition") else "type", ("defaultLibrary",)
-    if what is What.QUALITY:
-        is_standard = not mention.defines and known.is_standard(mention.name)
-        return "enumMember", ("defaultLibrary",) if is_standard else modifiers
-    if what is What.VALUE:
-        owner = mention.owner
-        if isinstance(owner, Requirement) and any(one.name.text == mention.name for one in owner.parameters):
-            return "parameter", ()
-        return "variable", ("readonly",)
-    if what is What.PLACE:
-        return ("class" if known.is_tree(mention.name) else "function"), ()
-    if what is What.KEY and mention.writes:
-        return "variable", ("modification",)
-    type_ = _TYPES.get(what)
-    return (type_, modifiers) if type_ is not None else None
+def _by_line(tokens: list[Token], text: str) -> list[Token]:
+    """Tokens cut at line ends."""
+    found: list[Token] = []
+    for start, end, number, bits in tokens:
+        for line in LINE_END.finditer(text, start, end):
+            if line.start() > start:
+                found.append((start, line.start(), number, bits))
+            start = line.end()
+        if start < end:
+            found.append((start, end, number, bits))
+    return found
 
 
-def _lines(token: SemanticToken, text: str) -> Iterable[SemanticToken]:
-    """A token cut at line ends."""
-    piece = text[token.span.start : token.span.end]
-    if "\n" not in piece and "\r" not in piece:
-        return (token,)
-    pieces = []
-    at = 0
-    for end in (*LINE_END.finditer(piece), None):
-        stop = end.start() if end else len(piece)
-        if stop > at:
-            pieces.append(SemanticToken(Span(at, stop).shifted(token.span.start), token.type, token.modifiers))
-        at = end.end() if end else stop
-    return pieces
+def _has_line_end(raw: str) -> bool:
+    return "\n" in raw or "\r" in raw
 
 
-_WORDS = frozenset((NAME, OPERATOR, STRING, NUMBER, QUANTITY, SYMBOL, BRACED))
-_NUMBERS = {type_: number for number, type_ in enumerate(TYPES)}
-_BITS = {modifier: 1 << number for number, modifier in enumerate(MODIFIERS)}
+def _look(type_: str, modifier: str | None = None) -> Look:
+    return TYPES.index(type_), 1 << MODIFIERS.index(modifier) if modifier is not None else 0
+
+
+_NAMING = (NAME, STRING, SYMBOL)  # what may be a name as it stands
 _OVER_LINES = frozenset((COMMENT, STRING, BRACED, QUANTITY))  # what may go over a line end, or have one in it
+_KEYWORD, _TEXT, _TYPE = _look("keyword"), _look("string"), _look("type")
 _PLAIN = {
-    COMMENT: "comment",
-    STRING: "string",
-    NUMBER: "number",
-    QUANTITY: "number",
-    SYMBOL: "operator",
-    BRACED: "variable",
+    COMMENT: _look("comment"),
+    STRING: _TEXT,
+    NUMBER: _look("number"),
+    QUANTITY: _look("number"),
+    SYMBOL: _look("operator"),
+    BRACED: _look("variable"),
 }
-_COLOURED = frozenset((NAME, *_PLAIN))  # where no word names anything
+_SIGN = _look("operator", "defaultLibrary")
+_ACTION, _BUILTIN = _look("function", "defaultLibrary"), _look("type", "defaultLibrary")
+_OWN_NODES = _look("function"), _look("function", "definition")
+_STANDARD = _look("enumMember", "defaultLibrary")
+_OWN_QUALITIES = _look("enumMember"), _look("enumMember", "definition")
+_VALUE = _look("variable", "readonly")
+_WRITTEN = _look("variable", "modification")
 _TYPES = {
     What.TREE: "class",
     What.REQUIREMENT: "interface",
@@ -270,6 +355,8 @@ _TYPES = {
     What.UNIT: "type",
     What.EDITION: "enumMember",
 }
+_USED = {what: _look(type_) for what, type_ in _TYPES.items()}
+_DEFINED = {what: _look(type_, "definition") for what, type_ in _TYPES.items()}
 # Every word that the grammar knows by its place; a name that looks like one is a mention and comes before.
 KEYWORDS = frozenset(
     {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
