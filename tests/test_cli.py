@@ -87,6 +87,13 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     assert "unknown-node" in done.stderr
 
 
+@pytest.mark.parametrize("command", ["build", "import"])
+def test_a_folder_is_no_standard_output(btq: Run, command: str) -> None:
+    done = btq(command, "mission.btq", "-o", "-")
+    message = "error: argument -o/--output: it is a folder; what is read from `-` goes to standard output\n"
+    assert (done.returncode, done.stdout, done.stderr.endswith(message)) == (2, "", True)
+
+
 def test_check_a_clean_folder(btq: Run) -> None:
     done = btq("check", str(EXAMPLES / "laboratory"))
     assert (done.returncode, done.stdout, done.stderr) == (0, "No problems found in 1 file\n", "")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from argparse import ArgumentParser, ArgumentTypeError, Namespace, RawDescriptionHelpFormatter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
@@ -126,7 +126,7 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
         "  btq build --check                  in CI: is the XML what the missions say?\n",
     )
     _add_paths(parser)
-    parser.add_argument("-o", "--output", metavar="FOLDER", help="where to write; default: beside the missions")
+    _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
     parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it includes")
     parser.add_argument("--target", choices=TARGETS, help="the engine's version; default: the project's newest")
     parser.add_argument(
@@ -141,6 +141,15 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     _add_color(parser)
 
 
+def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
+    def folder(path: str) -> str:
+        if path == "-":
+            raise ArgumentTypeError("it is a folder; what is read from `-` goes to standard output")
+        return path
+
+    parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
+
+
 def _add_import(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
@@ -152,7 +161,7 @@ def _add_import(commands: _SubParsersAction[Parser]) -> None:
         "  btq import - < mission.xml      to standard output\n",
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
-    parser.add_argument("-o", "--output", metavar="DIR", help="the folder to write into; default: that of each file")
+    _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
     parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
     parser.add_argument("--force", action="store_true", help="write over .btq files that are there")
     _add_color(parser)
