@@ -145,7 +145,7 @@ class ClaimParser(ConditionParser):
             name = "/".join(word.raw for word in subject.names)
             note = _INSTEAD_OF_A_NODE
             if subject.names[0].kind == STRING:
-                note = "a requirement has one title; reasons are written `because …`"
+                note = "a requirement has one title, behind its name; reasons are written `because …`"
             elif self.kind == STRING:
                 note = '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"'
             self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
@@ -284,6 +284,7 @@ class ClaimParser(ConditionParser):
         return None
 
 
+QUALITY_IN_HEAD: Final = "a requirement's quality stands behind its name: `QualityReq fast : reliability`"
 _MEANT: Final = {  # by what is read as a node in front of a verb
     "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
@@ -295,6 +296,11 @@ _MEANT: Final = {  # by what is read as a node in front of a verb
     "between": "a range is written `keeps 0 N <= force <= 3 N`",
     "always": "write `keeps battery >= 15 %`",
     "not": "write `never lamp_on`, or `keeps not lamp_on`",
+    "quality": QUALITY_IN_HEAD,
+    **dict.fromkeys(
+        ("title", "description", "text"),
+        'a requirement has one title, behind its name: `QualityReq fast "in time"`',
+    ),
     **dict.fromkeys(
         ("must", "shall", "should", "will", "may"),
         "a clause begins with its verb, without such a word: `takes at most 30 s`",

@@ -5,7 +5,7 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from btq_lang.claims import VERBS, ClaimParser
+from btq_lang.claims import QUALITY_IN_HEAD, VERBS, ClaimParser
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.near import near
@@ -186,7 +186,7 @@ class ClauseParser(ClaimParser):
                 return tuple(found)
             found.append(clause)
         if at_least_one and not found:
-            self.expected(_A_CLAUSE)
+            self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
         return tuple(found)
 
     def clause(self) -> Clause | None:
