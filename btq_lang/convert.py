@@ -18,7 +18,7 @@ from lsprotocol import types
 
 from btq_lang.diagnostics import Diagnostic, Related, Tag
 from btq_lang.protocol import Json, Plain
-from btq_lang.rules import Severity, page_path
+from btq_lang.rules import RULES, Severity, page_path
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
 
 if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
@@ -90,7 +90,7 @@ class Converter:
     # ---- to the editor ----
 
     def uri(self, path: str) -> str:
-        return self.uris.get(path) or ("file://" + _url_of(path) if path.startswith("/") else path)
+        return self.uris.get(path) or _uri_of(path)
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
         """A span of a file's text, where it stands on the disk."""
@@ -137,25 +137,24 @@ class Converter:
         lines = workspace.files[path].source_lines
         written: list[str] = []
         for one in found:
-            said = _said(
-                one.rule, one.message, one.notes, one.effective_severity, one.tags, self.uri(page_path(one.rule))
-            )
-            related = (
-                ", ".join([self._information(workspace, path, each) for each in one.related]) if one.related else ""
-            )
+            said = _said(one.rule, one.message, one.notes, one.severity, one.tags)
+            related = [self._information(workspace, path, each) for each in one.related] if one.related else ()
             written.append(
-                f'{{"range": {self._range_as_json(lines, one.span)}, {said}, "relatedInformation": [{related}]}}'
+                f'{{"range": {self._range_as_json(lines, one.span)}, {said}, '
+                f'"relatedInformation": [{", ".join(related)}]}}'
             )
         return Json(f"[{', '.join(written)}]")
 
     def _information(self, workspace: Workspace, path: str, related: Related) -> str:
         target = related.place.path or path
         range_ = self._range_as_json(workspace.files[target].source_lines, related.place.span)
-        uri, message = as_json(self.uri(target)), as_json(related.message)
-        return f'{{"location": {{"uri": {uri}, "range": {range_}}}, "message": {message}}}'
+        return (
+            f'{{"location": {{"uri": {as_json(self.uri(target))}, "range": {range_}}}, '
+            f'"message": {as_json(related.message)}}}'
+        )
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
-        (line, column), (end_line, end_column) = lines.ends(span, self.encoding)
+        line, column, end_line, end_column = lines.ends(span, self.encoding)
         return (
             f'{{"start": {{"line": {line}, "character": {column}}}, '
             f'"end": {{"line": {end_line}, "character": {end_column}}}}}'
@@ -242,17 +241,25 @@ class Converter:
 
 
 @lru_cache(_MOST_KEPT)
-def _said(rule: str, message: str, notes: tuple[str, ...], severity: Severity, tags: tuple[Tag, ...], href: str) -> str:
-    """What a diagnostic says, wherever it stands: members of a JSON object."""
+def _said(rule: str, message: str, notes: tuple[str, ...], severity: Severity | None, tags: tuple[Tag, ...]) -> str:
+    """What a diagnostic says, wherever it stands: members of a JSON object.
+
+    Args:
+        severity: None: the rule's own.
+    """
     members = {
         "message": "\n".join((message, *notes)),
-        "severity": _SEVERITIES[severity],
+        "severity": _SEVERITIES[severity or RULES[rule].severity],
         "code": rule,
-        "codeDescription": {"href": href},
+        "codeDescription": {"href": _uri_of(page_path(rule))},
         "source": "btq",
         "tags": [_TAGS[tag] for tag in tags],
     }
     return json.dumps(members)[1:-1]
+
+
+def _uri_of(path: str) -> str:
+    return "file://" + _url_of(path) if path.startswith("/") else path
 
 
 def _path_of(url: str) -> str:

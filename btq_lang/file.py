@@ -66,6 +66,9 @@ class File:
             after._of_type = {kind: each for kind, each in self._of_type.items() if kind not in touched}
             if "includes" in self.__dict__ and Include not in touched:
                 after.includes = self.includes
+            if change is not None and not self.__dict__.get("has_directives", True):
+                end = change.end + len(text) - len(self.text) + len(_DIRECTIVE)
+                after.has_directives = _DIRECTIVE in text[max(change.start - len(_DIRECTIVE), 0) : end]
             if "names" in self.__dict__:
                 names = self.names.edited(gone, come)
                 if names is not None:
@@ -114,6 +117,11 @@ class File:
     @cached_property
     def lines(self) -> LineIndex:
         return LineIndex(self.text)
+
+    @cached_property
+    def has_directives(self) -> bool:
+        """Whether a comment in it may silence rules."""
+        return _DIRECTIVE in self.text
 
     @cached_property
     def defined(self) -> tuple[Definition, ...]:
@@ -321,6 +329,7 @@ _ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written o
 _NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality blanks may stand
 _NAMES = ("path", "text", "origin", "included_paths", "defined_names", "used_names")  # they hold nothing of the tree
 _RARE_NAMES = ("kinds", "_names_of")  # likewise, and seldom asked for
+_DIRECTIVE = "btq:"
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 
 

@@ -7,7 +7,7 @@ editor), and `LineIndex` is the only place that turns one into the other, in the
 from __future__ import annotations
 
 import re
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections import namedtuple
 
 from btq_lang.record import Record
@@ -96,13 +96,19 @@ def _same(is_same: Callable[[int, int], bool], size: int) -> int:
 
 
 class LineIndex:
-    """Where the lines of a text begin, to turn offsets into positions and back."""
+    """Where the lines of a text begin, to turn offsets into positions and back.
 
-    __slots__ = ("_starts", "_text")
+    After an edit of a large text most lines only begin elsewhere; what moves them is kept beside them, and added when
+    one is asked for: an author types in one place.
+    """
+
+    __slots__ = ("_by", "_moved", "_starts", "_text")
 
     def __init__(self, text: str) -> None:
         self._text = text
         self._starts = [0, *[end.end() for end in LINE_END.finditer(text)]]
+        self._moved = 0  # from this line on all begin further behind than `_starts` says,
+        self._by = 0  # by this
 
     def edited(self, text: str, change: Span | None = None) -> LineIndex:
         """The index of the text after an edit; the lines before and behind the change are not looked for again.
@@ -119,18 +125,40 @@ class LineIndex:
 
     def _replaced(self, change: Span, text: str) -> LineIndex:
         # A \r before the change, or a \n behind it, may be half of a line end that the change makes or breaks.
-        first = bisect_left(self._starts, change.start) - 1
-        last = bisect_right(self._starts, change.end)
+        first = max(self._line_of(change.start - 1), 0)
+        last = self._line_of(change.end) + 1
+        is_end = last == len(self._starts)
         by = len(text) - len(self._text)
-        end = self._starts[last] + by if last < len(self._starts) else len(text)
-        begin = self._starts[max(first, 0)]
+        end = len(text) if is_end else self._start(last) + by
+        between = [match.end() for match in LINE_END.finditer(text, self._start(first), end)]
+        if not is_end:
+            between.pop()  # behind it is the line that is there already
         after = LineIndex("")
         after._text = text
-        between = [match.end() for match in LINE_END.finditer(text, begin, end)]
-        after._starts = [*self._starts[: max(first, 0) + 1], *between]
-        if last < len(self._starts):
-            after._starts[-1:] = [start + by for start in self._starts[last:]]
+        after._starts = self._moved_from(last)
+        after._starts[first + 1 : last] = between
+        after._moved = first + 1 + len(between)
+        after._by = self._by + by
         return after
+
+    def _moved_from(self, line: int) -> list[int]:
+        """As `_starts`, were this the line from which on all begin further behind."""
+        starts, by = self._starts[:], self._by
+        low, high = sorted((self._moved, line))
+        if by:
+            by = by if low < line else -by
+            starts[low:high] = [start + by for start in starts[low:high]]
+        return starts
+
+    def _start(self, line: int) -> int:
+        return self._starts[line] + self._by if line >= self._moved else self._starts[line]
+
+    def _line_of(self, offset: int) -> int:
+        """The line that an offset is in; -1 before the first one."""
+        starts, moved = self._starts, self._moved
+        if moved < len(starts) and starts[moved] + self._by <= offset:
+            return bisect_right(starts, offset - self._by, moved) - 1
+        return bisect_right(starts, offset, 0, moved) - 1
 
     @property
     def text(self) -> str:
@@ -142,28 +170,32 @@ class LineIndex:
 
     def line(self, line: int) -> str:
         """The text of a line, without its line end."""
-        start = self._starts[line]
-        end = self._starts[line + 1] if line + 1 < len(self._starts) else len(self._text)
-        return self._text[start:end].rstrip("\r\n")
+        end = self._start(line + 1) if line + 1 < len(self._starts) else len(self._text)
+        return self._text[self._start(line) : end].rstrip("\r\n")
 
     def position(self, offset: int, encoding: Encoding = "code-points") -> Position:
         """The position of an offset, its column counted in `encoding`; an offset outside the text is clamped."""
         offset = max(0, min(offset, len(self._text)))
-        line = bisect_right(self._starts, offset) - 1
-        start = self._starts[line]
+        line = self._line_of(offset)
+        start = self._start(line)
         if self._text.isascii():  # Python knows that of a text without looking at it
             return Position(line, offset - start)
         return Position(line, _width(self._text[start:offset], encoding))
 
-    def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[Position, Position]:
-        """The positions of both ends of a span; nearly all begin and end in one line."""
+    def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[int, int, int, int]:
+        """Line and column of both ends of a span; nearly all begin and end in one line."""
         start, end = span
         if self._text.isascii() and 0 <= start <= end <= len(self._text):
-            line = bisect_right(self._starts, start)
-            if line == len(self._starts) or end < self._starts[line]:
-                begin = self._starts[line - 1]
-                return Position(line - 1, start - begin), Position(line - 1, end - begin)
-        return self.position(start, encoding), self.position(end, encoding)
+            starts, moved, by = self._starts, self._moved, self._by
+            if moved < len(starts) and starts[moved] + by <= start:
+                line = bisect_right(starts, start - by, moved)
+                begin = starts[line - 1] + by
+            else:
+                line = bisect_right(starts, start, 0, moved)
+                begin = starts[line - 1]
+            if line == len(starts) or end < self._start(line):
+                return line - 1, start - begin, line - 1, end - begin
+        return *self.position(start, encoding), *self.position(end, encoding)
 
     def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
         """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""
@@ -174,8 +206,8 @@ class LineIndex:
         text = self.line(position.line)
         column = max(0, position.column)
         if encoding != "code-points" and not text.isascii():
-            return self._starts[position.line] + _index(text, column, encoding)
-        return self._starts[position.line] + min(column, len(text))
+            return self._start(position.line) + _index(text, column, encoding)
+        return self._start(position.line) + min(column, len(text))
 
 
 def _width(text: str, encoding: Encoding) -> int:

@@ -5,6 +5,10 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
+from btq_lang.checks import check
+from btq_lang.checks.answers import Answers
+from btq_lang.workspace import Workspace
+
 RETY = "warning unknown-node «Rety» unknown node `Rety`"
 
 
@@ -88,3 +92,19 @@ def test_errors_after_which_a_file_is_not_read_as_it_stands_are_not_silenced() -
         "3:30 warning useless-ignore «syntax-error» "
         "`syntax-error` cannot be silenced: with such a mistake the file is not read as it stands",
     )
+
+
+def test_a_comment_counts_as_soon_as_it_is_typed() -> None:
+    text = tree("Rety")
+    at = text.index("Rety") + len("Rety")
+    workspace, answers = Workspace.of({"main.btq": text}), Answers()
+    told: list[str] = []
+    for letter in "  # btq: ignore":
+        told.append(", ".join(each.rule for each in check(workspace, "main.btq", answers)))
+        text = text[:at] + letter + text[at:]
+        at += 1
+        workspace = workspace.with_file("main.btq", text)
+    assert told == ["unknown-node"] * len(told)
+    assert check(workspace, "main.btq", answers) == ()
+    workspace = workspace.with_file("main.btq", text.replace("btq:", "btq"))
+    assert [each.rule for each in check(workspace, "main.btq", answers)] == ["unknown-node"]

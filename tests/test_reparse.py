@@ -9,7 +9,7 @@ import missions
 import pytest
 
 from btq_lang.parser import Parsed, parse, reparse
-from btq_lang.text import LineIndex, changed
+from btq_lang.text import LineIndex, Position, Span, changed
 from btq_lang.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parent / "every_form.btq").read_text(encoding="utf-8")
@@ -128,7 +128,13 @@ def test_a_line_index_that_is_patched_is_that_of_the_text(seed: int) -> None:
         fresh = LineIndex(text)
         offsets = range(len(text) + 1)
         assert [index.position(one) for one in offsets] == [fresh.position(one) for one in offsets]
+        assert [index.ends(Span(one, one + 2)) for one in offsets] == [
+            fresh.ends(Span(one, one + 2)) for one in offsets
+        ]
+        lines = range(fresh.line_count)
         assert index.line_count == fresh.line_count
+        assert [index.line(one) for one in lines] == [fresh.line(one) for one in lines]
+        assert [index.offset(Position(one, 1)) for one in lines] == [fresh.offset(Position(one, 1)) for one in lines]
 
 
 def test_the_file_after_an_edit_keeps_what_is_known_of_its_items() -> None:

@@ -272,7 +272,7 @@ def check(
     else:
         found = _known(view, workspace, answers)
         answers.end()
-    if "btq:" in file.text:
+    if file.has_directives:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
 
         suppressions = Suppressions(file)

@@ -327,7 +327,7 @@ def is_main(workspace: Workspace, path: str, entry: Entry) -> bool:
 def _rule_at(workspace: Workspace, path: str, offset: int) -> Found | None:
     """The name of a rule in `# btq: ignore[rule, …]`."""
     file = workspace.files[path]
-    if "btq:" not in file.text:
+    if not file.has_directives:
         return None
     for token in file.parsed.tokens:
         if token.kind == COMMENT and token.start <= offset <= token.end:
