@@ -85,6 +85,12 @@ def test_it_follows_the_file(page: Page, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text("BehaviorTree Main\n    Dock\n")
     see_boxes(page, "Dock")
     assert page.locator("#said").text_content() == ""
+    (tmp_path / "main.btq").write_text("QualityReq soon\n    takes at most 30 s\n")
+    see_boxes(page)
+    assert page.locator("#said").text_content() == "There is no tree in main.btq"
+    (tmp_path / "main.btq").write_text("BehaviorTree Main\n    Dock\n")
+    see_boxes(page, "Dock")
+    assert page.locator("#said").text_content() == ""
 
 
 def test_a_subtree_is_folded_by_its_handle_and_stays_folded(page: Page, tmp_path: Path) -> None:
