@@ -5,11 +5,14 @@ from __future__ import annotations
 from math import inf
 
 from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.record import Record
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
+from btq_lang.symbols import Kind
+from btq_lang.syntax import Model, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
     from typing import Any, TypeAlias
 
     from btq_lang.checks.swallowing import WaysUp
@@ -19,6 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.durations import Term
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.syntax import Port
 
 Found: TypeAlias = tuple[Place, Diagnostic]
 
@@ -37,8 +41,8 @@ class Demanded:
         claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
             a span the one that takes as long), and where to tell of it.
         noted: what was asked of other trees.
-        ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was; it holds
-            while the SubTree nodes on them are the same.
+        ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was.
+        turned: the trees of whose callers others were known then: what was found of a way through one holds no more.
         ends_at: of SubTree nodes on these ways, what a failure below them ends at.
     """
 
@@ -55,9 +59,13 @@ class Demanded:
         self.noted: dict[Question, object] = {}
         self._answers: dict[Question, object] = {}
         self.ways_up: dict[str | None, WaysUp] = {}
-        self.ways_up_before: dict[str | None, WaysUp] = view.resolved.ways_up
+        mission = self.requirements.mission
+        of_ways = Callers(self.requirements.nodes.callers_by_tree, mission.tree if mission is not None else None)
+        self.ways_up_before: dict[str | None, WaysUp] = view.resolved.ways_up[0]
+        self.turned: frozenset[str | None] = of_ways.turned_since(view.resolved.ways_up[1])
         self.ends_at: dict[SourceNode, Any] = {}
-        view.resolved.ways_up = self.ways_up
+        self._ports: dict[str, tuple[Port, ...]] | None = None
+        view.resolved.ways_up = self.ways_up, of_ways
 
     def look_at(self, tree: TreeNodes) -> None:
         """What follows is about the nodes of this tree."""
@@ -78,6 +86,38 @@ class Demanded:
             what, about = question
             self._answers[question] = what(self, about)
         return self._answers[question]
+
+    @property
+    def ports(self) -> dict[str, tuple[Port, ...]]:
+        """Those that the trees and models in scope declare, by their names; of a tree that has none, a model's."""
+        if self._ports is None:
+            self._ports = {}
+            for kind in (Kind.MODEL, Kind.TREE):
+                counting: dict[str, object] = {}  # of several of one name the first one
+                for file in self.files:
+                    for symbol in file.names.symbols[kind]:
+                        counting.setdefault(symbol.name, symbol.target)
+                for name, target in counting.items():
+                    if isinstance(target, (Tree, Model)) and target.ports:
+                        self._ports[name] = target.ports
+        return self._ports
+
+
+class Callers(Record):
+    """Which SubTree nodes run each tree, and the mission's tree, which is looked at no further."""
+
+    by_tree: Mapping[str, tuple[SourceNode, ...]]
+    mission: str | None
+
+    def turned_since(self, before: Callers | None) -> frozenset[str | None]:
+        """The trees of which others were said then."""
+        known = before.by_tree if before is not None else {}
+        if known is self.by_tree and before is not None and before.mission == self.mission:
+            return frozenset()
+        names = [*known, *(self.by_tree.keys() - known.keys())]
+        turned = [name for name in names if known.get(name) is not self.by_tree.get(name)]
+        was = before.mission if before is not None else None
+        return frozenset((*turned, *((was, self.mission) if was != self.mission else ())))
 
 
 def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:

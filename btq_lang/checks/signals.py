@@ -10,8 +10,7 @@ from btq_lang.entry_types import is_text
 from btq_lang.near import near
 from btq_lang.record import Record
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
-from btq_lang.syntax import Model, Pair, Port, Tree
+from btq_lang.syntax import Pair, Port
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -254,11 +253,4 @@ def _declared(demanded: Demanded, node: SourceNode, port: str) -> Port | None:
 
 
 def _ports(demanded: Demanded, name: str) -> tuple[Port, ...]:
-    for key in ((Kind.TREE, name), (Kind.MODEL, name)):
-        for file in demanded.files:
-            if (found := file.names.found.get(key)) is not None:
-                target = found[0][1].target
-                if isinstance(target, (Tree, Model)) and target.ports:
-                    return target.ports
-                break
-    return ()
+    return demanded.ports.get(name, ())

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from btq_lang.requirements import Requirements
 
 Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
-# Where a failure ends, and the SubTree nodes that run the trees on the ways up, by these.
-WaysUp: TypeAlias = "tuple[Swallower | None, dict[str | None, tuple[SourceNode, ...]]]"
+# Where a failure ends, and the trees on the ways up: of whose callers that holds.
+WaysUp: TypeAlias = "tuple[Swallower | None, set[str | None]]"
 
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
@@ -52,7 +52,7 @@ def _above(demanded: Demanded, tree: str | None) -> Swallower | None:
 def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
     known = demanded.ways_up_before.get(tree)
-    if known is None or any(_callers(demanded.requirements, at) != callers for at, callers in known[1].items()):
+    if known is None or not known[1].isdisjoint(demanded.turned):
         known = _end_of_ways(demanded, tree)
     demanded.ways_up[tree] = known
     return known[0]
@@ -62,8 +62,8 @@ def _end_of_ways(demanded: Demanded, tree: str | None) -> WaysUp:
     found, ends_at = demanded.requirements, demanded.ends_at
     first: Swallower | None = None
     seen: set[int] = set()
-    of_tree = {tree: _callers(found, tree)}
-    waiting = [*of_tree[tree]]
+    trees = {tree}
+    waiting = [*_callers(found, tree)]
     ends = not waiting
     while waiting:
         at = waiting.pop()
@@ -75,10 +75,11 @@ def _end_of_ways(demanded: Demanded, tree: str | None) -> WaysUp:
         end = ends_at[at]
         first = first or end
         if end is None:
-            callers = of_tree[at.tree] = _callers(found, at.tree)
+            callers = _callers(found, at.tree)
+            trees.add(at.tree)
             ends = ends or not callers
             waiting += callers
-    return None if ends else first, of_tree
+    return None if ends else first, trees
 
 
 def _callers(found: Requirements, tree: str | None) -> tuple[SourceNode, ...]:

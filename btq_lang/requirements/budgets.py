@@ -7,6 +7,7 @@ holds for some activations only (a scope, some instances) is none here.
 
 from __future__ import annotations
 
+from heapq import heappop, heappush
 from math import fsum, inf
 
 from btq_lang.record import Record, replace
@@ -123,30 +124,50 @@ class Budgets:
 
     def _take_over(self, before: dict[int, _TreeBudgets]) -> None:
         """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
-        others: set[str | None] = set()  # the trees whose budgets are to be made, and may come out otherwise
-        by_tree, is_ordered_as_before = self._found.by_tree, self._nodes.is_ordered_as_before
+        nodes, by_tree = self._nodes, self._found.by_tree
+        trees = nodes.in_order if before else ()
+        waiting: list[int] = []  # places in that order, of trees whose budgets may come out otherwise
+        for at, tree in enumerate(trees):
+            item = id(tree.item)
+            known = before.get(item)
+            if known is not None and known.tree is tree:
+                applied = by_tree.get(item, ())
+                if applied is known.applied or is_same(applied, known.applied):
+                    self._trees[item] = known
+                    continue
+            waiting.append(at)
+        if not nodes.is_ordered_as_before:
+            waiting = [*range(len(trees))]
+        others: set[str | None] = set()
+        seen = set(waiting)
+        while waiting:  # each behind those that it runs
+            at = heappop(waiting)
+            tree = trees[at]
+            known = self._trees.get(id(tree.item))
+            if known is not None and self._says_the_same(known, others):
+                continue
+            self._trees.pop(id(tree.item), None)
+            others.add(tree.name)
+            for caller in nodes.callers(tree.name):
+                above = nodes.position(caller.item)
+                if above > at and above not in seen:
+                    seen.add(above)
+                    heappush(waiting, above)
 
-        def is_as_before(tree: TreeNodes, name: str, known: tuple[SourceNode | None, object]) -> bool:
+    def _says_the_same(self, known: _TreeBudgets, others: set[str | None]) -> bool:
+        """Whether all is so that was asked for the budgets of a tree.
+
+        Args:
+            others: the trees whose budgets are made anew.
+        """
+        for name, (root_before, outcome) in known.asked.items():
             root = self._nodes.root(name)
-            if root is not None and self._nodes.position(root.item) >= self._nodes.position(tree.item):
+            if root is not None and self._nodes.position(root.item) >= self._nodes.position(known.tree.item):
                 root = None
-            is_same_root = root is known[0] and root is not None and name not in others
-            return is_same_root or self._outcome(tree, name) == known[1]
-
-        for tree in self._nodes.in_order if before else ():
-            known = before.get(id(tree.item))
-            if (
-                known is not None
-                and known.tree is tree
-                and ((applied := by_tree.get(id(tree.item), ())) is known.applied or is_same(applied, known.applied))
-                and (
-                    (is_ordered_as_before and (not others or others.isdisjoint(known.asked)))
-                    or all(is_as_before(tree, name, known.asked[name]) for name in known.asked)
-                )
-            ):
-                self._trees[id(tree.item)] = known
-            else:
-                others.add(tree.name)
+            is_same_root = root is root_before and root is not None and name not in others
+            if not is_same_root and self._outcome(known.tree, name) != outcome:
+                return False
+        return True
 
     def _in(self, tree: TreeNodes) -> _TreeBudgets:
         found = self._trees.get(id(tree.item))

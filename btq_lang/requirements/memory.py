@@ -46,7 +46,7 @@ class Memory:
         held: what each requirement holds for, in their order.
         by_tree: what holds for nodes, by the tree that they stand in.
         budgets: those of the nodes of each tree.
-        ways_up: what was found out of how trees run each other, by their names.
+        ways_up: what was found out of how trees run each other, by their names; and what it rests on.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class Memory:
         self.held: list[Held] = []
         self.by_tree: dict[int, tuple[Applied, ...]] = {}
         self.budgets: dict[int, _TreeBudgets] = {}
-        self.ways_up: dict[str | None, Any] = {}
+        self.ways_up: tuple[dict[str | None, Any], Any] = {}, None
         self._tables: dict[str, Table] = {}
         self._tables_before: dict[str, Table] = {}
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import chain
+from operator import is_
 
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
@@ -16,7 +17,7 @@ from btq_lang.syntax import Model, Node, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from btq_lang.workspace import Scope, Workspace
 
@@ -50,9 +51,16 @@ class Nodes:
             if tree.name is not None:
                 counting.setdefault(tree.name, tree)
         self._roots = {name: tree.root for name, tree in counting.items() if tree.root is not None}
-        self.is_ordered_as_before = before is not None and _have_same_shape(before.trees, self.trees)
-        if before is not None and self.is_ordered_as_before:
+        others = _others(before.trees, self.trees) if before is not None else None
+        self.is_ordered_as_before = others is not None and all(map(_have_same_shape, others))
+        self._callers_before: Mapping[str, tuple[SourceNode, ...]] = {}
+        self._called_by_others: frozenset[str] | None = None  # None: anything may be
+        if before is not None and others is not None and self.is_ordered_as_before:
             self._order = before._order
+            if "callers_by_tree" in before.__dict__:
+                self._called_by_others = frozenset([name for pair in others for tree in pair for name in tree.called])
+        if before is not None:
+            self._callers_before = before.__dict__.get("callers_by_tree", {})
         self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
         self._found: dict[tuple[str, ...], tuple[Target, ...]] = {}
 
@@ -89,7 +97,21 @@ class Nodes:
 
     def callers(self, tree: str | None) -> tuple[SourceNode, ...]:
         """The SubTree nodes that run a tree."""
-        return tuple(self._callers.get(tree, ())) if tree is not None else ()
+        return self.callers_by_tree.get(tree, ()) if tree is not None else ()
+
+    @cached_property
+    def callers_by_tree(self) -> Mapping[str, tuple[SourceNode, ...]]:
+        """The same of all trees that any runs: the same objects as before where they are the same nodes."""
+        before, touched = self._callers_before, self._called_by_others
+        if touched is not None and not touched:
+            return before
+        found: dict[str, list[SourceNode]] = {}
+        for tree in self.trees:
+            for name, node in tree.calls:
+                if touched is None or name in touched:
+                    found.setdefault(name, []).append(node)
+        made = {name: _same_or_new(before.get(name, ()), nodes) for name, nodes in found.items()}
+        return made if touched is None else {**before, **made}
 
     def run_by(self, node: SourceNode) -> SourceNode | None:
         """The root of the tree that a SubTree node runs."""
@@ -178,14 +200,6 @@ class Nodes:
         return found
 
     @cached_property
-    def _callers(self) -> dict[str, list[SourceNode]]:
-        found: dict[str, list[SourceNode]] = {}
-        for tree in self.trees:
-            for name, node in tree.calls:
-                found.setdefault(name, []).append(node)
-        return found
-
-    @cached_property
     def _of_node(self) -> dict[int, SourceNode]:
         return {id(node.node): node for node in self.all}
 
@@ -270,13 +284,21 @@ def _categories(models: Iterable[Iterable[Symbol]]) -> dict[str, str]:
     return found
 
 
-def _have_same_shape(before: Sequence[TreeNodes], now: Sequence[TreeNodes]) -> bool:
-    """Whether as many trees run the same ones."""
-    others = [(one, other) for one, other in zip(before, now, strict=False) if one is not other]
-    return len(before) == len(now) and all(
-        (one.name, one.called, one.root is None) == (other.name, other.called, other.root is None)
-        for one, other in others
-    )
+def _others(before: Sequence[TreeNodes], now: Sequence[TreeNodes]) -> list[tuple[TreeNodes, TreeNodes]] | None:
+    """The trees that stand in the place of another one, each behind that; None: there are more trees or fewer."""
+    if len(before) != len(now):
+        return None
+    return [(before[at], now[at]) for at, same in enumerate(map(is_, before, now)) if not same]
+
+
+def _have_same_shape(pair: tuple[TreeNodes, TreeNodes]) -> bool:
+    """Whether two trees have one name, and run the same ones."""
+    one, other = pair
+    return (one.name, one.called, one.root is None) == (other.name, other.called, other.root is None)
+
+
+def _same_or_new(before: tuple[SourceNode, ...], nodes: list[SourceNode]) -> tuple[SourceNode, ...]:
+    return before if len(before) == len(nodes) and all(map(is_, before, nodes)) else tuple(nodes)
 
 
 def _runs(node: SourceNode, tree: str) -> bool:
