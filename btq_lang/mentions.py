@@ -230,11 +230,12 @@ def _ports(ports: Iterable[Port], owner: Model | Tree, to: Listener) -> None:
 
 
 def _node(node: Node, tree: Tree, to: Listener) -> None:
+    word, stands_for = node.id, placeholder(node)
     run = called(node)
-    stands_for = placeholder(node)
-    for word in (node.id, stands_for):
-        if word is not None and word is not run:
-            to.word(What.NODE, word, node=node)
+    if word is not None and word is not run:
+        to.word(What.NODE, word, node=node)
+    if stands_for is not None:
+        to.word(What.NODE, stands_for, node=node)
     if run is not None:
         to.word(What.TREE, run, node=node)
     if node.label is not None and stands_for is None:
@@ -242,7 +243,7 @@ def _node(node: Node, tree: Tree, to: Listener) -> None:
     if node.attributes:
         kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
         for pair in node.attributes:
-            _pair(pair, node, tree, kind, to)
+            _pair(pair, node, tree, kind, stands_for, to)
     if node.clauses:
         _clauses(node.clauses, node, to)
 
@@ -269,11 +270,11 @@ def placeholder(node: Node) -> Word | None:
     return name
 
 
-def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None, to: Listener) -> None:
+def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None, stands_for: Word | None, to: Listener) -> None:
     key = pair.key.text
     if key == "name":
         to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
-        if placeholder(node) is None:
+        if stands_for is None:
             to.word(What.INSTANCE, pair.value, defines=True, node=node, owner=tree)
         return
     if key == "ID" or key.startswith("_"):
@@ -285,7 +286,7 @@ def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None, to: Listene
         return
     port = kind.port(key) if kind is not None else None
     attribute = RESERVED_ATTRIBUTES.get(key)
-    if value.kind == BRACED or (value.kind == STRING and value.text.startswith("{") and value.text.endswith("}")):
+    if value.kind == BRACED or (value.kind == STRING and value.raw[1:2] == "{" and value.text.endswith("}")):
         _keys_of(value, node, tree, pair, to)
     elif (attribute is not None and attribute.is_script) or (port is not None and port.content == "script"):
         _script(value, node, tree, pair, to)
@@ -382,7 +383,7 @@ def _quality(path: QualityPath | None, node: Node | None, to: Listener) -> None:
 def _values(part: Clause | Parameter | Argument | object, owner: Requirement | None, to: Listener) -> None:
     """The names and quantities in clauses, conditions and bounds."""
     for found in walk(part):
-        if isinstance(found, Operand | Amount):
+        if isinstance(found, _VALUES):
             if found.word.kind == NAME and found.word.raw not in ("true", "false"):
                 to.word(What.VALUE, found.word, owner=owner)
         elif isinstance(found, Call):
@@ -406,3 +407,6 @@ def _quantities(part: object, to: Listener) -> None:
 def _path(path: Path | None, to: Listener) -> None:
     for name in path.names if path is not None else ():
         to.word(What.PLACE, name)
+
+
+_VALUES = (Operand, Amount)

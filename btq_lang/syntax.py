@@ -558,10 +558,13 @@ def walk(part: object) -> Iterator[object]:
         part = stack.pop()
         if isinstance(part, tuple):
             stack += reversed(part)
-        elif part is not None and not isinstance(part, str | int):
+        elif not isinstance(part, _LEAVES):
             yield part
             if not isinstance(part, Word):
                 stack += [getattr(part, field) for field in reversed(fields_of(part))]
+
+
+_LEAVES = (int, str, type(None))
 
 
 def _in_order(top: Node) -> Iterator[Node | Verbatim]:

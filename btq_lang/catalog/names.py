@@ -76,6 +76,8 @@ def legal_name(name: str) -> str:
     What comes out is refused by no version of the engine, is an XML tag, and needs no quotes in a file: letters,
     digits, `_`, and `-` inside.  Other characters at the ends are dropped, those between two pieces become one `_`.
     """
+    if name.isascii() and name.isidentifier() and name not in ("Root", "root"):
+        return name  # nearly all are
     pieces = "".join(character if _is_plain(character) else " " for character in name).split()
     legal = "_".join(kept for piece in pieces if (kept := piece.strip("-")))
     if legal in ("", "Root", "root"):
