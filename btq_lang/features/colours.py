@@ -6,30 +6,35 @@ that it touches; of the others nothing changes but the number of lines before th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Callable, Iterator, Sequence
 from itertools import compress, count
-from operator import is_, ne
+from operator import is_, is_not, ne
+from typing import TypeVar
 
-from btq_lang.features.semantic_tokens import Known, Stretch, encode, stretches, tokens_of_stretch
-from btq_lang.file import File
+from btq_lang.features.semantic_tokens import Known, Stretch, encode, groups, stretch_of, tokens_of_stretch
 from btq_lang.record import Record
 from btq_lang.syntax import Entry
 from btq_lang.text import LINE_END, Encoding
 from btq_lang.workspace import Workspace
+
+T = TypeVar("T")
 
 
 class Part(Record):
     """The tokens of a stretch.
 
     Attributes:
-        data: five integers a token, from the first line of the stretch on.
+        size: how many integers they are, five a token.
+        first: the first one: how many lines of the stretch stand before its first token.
+        shown: the others as JSON has them, each behind its comma.
         rest: how many lines the stretch has from its last token on, or all in all.
-        shown: `data` as JSON has it, but for its first integer.
     """
 
-    data: tuple[int, ...]
-    rest: int
+    size: int
+    first: int
     shown: str
+    rest: int
 
 
 class Kept:
@@ -42,15 +47,15 @@ class Kept:
 
     __slots__ = ("answers", "encoding", "items", "names", "part", "world")
 
-    def __init__(self, entries: tuple[Entry, ...], encoding: Encoding, known: Known, part: Part) -> None:
-        self.items = tuple([entry.item for entry in entries])
+    def __init__(self, stretch: Stretch, encoding: Encoding, known: Known, part: Part) -> None:
+        self.items = tuple([entry.item for entry in stretch.entries])
         self.encoding = encoding
         self.names = frozenset(known.asked)
         self.answers = known.answers(self.names)
         self.world = known.world
         self.part = part
 
-    def holds(self, entries: tuple[Entry, ...], encoding: Encoding, known: Known) -> bool:
+    def holds(self, entries: Sequence[Entry], encoding: Encoding, known: Known) -> bool:
         """Whether the part would be made again as it is."""
         items = self.items
         if self.encoding != encoding or len(items) != len(entries):
@@ -76,12 +81,13 @@ class Colours(Record):
     @property
     def data(self) -> list[int]:
         """Five integers a token."""
-        return _joined(self, 0, len(self.parts))
+        data: list[int] = json.loads(self.as_json)
+        return data
 
     @property
     def as_json(self) -> str:
         """The same, as JSON has a list of it."""
-        return f"[{','.join([f'{first}{part.shown}' for first, part in zip(self.firsts, self.parts, strict=True)])}]"
+        return _as_json(self, 0, len(self.parts))
 
 
 class Change(Record):
@@ -99,9 +105,9 @@ def colours(workspace: Workspace, path: str, encoding: Encoding) -> Colours:
     firsts: list[int] = []
     lines = 0
     for part in _parts(workspace, path, encoding):
-        if part.data:
+        if part.size:
             parts.append(part)
-            firsts.append(lines + part.data[0])
+            firsts.append(lines + part.first)
             lines = part.rest
         else:
             lines += part.rest
@@ -121,71 +127,90 @@ def _parts(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[Part
     file = workspace.files[path]
     known = Known(workspace, path)
     facts = file.facts
-    for stretch in stretches(file.parsed, len(file.text)):
-        first = facts[id(stretch.entries[0].item)] if stretch.entries else None
+    entries = file.parsed.entries
+    for begin, end in groups(file.parsed):
+        first = facts[id(entries[begin].item)] if end else None
         kept = first.colours if first is not None else None
-        if isinstance(kept, Kept) and kept.holds(stretch.entries, encoding, known):
+        if isinstance(kept, Kept) and kept.holds(entries[begin:end], encoding, known):
             yield kept.part
             continue
-        part = _made(file, stretch, known, encoding)
+        stretch = stretch_of(file.parsed, len(file.text), begin, end)
+        part = _made(file.text, stretch, known, encoding)
         if first is not None:
-            first.colours = Kept(stretch.entries, encoding, known, part)
+            first.colours = Kept(stretch, encoding, known, part)
         yield part
 
 
-def _made(file: File, stretch: Stretch, known: Known, encoding: Encoding) -> Part:
+def _made(whole: str, stretch: Stretch, known: Known, encoding: Encoding) -> Part:
     known.asked = set()
-    text = file.text[stretch.start : stretch.end]
-    data = encode(tokens_of_stretch(file.text, stretch, known), text, encoding)
-    rest = len(LINE_END.findall(text)) - sum(data[::5])
-    return Part(tuple(data), rest, "".join([f",{number}" for number in data[1:]]))
+    text = whole[stretch.start : stretch.end]
+    lines = len(LINE_END.findall(text)) if "\r" in text else text.count("\n")
+    data = encode(tokens_of_stretch(text, stretch, known), text, encoding)
+    if not data:
+        return Part(0, 0, "", lines)
+    shown = str(data)[len(str(data[0])) + 1 : -1].replace(" ", "")
+    return Part(len(data), data[0], shown, lines - sum(data[::5]))
 
 
 def delta(before: Colours, after: Colours) -> list[Change]:
     """What to replace in the data of `before` to have that of `after`, in the order of the text.  A part that is the
     same object is no further looked at, however many have changed before and behind it."""
     places = {id(part): index for index, part in enumerate(before.parts)}
+    size, other_size = len(before.parts), len(after.parts)
     changes: list[Change] = []
-    done = other_done = integers = 0
-    for index, part in enumerate((*after.parts, None)):
-        place = places.get(id(part), -1) if part is not None else len(before.parts)
-        if place < done or (part is not None and before.firsts[place] != after.firsts[index]):
-            continue  # it is new, or other lines stand before it
-        if place > done or index > other_done:
-            gone, come = _joined(before, done, place), _joined(after, other_done, index)
-            changed = difference(gone, come)
+    place = index = integers = 0
+    while place < size or index < other_size:
+        start, other_start = place, index
+        while index < other_size:  # to the next part that is the same, with as many lines before it
+            place = places.get(id(after.parts[index]), -1)
+            if place >= start and before.firsts[place] == after.firsts[index]:
+                break
+            index += 1
+        else:
+            place = size
+        if place > start or index > other_start:
+            gone, come = _as_json(before, start, place), _as_json(after, other_start, index)
+            changed = difference(json.loads(gone), json.loads(come)) if gone != come else None
             if changed is not None:
                 changes.append(Change(integers + changed.start, changed.gone, changed.come))
-            integers += len(gone)
-        if part is not None:
-            integers += len(part.data)
-            done, other_done = place + 1, index + 1
+            integers += _size(before, start, place)
+        same = _same(before, place, after, index)
+        integers += _size(before, place, place + same)
+        place += same
+        index += same
     return changes
+
+
+def _same(first: Colours, start: int, second: Colours, other_start: int) -> int:
+    """How many parts are the same from two of them on, with as many lines before them."""
+    parts = _alike(first.parts[start:], second.parts[other_start:], is_not)
+    return min(parts, _alike(first.firsts[start:], second.firsts[other_start:], ne))
 
 
 def difference(before: Sequence[int], after: Sequence[int]) -> Change | None:
     """The one change that makes the second of the first, from token to token; None: they are the same."""
     shorter = min(len(before), len(after))
-    start = _alike(before, after)
+    start = _alike(before, after, ne)
     if start == len(before) == len(after):
         return None
     start -= start % 5
-    end = min(_alike(before[::-1], after[::-1]), shorter - start)
+    end = min(_alike(before[::-1], after[::-1], ne), shorter - start)
     end -= end % 5
     return Change(start, len(before) - end - start, list(after[start : len(after) - end]))
 
 
-def _alike(first: Sequence[int], second: Sequence[int]) -> int:
-    """How many integers are the same from the start on."""
-    return next(compress(count(), map(ne, first, second)), min(len(first), len(second)))
+def _alike(first: Sequence[T], second: Sequence[T], differ: Callable[[T, T], bool]) -> int:
+    """How many are the same from the start on."""
+    return next(compress(count(), map(differ, first, second)), min(len(first), len(second)))
 
 
-_A_STEP = 10  # stretches, of some 20 nodes each: 10 to 30 ms
+def _size(colours: Colours, start: int, end: int) -> int:
+    return sum([part.size for part in colours.parts[start:end]])
 
 
-def _joined(colours: Colours, start: int, end: int) -> list[int]:
-    data: list[int] = []
-    for first, part in zip(colours.firsts[start:end], colours.parts[start:end], strict=True):
-        data.append(first)
-        data += part.data[1:]
-    return data
+def _as_json(colours: Colours, start: int, end: int) -> str:
+    parts = zip(colours.firsts[start:end], colours.parts[start:end], strict=True)
+    return f"[{','.join([f'{first}{part.shown}' for first, part in parts])}]"
+
+
+_A_STEP = 10  # stretches, of some 20 nodes each: some milliseconds

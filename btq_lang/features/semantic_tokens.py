@@ -6,7 +6,8 @@ One invariant: tokens are in the order of the text, none overlaps another, none 
 from __future__ import annotations
 
 from collections import namedtuple
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -85,7 +86,7 @@ def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None)
     for stretch in stretches(file.parsed, len(file.text)):
         if within is None or (stretch.start <= within.end and stretch.end >= within.start):
             by = stretch.start
-            tokens = tokens_of_stretch(file.text, stretch, known)
+            tokens = tokens_of_stretch(file.text[by : stretch.end], stretch, known)
             found += [SemanticToken(start + by, end + by, number, bits) for start, end, number, bits in tokens]
     if within is not None:
         found = [one for one in found if one.end >= within.start and one.start <= within.end]
@@ -129,19 +130,28 @@ class Stretch(Record):
     entries: tuple[Entry, ...]
 
 
-def stretches(parsed: Parsed, size: int) -> Iterator[Stretch]:
+def stretches(parsed: Parsed, size: int) -> list[Stretch]:
     """The stretches of a file, joined they are the file; what stands before the first item has none."""
+    return [stretch_of(parsed, size, begin, end) for begin, end in groups(parsed)]
+
+
+def groups(parsed: Parsed) -> list[tuple[int, int]]:
+    """The entries of each stretch: the first one, and the one behind the last."""
     entries = parsed.entries
     begins = [index for index, start in enumerate(parsed.starts) if start is not None or index == 0]
-    if not entries or entries[0].start:
-        yield Stretch(0, entries[0].start if entries else size, ())
-    for begin, end in pairwise((*begins, len(entries))):
-        yield Stretch(entries[begin].start, entries[end].start if end < len(entries) else size, entries[begin:end])
+    found = [*pairwise((*begins, len(entries)))]
+    return found if entries and not entries[0].start else [(0, 0), *found]
 
 
-def tokens_of_stretch(whole: str, stretch: Stretch, known: Known) -> list[Token]:
-    """The tokens of a stretch of a text, counted from its start."""
-    text = whole[stretch.start : stretch.end]
+def stretch_of(parsed: Parsed, size: int, begin: int, end: int) -> Stretch:
+    """The stretch of these entries."""
+    entries = parsed.entries
+    start = entries[begin].start if end else 0
+    return Stretch(start, entries[end].start if end < len(entries) else size, entries[begin:end])
+
+
+def tokens_of_stretch(text: str, stretch: Stretch, known: Known) -> list[Token]:
+    """The tokens of a stretch with this text, counted from its start."""
     named = _names(stretch, known)
     index = 0
     place, place_end, _, look = named[0]
@@ -223,12 +233,7 @@ class _Names(Listener):
     def _look(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> Look:
         """Of what can be several things."""
         if what is What.NODE:
-            if word.kind == SYMBOL:
-                return _SIGN
-            builtin = None if defines else lookup(name, word.quoted)
-            if builtin is None:
-                return _OWN_NODES[defines]
-            return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
+            return _OWN_NODES[1] if defines and word.kind != SYMBOL else _look_of_node(name, word.kind)
         if what is What.QUALITY:
             return _STANDARD if not defines and self._known.is_standard(name) else _OWN_QUALITIES[defines]
         if what is What.VALUE:
@@ -236,6 +241,16 @@ class _Names(Listener):
             return _USED[What.PARAMETER] if is_own else _VALUE
         assert what is What.PLACE, "rules stand in no item, and of all others it is known how they look"
         return _USED[What.TREE] if self._known.is_tree(name) else _OWN_NODES[0]
+
+
+@lru_cache(2_000)  # most kinds stand in a file many times
+def _look_of_node(name: str, kind: int) -> Look:
+    if kind == SYMBOL:
+        return _SIGN
+    builtin = lookup(name, kind == STRING)
+    if builtin is None:
+        return _OWN_NODES[0]
+    return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
 
 
 def encode(tokens: Iterable[Token], text: str, encoding: Encoding) -> list[int]:

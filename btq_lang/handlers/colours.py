@@ -48,14 +48,14 @@ def register(server: Server) -> None:
         return whole(colours(params.text_document))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
-    def delta(params: types.SemanticTokensDeltaParams) -> Json | Plain:
+    def delta(params: types.SemanticTokensDeltaParams) -> Json:
         before = server.tokens.get(convert.path(params.text_document.uri))
         found = colours(params.text_document)
         if found is None or before is None or before[0] != params.previous_result_id:
             return whole(found)
         changes = features.delta(before[1], found[1])
-        edits = [{"start": one.start, "deleteCount": one.gone, "data": one.come} for one in changes]
-        return {"resultId": found[0], "edits": edits}
+        edits = [f'{{"start": {one.start}, "deleteCount": {one.gone}, "data": {one.come}}}' for one in changes]
+        return Json(f'{{"resultId": "{found[0]}", "edits": [{", ".join(edits)}]}}')
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
     def part(params: types.SemanticTokensRangeParams) -> Plain:
