@@ -9,13 +9,12 @@ from __future__ import annotations
 from math import inf
 
 from btq_lang.record import Record, replace
+from btq_lang.requirements.model import SourceNode
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Final
-
-    from btq_lang.requirements.model import SourceNode
 
 
 class Term(Record):
