@@ -12,7 +12,7 @@ from btq_lang.syntax import Model, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
     from typing import Any, TypeAlias
 
     from btq_lang.checks.swallowing import WaysUp
@@ -106,7 +106,7 @@ class Demanded:
 class Callers(Record):
     """Which SubTree nodes run each tree, and the mission's tree, which is looked at no further."""
 
-    by_tree: Mapping[str, tuple[SourceNode, ...]]
+    by_tree: dict[str, tuple[SourceNode, ...]]
     mission: str | None
 
     def turned_since(self, before: Callers | None) -> frozenset[str | None]:

@@ -17,7 +17,7 @@ from btq_lang.syntax import Model, Node, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from btq_lang.workspace import Scope, Workspace
 
@@ -53,7 +53,7 @@ class Nodes:
         self._roots = {name: tree.root for name, tree in counting.items() if tree.root is not None}
         others = _others(before.trees, self.trees) if before is not None else None
         self.is_ordered_as_before = others is not None and all(map(_have_same_shape, others))
-        self._callers_before: Mapping[str, tuple[SourceNode, ...]] = {}
+        self._callers_before: dict[str, tuple[SourceNode, ...]] = {}
         self._called_by_others: frozenset[str] | None = None  # None: anything may be
         if before is not None and others is not None and self.is_ordered_as_before:
             self._order = before._order
@@ -100,7 +100,7 @@ class Nodes:
         return self.callers_by_tree.get(tree, ()) if tree is not None else ()
 
     @cached_property
-    def callers_by_tree(self) -> Mapping[str, tuple[SourceNode, ...]]:
+    def callers_by_tree(self) -> dict[str, tuple[SourceNode, ...]]:
         """The same of all trees that any runs: the same objects as before where they are the same nodes."""
         before, touched = self._callers_before, self._called_by_others
         if touched is not None and not touched:
