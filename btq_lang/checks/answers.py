@@ -17,7 +17,7 @@ again after every edit.  It knows no rules.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 
 from btq_lang.facts import Facts, Name
@@ -84,6 +84,7 @@ class Answers:
         self._waiting: list[tuple[int, int, Question]] = []  # stale ones: their heights, a number, themselves
         self._count = 0
         self._is_asking = False
+        self._known_of: dict[object, Sequence[str]] = {}  # of which a conclusion was drawn of all
 
     def begin(self, view: View, workspace: Workspace) -> None:
         """The workspace is another one: look again at what may have changed, and draw conclusions of it.
@@ -98,6 +99,7 @@ class Answers:
         if old is None or was_left or old.project is not workspace.project or list(files) != list(self._files):
             self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
             self._outermost, self._tables, self._restless = set(), set(), set()
+            self._known_of = {}
             self.told, self.resolved = {}, None
         touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
         self._workspace, self._path, self._files = workspace, path, files
@@ -160,18 +162,31 @@ class Answers:
         known = self._answers.get(question)
         return self._draw(view, question) if known is None or question in self._stale else known.value
 
-    def unknown(self, what: object, about: Iterable[str]) -> list[str]:
-        """What of it a conclusion must be drawn of if somebody asks."""
+    def unknown(self, what: object, about: Sequence[str]) -> list[str]:
+        """What of it a conclusion must be drawn of if somebody asks; whoever wants to know will ask."""
         answers, stale = self._answers, self._stale
+        if self._known_of.get(what) is about:
+            others = {question[1] for question in stale if question[0] is what}
+            return [each for each in about if each in others] if others else []
+        self._known_of[what] = about
         return [each for each in about if (what, each) not in answers or (stale and (what, each) in stale)]
 
     def conclude_each(self, view: View, what: object, about: Iterable[object]) -> list[Any]:
         """The answers of one conclusion about many things."""
         answers, stale = self._answers, self._stale
         questions = [(what, each) for each in about]
-        self._asked.update(questions)
-        drawn = {each: self._draw(view, each) for each in questions if each not in answers or each in stale}
-        return [drawn[each] if each in drawn else answers[each].value for each in questions]
+        asked = {*questions}
+        self._asked |= asked
+        loose: dict[Question, Any] = {}  # what is not kept
+        while missing := asked.difference(answers, loose) | (asked & stale):
+            things = {each for _, each in missing}
+            for question in [each for each in questions if each[1] in things]:
+                value = self._draw(view, question)
+                if question not in answers:
+                    loose[question] = value
+        if loose:
+            return [loose[each] if each in loose else answers[each].value for each in questions]
+        return [known.value for known in map(answers.__getitem__, questions)]
 
     def conclude_early(self, view: View, question: Question) -> Any:
         """The same, for whoever will ask."""
@@ -264,6 +279,7 @@ class Answers:
         known = self._answers.pop(question, None)
         if known is None:
             return ()
+        self._known_of.pop(question[0], None)
         if known.asked is None:
             self._look_ups.discard(question)
             if question[1:] in self._named:

@@ -144,20 +144,20 @@ class Calls:
     @cached_property
     def callees_first(self) -> tuple[str, ...]:
         """The trees, each behind those that it runs, but for circles."""
-        finished: list[str] = []
-        seen: set[str] = set()
-        for start in self._called:
-            stack = [(start, iter(self.called_by(start)))] if start not in seen else []
-            seen.add(start)
-            while stack:
-                tree, left = stack[-1]
-                further = next((called for called in left if called in self._called and called not in seen), None)
-                if further is not None:
-                    seen.add(further)
-                    stack.append((further, iter(self.called_by(further))))
-                else:
-                    finished.append(tree)
-                    stack.pop()
+        called = self._called
+        finished: dict[str, None] = {}
+        begun: set[str] = set()
+        for start in called:
+            waiting = [start] if start not in begun else []
+            while waiting:
+                tree = waiting[-1]
+                if tree in begun:
+                    waiting.pop()
+                    finished[tree] = None
+                    continue
+                begun.add(tree)
+                if called[tree]:
+                    waiting += [each for each in called[tree] if each in called and each not in begun]
         return tuple(finished)
 
     @cached_property

@@ -31,7 +31,7 @@ from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from typing import Any, Final, TypeVar
 
     from btq_lang.checks.answers import Answers
@@ -324,7 +324,7 @@ class View:
         chain of trees is too long."""
         if what not in self._in_order:
             self._in_order.add(what)
-            trees: Iterable[str] = self._early(calls).callees_first
+            trees = self._early(calls).callees_first
             for tree in self._answers.unknown(what, trees) if self._answers is not None else trees:
                 self._early(what, tree)
 

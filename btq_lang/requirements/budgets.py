@@ -124,8 +124,10 @@ class Budgets:
 
     def _take_over(self, before: dict[int, _TreeBudgets]) -> None:
         """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
+        if not before:
+            return
         nodes, by_tree = self._nodes, self._found.by_tree
-        trees = nodes.in_order if before else ()
+        trees = nodes.in_order
         waiting: list[int] = []  # places in that order, of trees whose budgets may come out otherwise
         for at, tree in enumerate(trees):
             item = id(tree.item)
@@ -136,7 +138,10 @@ class Budgets:
                     self._trees[item] = known
                     continue
             waiting.append(at)
-        if not nodes.is_ordered_as_before:
+        if nodes.is_ordered_as_before:
+            callers = [node for name in nodes.renamed for node in nodes.callers(name)]
+            waiting = sorted({*waiting, *(nodes.position(node.item) for node in callers)})
+        else:
             waiting = [*range(len(trees))]
         others: set[str | None] = set()
         seen = set(waiting)

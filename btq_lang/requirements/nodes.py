@@ -27,7 +27,8 @@ class Nodes:
 
     Attributes:
         trees: those they stand in, in the order of the files and of their text.
-        is_ordered_as_before: which tree runs which is as it was; the order of the trees is the same.
+        is_ordered_as_before: in the order of the trees each has the place of the one that stood where it stands.
+        renamed: the names that trees had which stood where others stand now; nothing where they have the same ones.
     """
 
     def __init__(self, workspace: Workspace, scope: Scope, before: Nodes | None = None) -> None:
@@ -51,16 +52,18 @@ class Nodes:
             if tree.name is not None:
                 counting.setdefault(tree.name, tree)
         self._roots = {name: tree.root for name, tree in counting.items() if tree.root is not None}
-        others = _others(before.trees, self.trees) if before is not None else None
-        self.is_ordered_as_before = others is not None and all(map(_have_same_shape, others))
         self._callers_before: dict[str, tuple[SourceNode, ...]] = {}
         self._called_by_others: frozenset[str] | None = None  # None: anything may be
-        if before is not None and others is not None and self.is_ordered_as_before:
-            self._order = before._order
-            if "callers_by_tree" in before.__dict__:
+        self.is_ordered_as_before = False
+        self.renamed: frozenset[str | None] = frozenset()
+        others = _others(before.trees, self.trees) if before is not None else None
+        if before is not None and "callers_by_tree" in before.__dict__:
+            self._callers_before = before.callers_by_tree
+            if others is not None:
                 self._called_by_others = frozenset([name for pair in others for tree in pair for name in tree.called])
-        if before is not None:
-            self._callers_before = before.__dict__.get("callers_by_tree", {})
+        if before is not None and others is not None:
+            self.renamed = frozenset([one.name for one, other in others if one.name != other.name])
+            self.is_ordered_as_before = self._keep_order(before, others)
         self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
         self._found: dict[tuple[str, ...], tuple[Target, ...]] = {}
 
@@ -111,7 +114,9 @@ class Nodes:
                 if touched is None or name in touched:
                     found.setdefault(name, []).append(node)
         made = {name: _same_or_new(before.get(name, ()), nodes) for name, nodes in found.items()}
-        return made if touched is None else {**before, **made}
+        if touched is None:
+            return made
+        return {name: nodes for name, nodes in before.items() if name not in touched} | made
 
     def run_by(self, node: SourceNode) -> SourceNode | None:
         """The root of the tree that a SubTree node runs."""
@@ -122,14 +127,6 @@ class Nodes:
     def in_order(self) -> tuple[TreeNodes, ...]:
         """The trees, each behind those that it runs, where there is no circle; that is cut at the same place, whichever
         of its trees is asked for first."""
-        return tuple([self.trees[index] for index in self._order])
-
-    def position(self, item: Tree) -> int:
-        """Where a tree stands in that order."""
-        return self._positions[id(item)]
-
-    @cached_property
-    def _order(self) -> tuple[int, ...]:
         indices = {id(tree.item): index for index, tree in enumerate(self.trees)}
         of_name = {name: indices[id(root.item)] for name, root in self._roots.items()}
         found: dict[int, None] = {}
@@ -145,11 +142,51 @@ class Nodes:
                 begun.add(index)
                 below = [of_name[name] for name in reversed(self.trees[index].called) if name in of_name]
                 waiting += [each for each in below if each not in begun]
-        return tuple(found)
+        return tuple([self.trees[index] for index in found])
+
+    def position(self, item: Tree) -> int:
+        """Where a tree stands in that order."""
+        return self._positions[id(item)]
 
     @cached_property
     def _positions(self) -> dict[int, int]:
         return {id(tree.item): position for position, tree in enumerate(self.in_order)}
+
+    @cached_property
+    def _has_no_circle(self) -> bool:
+        return all(map(self._is_behind, self.trees))
+
+    def _is_behind(self, tree: TreeNodes) -> bool:
+        """Whether a tree stands behind all that it runs."""
+        at = self.position(tree.item)
+        return all(self.position(self._roots[name].item) < at for name in tree.called if name in self._roots)
+
+    def _keep_order(self, before: Nodes, others: Sequence[tuple[TreeNodes, TreeNodes]]) -> bool:
+        """Take over the order of earlier trees, if it is one of these, too; where they run each other otherwise than
+        those did, only if nobody runs in a circle, for then one such order is as good as another.
+
+        Args:
+            others: the trees in whose places others stand, with these.
+        """
+        places = {id(tree.item): before.position(old.item) for old, tree in others}
+        gone = {id(old.item) for old, _ in others}
+        in_order = [*before.in_order]
+        for _, tree in others:
+            in_order[places[id(tree.item)]] = tree
+        self.in_order = tuple(in_order)
+        self._positions = {item: at for item, at in before._positions.items() if item not in gone} | places
+        turned = [pair for pair in others if not _have_same_shape(pair)]
+        if not turned:
+            if "_has_no_circle" in before.__dict__:
+                self._has_no_circle = before._has_no_circle
+            return True
+        callers = [node.item for pair in turned for tree in pair for node in self.callers(tree.name)]
+        touched = [*(tree for _, tree in turned), *map(self.within, callers)]
+        if before._has_no_circle and all(map(self._is_behind, touched)):
+            self._has_no_circle = True
+            return True
+        del self.in_order, self._positions
+        return False
 
     def find(self, names: Sequence[str]) -> tuple[Target, ...]:
         """The nodes that a path names: the last name's, below nodes or trees of the other names in their order, with
