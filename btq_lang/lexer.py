@@ -173,6 +173,8 @@ class Lexer:
         while len(columns) > level + 1:
             columns.pop()
             aliases.pop()
+        if self.adopted and level <= max(self._root_level, 0) and not any(aliases):
+            self.adopted = False  # the blocks in which that was are closed
         self.level = level
         if level < self._root_level:
             self._root_level = -1

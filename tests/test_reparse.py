@@ -89,6 +89,22 @@ def test_an_item_that_an_edit_does_not_touch_is_the_same_object() -> None:
     assert reparse(after, after.text) is after
 
 
+@pytest.mark.parametrize(
+    ("text", "blanks"), [(missions.mission(200, 1, "short"), 3), (IN_ROOT, 7)], ids=["short", "in a Root"]
+)
+def test_a_line_indented_like_no_other_leaves_the_items_behind_as_they_were(text: str, blanks: int) -> None:
+    before = parse(text)
+    at = text.index("\n", text.index("    ->"))
+    after = reparse(before, f"{text[:at]}\n{blanks * ' '}Pick{text[at:]}")
+    assert [problem.rule for problem in after.diagnostics] == ["inconsistent-indentation"]
+    kept = [mine.item is old.item for mine, old in zip(after.entries, before.entries, strict=True)]
+    assert kept.count(False) <= 2
+    mended = reparse(after, text)
+    kept = [mine.item is old.item for mine, old in zip(mended.entries, after.entries, strict=True)]
+    assert kept.count(False) <= 2
+    assert same(mended, before)
+
+
 def test_an_edit_of_an_items_first_line_touches_the_item_before_it_too() -> None:
     text = "signal a : %\nsignal b : %\nsignal c : %\n"
     before = parse(text)
