@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from btq_lang.features.relations import goto_implementation, goto_type
     from btq_lang.features.rename import Refusal, prepare_rename
     from btq_lang.features.rename import rename as renamed
-    from btq_lang.features.semantic_tokens import encode
-    from btq_lang.features.semantic_tokens import semantic_tokens as coloured
+    from btq_lang.features.semantic_tokens import encoded_within
     from btq_lang.features.signature import signature_help
     from btq_lang.features.structure import document_links, folding_ranges, selection_range
 
@@ -44,14 +43,13 @@ __all__ = [
     "callers",
     "code_actions",
     "code_lenses",
-    "coloured",
     "colours",
     "complete",
     "delta",
     "document_links",
     "document_symbols",
     "documented",
-    "encode",
+    "encoded_within",
     "explain",
     "find_references",
     "folding_ranges",
@@ -91,13 +89,12 @@ _HOMES = {
     "readiness": ("getting_ready",),
     "relations": ("goto_implementation", "goto_type"),
     "rename": ("Refusal", "prepare_rename", "renamed"),
-    "semantic_tokens": ("coloured", "encode"),
+    "semantic_tokens": ("encoded_within",),
     "signature": ("signature_help",),
     "structure": ("document_links", "folding_ranges", "selection_range"),
 }
 # A module of this package has the function's own name.
 _CALLED = {
-    "coloured": "semantic_tokens",
     "documented": "documentation",
     "explain": "hover",
     "path_of_node": "node_path",

@@ -81,16 +81,36 @@ class SemanticToken(_Token):
 def semantic_tokens(workspace: Workspace, path: str, within: Span | None = None) -> tuple[SemanticToken, ...]:
     """The tokens of a file, or those that touch a stretch of it."""
     file = workspace.files[path]
+    entries = file.parsed.entries
     known = Known(workspace, path)
     found: list[SemanticToken] = []
-    for stretch in stretches(file.parsed, len(file.text)):
-        if within is None or (stretch.start <= within.end and stretch.end >= within.start):
-            by = stretch.start
-            tokens = tokens_of_stretch(file.text[by : stretch.end], stretch, known)
-            found += [SemanticToken(start + by, end + by, number, bits) for start, end, number, bits in tokens]
+    for begin, end in groups(file.parsed):
+        if within is not None:
+            if end and entries[begin].start > within.end:
+                break
+            if end < len(entries) and entries[end].start < within.start:
+                continue
+        stretch = stretch_of(file.parsed, len(file.text), begin, end)
+        by = stretch.start
+        tokens = tokens_of_stretch(file.text[by : stretch.end], stretch, known)
+        found += [SemanticToken(start + by, end + by, number, bits) for start, end, number, bits in tokens]
     if within is not None:
         found = [one for one in found if one.end >= within.start and one.start <= within.end]
     return tuple(found)
+
+
+def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Encoding) -> list[int]:
+    """The tokens that touch a stretch, as `encode` has them; what stands before them is not looked at."""
+    tokens = semantic_tokens(workspace, path, within)
+    if not tokens:
+        return []
+    file = workspace.files[path]
+    line, column = file.lines.position(tokens[0].start)
+    by = tokens[0].start - column
+    moved = [(start - by, end - by, number, bits) for start, end, number, bits in tokens]
+    data = encode(moved, file.text[by : tokens[-1].end], encoding)
+    data[0] += line
+    return data
 
 
 class Known:
@@ -130,13 +150,9 @@ class Stretch(Record):
     entries: tuple[Entry, ...]
 
 
-def stretches(parsed: Parsed, size: int) -> list[Stretch]:
-    """The stretches of a file, joined they are the file; what stands before the first item has none."""
-    return [stretch_of(parsed, size, begin, end) for begin, end in groups(parsed)]
-
-
 def groups(parsed: Parsed) -> list[tuple[int, int]]:
-    """The entries of each stretch: the first one, and the one behind the last."""
+    """The entries of each stretch of a file: the first one, and the one behind the last.  Joined, the stretches are the
+    file; what stands before the first item has none."""
     entries = parsed.entries
     begins = [index for index, start in enumerate(parsed.starts) if start is not None or index == 0]
     found = [*pairwise((*begins, len(entries)))]

@@ -63,5 +63,5 @@ def register(server: Server) -> None:
         if place is None:
             return {"data": []}
         workspace, path = place
-        found = features.coloured(workspace, path, convert.span(workspace, path, params.range))
-        return {"data": features.encode(found, workspace.files[path].text, convert.encoding)}
+        within = convert.span(workspace, path, params.range)
+        return {"data": features.encoded_within(workspace, path, within, convert.encoding)}

@@ -30,7 +30,14 @@ from btq_lang.features.proposals import Proposal
 from btq_lang.features.readiness import getting_ready
 from btq_lang.features.relations import goto_implementation, goto_type
 from btq_lang.features.rename import Refusal, prepare_rename, rename
-from btq_lang.features.semantic_tokens import TYPES, encode, semantic_tokens, stretches
+from btq_lang.features.semantic_tokens import (
+    TYPES,
+    encode,
+    encoded_within,
+    groups,
+    semantic_tokens,
+    stretch_of,
+)
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.parser import parse
@@ -239,6 +246,9 @@ def check_tokens(text: str, *expected: str) -> None:
             assert (line, column) == lines.position(one.span.start, encoding)
             assert (line, column + length) == lines.position(one.span.end, encoding)
             assert TYPES[kind] == one.type
+        for one in tokens:
+            part = semantic_tokens(fixture.workspace, path, one.span)
+            assert encoded_within(fixture.workspace, path, one.span, encoding) == encode(part, content, encoding)
         made = colours(fixture.workspace, path, encoding)
         assert made.data == json.loads(made.as_json) == data
 
@@ -463,9 +473,13 @@ def answer_everything(text: str, offset: int) -> None:
         assert _lies_in(link.span, whole)
     for outline in document_symbols(workspace, "main.btq"):
         assert _lies_in(outline.span, whole)
-    parts = [text[part.start : part.end] for part in stretches(parse(text), len(text))]
+    parsed = parse(text)
+    stretches = [stretch_of(parsed, len(text), *group) for group in groups(parsed)]
+    parts = [text[part.start : part.end] for part in stretches]
     assert "".join(parts) == text
     assert [word for part in parts for word in words_of(part)] == words_of(text)
+    part = semantic_tokens(workspace, "main.btq", Span(offset, offset))
+    assert encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16") == encode(part, text, "utf-16")
     tokens = encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
     assert tokens == colours(workspace, "main.btq", "utf-16").data
     for action in code_actions(workspace, "main.btq", Span(offset, offset)):
