@@ -7,8 +7,7 @@ leaves the workspace has no anchors left.
 
 from __future__ import annotations
 
-from enum import Enum
-
+from btq_lang.enumeration import Enum
 from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
 

@@ -8,11 +8,10 @@ Source: instantiateTreeFromXML in src/xml_parsing.cpp of 4.10.0.
 
 from __future__ import annotations
 
-import re
-
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
+from btq_lang.regex import regex
 from btq_lang.syntax import Model, Node, Pair, Port, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -81,7 +80,7 @@ def is_number(text: str) -> bool:
 
     Source: std::from_chars, for an int and for a double.
     """
-    return text[:1] in _BEGINS_NUMBER and re.fullmatch(_NUMBER, text) is not None
+    return text[:1] in _BEGINS_NUMBER and _NUMBER.fullmatch(text) is not None
 
 
 def _port_type(scope: Scope, version: str, node: Node, key: str) -> str:
@@ -102,4 +101,6 @@ def _plain(type_: str) -> str:
 
 
 _BEGINS_NUMBER: Final = frozenset("-.0123456789iInN")  # most values do not, and the pattern takes long to compile
-_NUMBER: Final = r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"
+_NUMBER: Final = regex(
+    r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"
+)

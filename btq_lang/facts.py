@@ -7,11 +7,11 @@ of files, nor of what a name means.
 
 from __future__ import annotations
 
-from collections import Counter
-from functools import cached_property
 from itertools import chain
 
-from btq_lang.symbols import Kind, Summary, Symbol, asked_for, summarize
+from btq_lang.caches import cached_property
+from btq_lang.name_kinds import Kind
+from btq_lang.symbols import Summary, Symbol, asked_for, summarize
 from btq_lang.syntax import Item, Model, Signal, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -98,12 +98,17 @@ class Tally:
     def of(cls, items: Iterable[Facts], of: Kind | str) -> Tally:
         """A tally of the names of a kind that items use, or of another set of names that their facts have."""
         said = [each.said(of) for each in items if type(each.item) not in _SAYING_NOTHING]
-        return cls(of, dict(Counter(chain.from_iterable(said))))
+        counts: dict[str, int] = {}
+        for name in chain.from_iterable(said):
+            counts[name] = counts.get(name, 0) + 1
+        return cls(of, counts)
 
     def edited(self, gone: Iterable[Facts], come: Iterable[Facts]) -> Tally:
         """The tally after an edit that has put other items in the place of some; the same one if they say the same."""
-        changes = Counter(chain.from_iterable([each.said(self._of) for each in come]))
-        changes.subtract(chain.from_iterable([each.said(self._of) for each in gone]))
+        changes: dict[str, int] = {}
+        for facts, change in (*((each, 1) for each in come), *((each, -1) for each in gone)):
+            for name in facts.said(self._of):
+                changes[name] = changes.get(name, 0) + change
         if not any(changes.values()):
             return self
         counts = dict(self._counts)

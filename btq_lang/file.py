@@ -8,8 +8,8 @@ they bring.
 from __future__ import annotations
 
 from bisect import bisect_right
-from functools import cached_property
 
+from btq_lang.caches import cached_property
 from btq_lang.facts import Facts, Names, Tally
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.record import Record
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic, Place
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
+    from btq_lang.name_kinds import Kind
     from btq_lang.places import Places
     from btq_lang.project import Project
-    from btq_lang.symbols import Kind, Summary, Symbol
+    from btq_lang.symbols import Summary, Symbol
 
     Kept = TypeVar("Kept", bound=Item)
 

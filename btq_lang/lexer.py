@@ -11,12 +11,11 @@ one and not by regular expressions because that is the form which mypyc compiles
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
-from functools import cache
 
 from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.regex import regex
 from btq_lang.scan import (
     COMPILED,
     blanks_end,
@@ -31,7 +30,7 @@ from btq_lang.scan import (
 )
 from btq_lang.slips import INSTEAD, close_string, no_token, unknown_escapes, unknown_unit, value_meant
 from btq_lang.syntax import quote as quoted
-from btq_lang.text import Span
+from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import (
     BRACED,
     CLOSE,
@@ -184,7 +183,7 @@ class Lexer:
         of those between which it stands; of tabs in a file of blanks, each counts as a level."""
         columns = self.columns
         items = max(0, min(self._root_level, len(columns) - 1))  # a Root may have no block
-        if _top_line().match(self.text, self.position):
+        if _TOP_LINE.match(self.text, self.position):
             return items
         if not blanks.strip("\t") and not "".join(columns).strip(" "):
             return min(len(blanks), len(columns) - 1)
@@ -303,7 +302,7 @@ class Lexer:
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
         in_value = self._brackets and (character == "[" or character not in INSTEAD)
-        if in_value and re.compile(_WHOLE_WORD).match(text, start) and self._in_value(start):
+        if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
         if character == "{" or character == "}":
             return self._half_braced(start, character)
@@ -331,13 +330,13 @@ class Lexer:
             self._strange = True
             self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
             return start + 1
-        if character == "{" and (twice := re.compile(r"\{(\{[^{}\r\n]*\})\}").match(self.text, start)):
+        if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
             fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
             message = "a blackboard entry has one pair of braces"
             self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
             self._strange = True
             return self._add(NAME, start, twice.end())
-        word = re.compile(_WHOLE_WORD).match(self.text, start + 1) if character == "{" else None
+        word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
         end = self._add(NAME, start, word.end()) if word else start + 1
         if self._strange:
             return end
@@ -400,8 +399,8 @@ class Lexer:
         return end
 
     def _check_lines(self, start: int, end: int) -> None:
-        for line in _LINE_START.finditer(self.text, start, end):
-            if item := _top_line().match(self.text, line.end()):
+        for line in LINE_END.finditer(self.text, start, end):
+            if item := _TOP_LINE.match(self.text, line.end()):
                 place = Place(Span(item.start(), item.end()))
                 self.problems.append(
                     Diagnostic(
@@ -420,7 +419,7 @@ class Lexer:
         what is no word a blank is missing."""
         text = self.text
         start, end = self._whole_word(at)
-        sign = re.compile(_COMMENT_SIGN).search(text, start)
+        sign = _COMMENT_SIGN.search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
         message = f"`{sign[0]}` begins a comment only behind a blank"
         insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
@@ -442,7 +441,7 @@ class Lexer:
         start, end = self._whole_word(at)
         self._strange = True  # more of it may follow
         fixes: tuple[Fix, ...] = ()
-        if re.compile(_VALUE_END).match(self.text, end):
+        if _VALUE_END.match(self.text, end):
             fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
         self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
         return self._add(NAME, start, end)
@@ -461,7 +460,7 @@ class Lexer:
 
     def _whole_word(self, at: int) -> tuple[int, int]:
         """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
-        word = re.compile(_WHOLE_WORD).match(self.text, at)
+        word = _WHOLE_WORD.match(self.text, at)
         assert word is not None, "a word or a sign begins here"
         while self.raws and self._joins(len(self.raws) - 1, at):
             at = self.starts.pop()
@@ -530,7 +529,7 @@ class Lexer:
 
     def _blanks(self) -> str:
         """The blanks at the start of the line at hand."""
-        return _BLANKS.match(self.text, self._last_line)[0]  # type: ignore[index]  # it matches nothing at least
+        return self.text[self._last_line : blanks_end(self.text, self._last_line, self.size)]
 
     def _continue(self, position: int) -> int:
         """Behind a line end in brackets: the next line, or `position` where the line ends the brackets early."""
@@ -544,7 +543,7 @@ class Lexer:
         if at >= size or text[at] == ")" or text.startswith(_COMMENT_SIGNS, at):
             return at
         blanks = text[start:at]
-        if self._at_top_column(blanks) and _top_line().match(text, at):
+        if self._at_top_column(blanks) and _TOP_LINE.match(text, at):
             self._end_brackets(len(self._brackets), position, at)
             return position
         ended = 0
@@ -640,39 +639,30 @@ def _shown(blanks: str) -> str:
     return " and ".join(parts)
 
 
-# ---- patterns that few files need: each takes a millisecond to compile ----
+# ---- patterns ----
 
-
-@cache
-def _top_line() -> re.Pattern[str]:
-    """The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2,
-    Brackets)."""
-    return re.compile(
-        r"""
+# The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
+_TOP_LINE: Final = regex(
+    r"""(?x)
         BehaviorTree [ \t]+ ID [ \t]* = (?!=)
         | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
         | (?:BehaviorTree|Root|TreeNodesModel|include|signal|context|apply|quality|qualities|QualityReq)
           (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
             | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
           (?! [ \t]* = )
-        """,
-        re.VERBOSE,
-    )
-
+    """
+)
+_COMMENT_SIGN: Final = regex(r"#|//|/\*")
+_WHOLE_WORD: Final = regex(r"[^\s(),\"'{}]+")
+_TWICE_BRACED: Final = regex(r"\{(\{[^{}\r\n]*\})\}")
+_VALUE_END: Final = regex(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
 
 # ---- tables ----
 
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
-_BLANKS: Final = re.compile(r"[ \t]*")
-_LINE_START: Final = re.compile(r"\r\n|\n|\r")
 _COMMENT_SIGNS: Final = ("#", "//", "/*")
-# Compiled when first used: they say what is wrong.
-_COMMENT_SIGN: Final = r"#|//|/\*"
-_WHOLE_WORD: Final = r"[^\s(),\"'{}]+"
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
 _WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
-# Compiled when first used: most files need none of these.
-_VALUE_END: Final = r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)"
 _IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))
 _QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
 _ALIASES: Final = 16  # columns taken for one block; more of them would only cost time

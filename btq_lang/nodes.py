@@ -5,8 +5,6 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
-import re
-
 from btq_lang.attributes import AttributeParser, meant_clause
 from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.characters import SMALL_S, SMALL_T
@@ -15,6 +13,7 @@ from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
+from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, line_start
 from btq_lang.syntax import (
     Node,
@@ -175,7 +174,7 @@ class NodeParser(AttributeParser):
     def symbol_meant(self) -> tuple[Fix, ...]:
         """The fix for what is probably a symbol: `-->`, `=>`, `- >`."""
         start = self.starts[self.index]
-        run = re.compile(_ARROW).match(self.text, start)
+        run = _ARROW.match(self.text, start)
         return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
 
     def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
@@ -427,7 +426,7 @@ class NodeParser(AttributeParser):
 
 
 XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`"
-_ARROW: Final = r"[-=~]+ ?>"  # compiled when first used: it is the beginning of a mistake
+_ARROW: Final = regex(r"[-=~]+ ?>")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
 _MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"

@@ -6,9 +6,8 @@ it is only what needs no second look: words of letters, digits and `_`, single b
 
 from __future__ import annotations
 
-import re
-from functools import cache
-
+from btq_lang.caches import cache
+from btq_lang.regex import regex
 from btq_lang.scan import number_at
 from btq_lang.syntax import (
     NodeClause,
@@ -38,6 +37,7 @@ from btq_lang.tokens import (
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    import re
     from collections.abc import Callable
     from typing import Any, Final
 
@@ -70,13 +70,13 @@ def read_attributes(
 
 def read_list(text: str, start: int, base: int) -> NodeClause | None:
     """ "satisfices" QualityPath { "," QualityPath } | "satisfies" Name { "," Name }, at the end of a line"""
-    match = None if read_line is _nothing else _line_list().match(text, start)
+    match = None if read_line is _nothing else _LINE_LIST.match(text, start)
     return None if match is None else _listed(match, base)
 
 
 def _last_clause(text: str, start: int, blanks: str, base: int) -> tuple[NodeClause | None, int]:
     """The clause with which the brackets end, and where they do"""
-    match = _bracketed_clause().match(text, start)
+    match = _BRACKETED_CLAUSE.match(text, start)
     if match is None:
         return None, start
     if match[1] is not None:
@@ -108,9 +108,9 @@ def _listed(match: re.Match[str], base: int) -> NodeClause:
     start, end = match.span(1)
     text = match.string
     if match[2] is not None:
-        qualities = [Quality(_path(path.start(1) - base, path[1])) for path in _paths().finditer(text, *match.span(2))]
+        qualities = [Quality(_path(path.start(1) - base, path[1])) for path in _PATHS.finditer(text, *match.span(2))]
         return Satisfices(start - base, end - base, tuple(qualities))
-    uses = [ReqRef(Word(NAME, name.start() - base, name[0])) for name in _names().finditer(text, *match.span(3))]
+    uses = [ReqRef(Word(NAME, name.start() - base, name[0])) for name in _NAMES.finditer(text, *match.span(3))]
     return Satisfies(start - base, end - base, tuple(uses))
 
 
@@ -220,6 +220,8 @@ def expect(size: int) -> None:
 
 
 def _compile() -> None:
+    import re
+
     global read_head, read_line, _ATTRIBUTE, _TOKEN
     # The line that begins a tree: its name.
     read_head = re.compile(rf"BehaviorTree (?:ID ?= ?(?!=)|)({_NAME}|{_STRING})\r?\n").match
@@ -249,37 +251,24 @@ _WORTH: Final = 25_000  # to read so many characters without patterns takes as l
 _expected = 0
 
 
-# ---- patterns that not every file needs: each takes a millisecond to compile ----------------------------------------
+# ---- patterns that not every file needs -----------------------------------------------------------------------------
 
-
-@cache
-def _names() -> re.Pattern[str]:
-    return re.compile(rf"{_NAME}(?:-\w+)*")
-
-
-@cache
-def _paths() -> re.Pattern[str]:
-    return re.compile(rf"(?:Quality ?= ?|)({_PATH})")
-
-
-@cache
-def _line_list() -> re.Pattern[str]:
-    """1 the clause, 2 its qualities or 3 its names of requirements"""
-    return re.compile(_LIST + _LINE_END)
-
-
-@cache
-def _bracketed_clause() -> re.Pattern[str]:
-    """1 to 3 as of a line, or else 4 a clause that defines a requirement; 5 the quality that encloses it, if one does,
-    and 6 the blanks of the line that its bracket begins, if it does; 7 to 10 the requirement: its first word, its name,
-    the blanks of the line that its description begins, if it does, and the description; the closing bracket"""
-    defining = rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(5)\)))"
-    return re.compile(rf"(?:{_LIST}|{defining}){_BRACKETS_END}")
+_NAMES: Final = regex(rf"{_NAME}(?:-\w+)*")
+_PATHS: Final = regex(rf"(?:Quality ?= ?|)({_PATH})")
+# 1 the clause, 2 its qualities or 3 its names of requirements
+_LINE_LIST: Final = regex(_LIST + _LINE_END)
+_DEFINING: Final = rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(5)\)))"
+# 1 to 3 as of a line, or else 4 a clause that defines a requirement; 5 the quality that encloses it, if one does,
+# and 6 the blanks of the line that its bracket begins, if it does; 7 to 10 the requirement: its first word, its name,
+# the blanks of the line that its description begins, if it does, and the description; the closing bracket
+_BRACKETED_CLAUSE: Final = regex(rf"(?:{_LIST}|{_DEFINING}){_BRACKETS_END}")
 
 
 @cache
 def _piece() -> re.Pattern[str]:
     """1 what is between, 2 a word, a sign or a comment, nothing at the end"""
+    import re
+
     strings = "|".join(rf"{quote}[^{quote}\\]*(?:\\[\s\S][^{quote}\\]*)*{quote}" for quote in "\"'")
     symbols = "|".join(map(re.escape, sorted(SYMBOLS, key=len, reverse=True)))
     return re.compile(

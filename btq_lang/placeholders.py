@@ -6,8 +6,7 @@ skills as `ScriptAction (name = "MoveBase")`.
 
 from __future__ import annotations
 
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.near import near
 
@@ -27,6 +26,6 @@ def is_placeholder(node: Node) -> bool:
     )
 
 
-@lru_cache(1000)
+@cache_of(1000)
 def _means_code(key: str) -> bool:
     return key == "code" or bool(near(key, ("code",)))

@@ -11,8 +11,6 @@ None in their place: no further line may begin, as it may not outside brackets.
 
 from __future__ import annotations
 
-import re
-
 from btq_lang.characters import (
     APOSTROPHE,
     BACKSLASH,
@@ -36,6 +34,7 @@ from btq_lang.characters import (
     ZERO,
     begins_name,
 )
+from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, blanks_end, braced_end, line_end, line_opening, name_end, number_at, symbol_at
 from btq_lang.syntax import (
     Node,
@@ -250,7 +249,7 @@ def _string(text: str, start: i64, quote: i64) -> str:
         raise Unusual
     if not COMPILED:
         raw = text[start : text.find(text[start], start + 1) + 1]
-        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and re.search(_OUTER_LINE, raw)):
+        if not raw or "\\" in raw or (("\n" in raw or "\r" in raw) and _OUTER_LINE.search(raw)):
             raise Unusual
         return raw
     end = start + 1
@@ -511,4 +510,4 @@ _LONGEST: Final = max(map(len, _NO_KINDS))  # of those; to look a word up costs 
 # NAMEs that are none, all with a capital: two are symbols, and a line that begins with one of the others ends all
 # brackets.
 _NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))
-_OUTER_LINE: Final = r"[\r\n][^ \t\r\n]"  # compiled when first used: few strings have several lines
+_OUTER_LINE: Final = regex(r"[\r\n][^ \t\r\n]")

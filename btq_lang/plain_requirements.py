@@ -7,8 +7,7 @@ so a word is what `str.split` finds.  Only the commonest clauses are known here,
 
 from __future__ import annotations
 
-from functools import cache
-
+from btq_lang.caches import cache
 from btq_lang.claims import RELATIONS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, HEADS

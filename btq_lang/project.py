@@ -17,11 +17,11 @@ here: the disk, and where the file was found.
 from __future__ import annotations
 
 import os.path
-import re
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
 from btq_lang.near import near
 from btq_lang.record import Record, replace
+from btq_lang.regex import regex
 from btq_lang.rules import RULES, UNREADABLE, Severity
 from btq_lang.text import LineIndex, Position
 
@@ -115,7 +115,7 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
 
 def has_btq_table(text: str) -> bool:
     """Whether a pyproject.toml has a table `[tool.btq]`, or one below it; seen without reading it as TOML."""
-    return re.search(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""", text) is not None
+    return _BTQ_TABLE.search(text) is not None
 
 
 def configured(project: Project, diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -171,7 +171,7 @@ def _engines(key: str, value: object) -> _Read:
 
 def _is_engine(version: str) -> bool:
     """A release line such as 4.9, also one between those that the catalog was held against."""
-    known = re.fullmatch(r"4\.(0|[1-9][0-9]?)", version) is not None
+    known = _RELEASE_LINE.fullmatch(version) is not None
     return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
 
 
@@ -236,9 +236,16 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
         return ProjectProblem("nested too deep")
     # The reader's messages say the place in words, from 1; only Python 3.14's errors have it as numbers too.
     message, _, place = str(error).partition(" (at ")
-    if numbers := re.findall(r"\d+", place):
+    if numbers := _DIGITS.findall(place):
         return ProjectProblem(message, Position(int(numbers[0]) - 1, int(numbers[1]) - 1))
     return ProjectProblem(message, LineIndex(text).position(len(text)) if place else None)
+
+
+# ---- patterns ----
+
+_BTQ_TABLE = regex(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
+_RELEASE_LINE = regex(r"4\.(0|[1-9][0-9]?)")
+_DIGITS = regex(r"\d+")
 
 
 def _meant(name: str, names: Iterable[str]) -> str:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import re
-
+from btq_lang.regex import regex
 from btq_lang.units import Unit, parse_unit
 
-_QUANTITY = r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)"  # compiled when first used: see `_is_usual`
+_QUANTITY = regex(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)")
 
 
 def parse_quantity(text: str) -> tuple[float, Unit, str] | None:
     """The number, the unit and the unit's text of a quantity such as `30 s`; None where it is none."""
     number, _, word = text.partition(" ")
     if not _is_usual(number, word):
-        match = re.fullmatch(_QUANTITY, text)
+        match = _QUANTITY.fullmatch(text)
         if match is None:
             return None
         number, word = match[1], match[2]

@@ -8,15 +8,13 @@ left out: inheritance, keyword-only fields, default factories, ordering.
 
 from __future__ import annotations
 
-from functools import cache
 from operator import attrgetter
-from types import CellType, FunctionType
 
 from btq_lang.record_inits import INITS
 
 TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
 if TYPE_CHECKING:
-    from types import CodeType
+    from collections.abc import Callable
     from typing import Any, TypeVar
 
     from typing_extensions import dataclass_transform
@@ -103,31 +101,28 @@ class _Record:
         return type(self), self._values
 
 
-def _init(made: type, fields: tuple[str, ...], defaults: tuple[object, ...]) -> FunctionType:
+def _init(made: type, fields: tuple[str, ...], defaults: tuple[object, ...]) -> Callable[..., None]:
     """`__init__` with the fields as parameters: the code of all classes with as many, given these names.
 
     It stores through the slots' own descriptors, which the refusing `__setattr__` does not see.
     """
-    code = _init_code(len(fields)).replace(co_varnames=("self", *fields))
-    setters = tuple(CellType(made.__dict__[name].__set__) for name in fields)
-    init = FunctionType(code, {}, "__init__", defaults, setters)
-    init.__qualname__ = f"{made.__name__}.__init__"
-    return init
+    init: Any = _with_setters(len(fields))(*[made.__dict__[name].__set__ for name in fields])
+    init.__code__ = init.__code__.replace(co_varnames=("self", *fields))
+    init.__defaults__ = defaults
+    init.__name__, init.__qualname__ = "__init__", f"{made.__name__}.__init__"
+    return init  # type: ignore[no-any-return]  # its parameters are known here alone
 
 
-@cache
-def _init_code(count: int) -> CodeType:
-    """The code of an `__init__` of so many fields, which finds their setters in its closure, in order."""
-    if count in INITS:
-        code: CodeType = INITS[count](*range(count)).__code__
-        return code
-    setters = [f"set{number:02}" for number in range(count)]  # a closure is sorted by name
-    parameters = ", ".join(["self", *(f"value{number}" for number in range(count))])
-    body = "; ".join(f"{setter}(self, value{number})" for number, setter in enumerate(setters)) or "pass"
-    scope: dict[str, Any] = {}
-    exec(f"def outer({', '.join(setters)}):\n def __init__({parameters}): {body}\n return __init__", scope)
-    code = scope["outer"](*setters).__code__
-    return code
+def _with_setters(count: int) -> Callable[..., Any]:
+    """What makes an `__init__` of so many fields, given their setters in order."""
+    if count not in INITS:
+        setters = [f"set{number}" for number in range(count)]
+        parameters = ", ".join(["self", *(f"value{number}" for number in range(count))])
+        body = "; ".join(f"{setter}(self, value{number})" for number, setter in enumerate(setters)) or "pass"
+        scope: dict[str, Any] = {}
+        exec(f"def outer({', '.join(setters)}):\n def __init__({parameters}): {body}\n return __init__", scope)
+        INITS[count] = scope["outer"]
+    return INITS[count]
 
 
 def _few(self: Any, fields: tuple[str, ...]) -> tuple[object, ...]:

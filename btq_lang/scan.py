@@ -2,14 +2,9 @@
 
 One invariant: a function looks only at the text from where it starts, so all who read words agree on them.  It knows
 no lines, no brackets and no grammar, and reports nothing.
-
-What runs at every word has two forms, because no form is fast in both worlds: the interpreter wants a regular
-expression, and mypyc makes the most of a loop over characters.
 """
 
 from __future__ import annotations
-
-import re
 
 from btq_lang.characters import (
     APOSTROPHE,
@@ -32,6 +27,7 @@ from btq_lang.characters import (
     begins_name,
     goes_on,
 )
+from btq_lang.regex import regex
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 from btq_lang.units import SYMBOLS as UNITS
 from btq_lang.units import parse_unit
@@ -67,8 +63,12 @@ def is_name(text: str) -> bool:
 
 def word_end(text: str, start: i64, size: i64) -> i64:
     """Behind letters, digits and `_`."""
-    if not COMPILED:
-        return _WORD(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    if not COMPILED:  # the interpreter passes the usual ones in one step
+        piece = text[start : start + _USUAL_WORD]
+        rest = piece.lstrip(_OF_WORDS)
+        start += len(piece) - len(rest)
+        if rest and rest.isascii():
+            return start
     while start < size:
         code: i64 = ord(text[start])
         if (code < SMALL_A or code > SMALL_Z) and not goes_on(code):  # nearly all are small letters
@@ -79,8 +79,6 @@ def word_end(text: str, start: i64, size: i64) -> i64:
 
 def blanks_end(text: str, start: i64, size: i64) -> i64:
     """Behind blanks and tabs."""
-    if not COMPILED:
-        return _BLANKS(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
     while start < size:
         code: i64 = ord(text[start])
         if code != SPACE and code != TAB:
@@ -96,10 +94,9 @@ def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
     Args:
         likely: blanks with which the line probably begins, for most begin as the one before.
     """
-    if not COMPILED:
-        return _OPENING(text, start).span(1)  # type: ignore[union-attr]  # it matches nothing at least
     size: i64 = len(text)
-    at = _behind(text, start, likely)
+    width: i64 = len(likely)
+    at = start + width if text[start : start + width] == likely else start
     while at < size:
         code: i64 = ord(text[at])
         at += 1
@@ -107,22 +104,15 @@ def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
             continue
         if code in (LINE_FEED, RETURN):
             start = at
-            at = _behind(text, at, likely)
+            if text[at : at + width] == likely:
+                at += width
         elif code != TAB:
             return start, at - 1
     return start, at
 
 
-def _behind(text: str, start: i64, word: str) -> i64:
-    """Behind a word, where it stands there; else `start`."""
-    end: i64 = start + len(word)
-    return end if text[start:end] == word else start
-
-
 def line_end(text: str, start: i64) -> i64:
     """Where the line of text ends."""
-    if not COMPILED:
-        return _LINE(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
     size: i64 = len(text)
     near: i64 = text.find("\n", start, start + _USUAL_LINE)  # no further: the next may be anywhere
     if near >= 0 and text.find("\r", start, near) < 0:
@@ -142,7 +132,7 @@ def line_start(text: str, lower: i64, position: i64) -> i64:
 
 def path_end(text: str, start: i64) -> i64:
     """Behind what somebody probably wrote as a path: up to a blank, a bracket or a quote."""
-    return re.compile(_PATH).match(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
+    return _PATH.match(text, start).end()  # type: ignore[union-attr]  # it matches nothing at least
 
 
 def symbol_at(text: str, start: i64) -> str:
@@ -296,13 +286,10 @@ def unit_run(text: str, start: i64) -> i64:
     return end
 
 
+_USUAL_WORD: Final = 40
+_OF_WORDS: Final = "etaoinsrhldcumfpgwybvkxjqzETAOINSRHLDCUMFPGWYBVKXJQZ_0123456789"
 _USUAL_LINE: Final = 200  # characters that a comment seldom has
-_WORD: Final = re.compile(r"\w*").match
-_BLANKS: Final = re.compile(r"[ \t]*").match
-# The first way over line ends spares the engine from looking back over the blanks it has passed.
-_OPENING: Final = re.compile(r"(?:[\r\n]+|[ \t\r\n]*[\r\n]|)([ \t]*)(?![ \t\r\n])").match
-_LINE: Final = re.compile(r"[^\r\n]*").match
-_PATH: Final = r"[^\s()\"']*"  # compiled when first used: it says what is wrong
+_PATH: Final = regex(r"[^\s()\"']*")
 _BY_FIRST: Final = {
     first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
     for first in {symbol[0] for symbol in SYMBOLS}

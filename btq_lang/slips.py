@@ -5,10 +5,9 @@ One invariant: it looks at the text around a place and nothing else: who asks kn
 
 from __future__ import annotations
 
-import re
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.regex import regex
 from btq_lang.scan import line_end, number_end
 from btq_lang.syntax import quote
 from btq_lang.text import Span
@@ -71,7 +70,7 @@ def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
         start: where the string begins.
         raw: how it is written, quotes included.
     """
-    unknown = [escape for escape in re.compile(_ESCAPE).finditer(raw) if escape[1] not in "\"'\\nt"]
+    unknown = [escape for escape in _ESCAPE.finditer(raw) if escape[1] not in "\"'\\nt"]
     if not unknown:
         return ()
     shown = unknown[0][0] if unknown[0][0].isprintable() else "\\"
@@ -117,8 +116,8 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
 
-_nearest_units: Final = lru_cache(maxsize=256)(nearest_units)  # the same mistake is often made again
-_ESCAPE: Final = r"(?s)\\(.)"  # compiled when first used, for most files need it never
+_nearest_units: Final = cache_of(256)(nearest_units)  # the same mistake is often made again
+_ESCAPE: Final = regex(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
 _LOOKS_LIKE: Final = {
     **{"≤": "<=", "≥": ">=", "≠": "!=", "−": "-", "–": "-", "×": "*", "·": "*", "÷": "/"},

@@ -6,10 +6,9 @@ Which definition a use means is the workspace's to say.
 
 from __future__ import annotations
 
-import re
-from enum import Enum
-
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, fields_of
+from btq_lang.regex import regex
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -36,23 +35,9 @@ from btq_lang.tokens import NAME
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from typing import TypeAlias
+    from typing import Final, TypeAlias
 
     from btq_lang.text import Span
-
-
-class Kind(Enum):
-    """What a name can name."""
-
-    TREE = "tree"
-    MODEL = "node model"
-    REQUIREMENT = "requirement"
-    SIGNAL = "signal"
-    CONTEXT = "context"
-    QUALITY = "quality"
-
-    __hash__ = object.__hash__  # half of all keys are a kind and a name, and Enum's own hash is slow
-
 
 Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
 
@@ -140,9 +125,7 @@ def _asked_by(requirement: Requirement) -> frozenset[str]:
     """What a requirement asks for in its clauses; without any, its text may hold some behind `FailureIf`."""
     if requirement.clauses or requirement.text is None:
         return _words_in((requirement.parameters, requirement.clauses))
-    return (
-        frozenset(re.findall(r"\w+", requirement.text.text)) if "if" in requirement.text.text.lower() else frozenset()
-    )
+    return frozenset(_WORDS.findall(requirement.text.text) if "if" in requirement.text.text.lower() else ())
 
 
 def _words_in(part: object) -> frozenset[str]:
@@ -246,3 +229,6 @@ class _Names:
     def _use(self, kind: Kind, name: Word | None, node: Node | None) -> None:
         if name is not None:
             self.uses.append(Use(kind, name.text, name.span, node))
+
+
+_WORDS: Final = regex(r"\w+")

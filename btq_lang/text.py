@@ -6,15 +6,16 @@ editor), and `LineIndex` is the only place that turns one into the other, in the
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_right
-from collections import namedtuple
+from itertools import accumulate
+from operator import itemgetter
 
 from btq_lang.record import Record
+from btq_lang.regex import regex
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
     from typing import Literal, NamedTuple, TypeAlias
 
     class _Ends(NamedTuple):
@@ -24,14 +25,36 @@ if TYPE_CHECKING:
     class _Place(NamedTuple):
         line: int
         column: int
-else:
-    _Ends = namedtuple("_Ends", ("start", "end"))
-    _Place = namedtuple("_Place", ("line", "column"))
+else:  # as `collections.namedtuple` makes them, which takes longer to import than a small file to read
+
+    class _Two(tuple):
+        __slots__ = ()
+
+        def __new__(cls, first, second):
+            return tuple.__new__(cls, (first, second))
+
+        def __getnewargs__(self):
+            return tuple(self)
+
+        def __repr__(self):
+            first, second = self.__match_args__
+            return f"{type(self).__name__}({first}={self[0]!r}, {second}={self[1]!r})"
+
+    class _Ends(_Two):
+        __slots__ = ()
+        __match_args__ = ("start", "end")
+        start, end = property(itemgetter(0)), property(itemgetter(1))
+
+    class _Place(_Two):
+        __slots__ = ()
+        __match_args__ = ("line", "column")
+        line, column = property(itemgetter(0)), property(itemgetter(1))
+
 
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
 # A line ends with these and with nothing else: str.splitlines would also cut at form feeds and U+2028.
-LINE_END = re.compile(r"\r\n|\n|\r")
+LINE_END = regex(r"\r\n|\n|\r")
 
 
 class Span(_Ends):
@@ -106,7 +129,7 @@ class LineIndex:
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._starts = [0, *[end.end() for end in LINE_END.finditer(text)]]
+        self._starts = [0, *_line_starts(text)]
         self._moved = 0  # from this line on all begin further behind than `_starts` says,
         self._by = 0  # by this
 
@@ -130,7 +153,7 @@ class LineIndex:
         is_end = last == len(self._starts)
         by = len(text) - len(self._text)
         end = len(text) if is_end else self._start(last) + by
-        between = [match.end() for match in LINE_END.finditer(text, self._start(first), end)]
+        between = [self._start(first) + start for start in _line_starts(text[self._start(first) : end])]
         if not is_end:
             between.pop()  # behind it is the line that is there already
         after = LineIndex("")
@@ -208,6 +231,14 @@ class LineIndex:
         if encoding != "code-points" and not text.isascii():
             return self._start(position.line) + _index(text, column, encoding)
         return self._start(position.line) + min(column, len(text))
+
+
+def _line_starts(text: str) -> Iterator[int]:
+    """Where the lines of a text begin, without its first; each character of a line end counts."""
+    if "\r" in text:
+        text = text.replace("\r\n", " \n").replace("\r", "\n")
+    *lines, _ = text.split("\n")
+    return accumulate([len(line) + 1 for line in lines])
 
 
 def _width(text: str, encoding: Encoding) -> int:

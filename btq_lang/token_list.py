@@ -6,10 +6,8 @@ says; what it passes over is filled in here.
 
 from __future__ import annotations
 
-import re
-from functools import cache
-
 from btq_lang.lexer import Lexer
+from btq_lang.regex import regex
 from btq_lang.scan import COMPILED
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, Token
 
@@ -76,14 +74,8 @@ def _start_of(piece: tuple[int, int, str]) -> int:
 
 
 def _pieces(text: str, start: int, end: int) -> list[Token]:
-    return [
-        Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _piece().finditer(text, start, end)
-    ]
+    return [Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _PIECE.finditer(text, start, end)]
 
 
-@cache
-def _piece() -> re.Pattern[str]:
-    return re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
-
-
+_PIECE = regex(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _SILENT = (OPEN, CLOSE, NEWLINE)

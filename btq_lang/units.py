@@ -9,9 +9,9 @@ grammar needs behind a number (`in`, `per`, `to`, `count` …), save `min`.
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import inf, pi
 
+from btq_lang.caches import cache_of
 from btq_lang.near import near
 from btq_lang.record import Record
 
@@ -42,7 +42,7 @@ class Unit(Record):
     offset: float = 0.0
 
 
-@lru_cache(1024)
+@cache_of(1024)
 def parse_unit(text: str) -> Unit | None:
     """Read a unit: a symbol of the table or a compound of them (`m/s^2`, `W*h`, `1/s`, `%/h`), or `1`, or None.
 

@@ -7,8 +7,7 @@ their fields, as it does those of a record: a compiled class has no `__slots__`.
 
 from __future__ import annotations
 
-import re
-
+from btq_lang.regex import regex
 from btq_lang.text import Span
 from btq_lang.tokens import STRING
 
@@ -76,7 +75,7 @@ class TypeWord(Word):
     @property
     def text(self) -> str:
         """What it says: without blanks and comments."""
-        return re.sub(r"\s+|/\*.*?\*/", "", self.raw, flags=re.DOTALL)
+        return _GAPS.sub("", self.raw)
 
 
 class Pair:
@@ -224,7 +223,7 @@ def unquote(raw: str) -> str:
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     if "\\" in text:
-        text = re.sub(_ESCAPE, lambda match: _ESCAPED.get(match[1], match[1]), text)
+        text = _ESCAPE.sub(lambda match: _ESCAPED.get(match[1], match[1]), text)
     return text
 
 
@@ -236,5 +235,6 @@ def _closes(raw: str) -> bool:
     return backslashes % 2 == 0
 
 
-_ESCAPE: Final = r"\\([\"'\\nt])"  # compiled when first used: most files have none
+_ESCAPE: Final = regex(r"\\([\"'\\nt])")
+_GAPS: Final = regex(r"(?s)\s+|/\*.*?\*/")
 _ESCAPED: Final = {"n": "\n", "t": "\t"}

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from missions import SEED, mission
 
 import btq_lang
 
@@ -17,7 +18,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
     frozenset(
-        {"record", "record_inits", "garbage", "text", "places", "near", "globs"}
+        {"record", "record_inits", "caches", "enumeration", "regex", "garbage", "text", "places", "near", "globs"}
         | {"rules", "diagnostics", "units", "quantities"}
     ),
     frozenset(
@@ -39,7 +40,7 @@ ROWS: tuple[frozenset[str], ...] = (
     ),
     frozenset({"catalog"}),
     frozenset(
-        {"toml_places", "project", "symbols", "constraints", "mentions", "facts", "file", "workspace"}
+        {"toml_places", "project", "name_kinds", "symbols", "constraints", "mentions", "facts", "file", "workspace"}
         | {"placeholders", "entry_types", "requirements", "graph"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
@@ -161,4 +162,17 @@ def test_what_a_start_does_not_import(statement: str, absent: set[str]) -> None:
         check=True,
         cwd=PACKAGE.parent,
     )
+    assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_small_file_is_checked_without_heavy_modules(tmp_path: Path) -> None:
+    file = tmp_path / "mission.btq"
+    file.write_text(mission(100, SEED, "short"), encoding="utf-8")
+    program = (
+        "import sys; sys.path.insert(0, '.'); import btq_lang.cli\n"
+        f"btq_lang.cli.main(['check', {str(file)!r}])\n"
+        "print(sorted({'re', 'enum', 'functools', 'collections', 'collections.abc', 'types'} & set(sys.modules)))"
+    )
+    command = [sys.executable, "-S", "-c", program]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=PACKAGE.parent)
     assert run.stdout.splitlines()[-1] == "[]"

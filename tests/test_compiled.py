@@ -30,7 +30,7 @@ from btq_lang.checks import ports
 from btq_lang.workspace import Workspace
 
 def told(part):
-    if isinstance(part, (list, tuple)) and not hasattr(part, "_fields"):
+    if type(part) in (list, tuple):
         return [told(element) for element in part]
     if hasattr(part, "__match_args__"):
         return [type(part).__name__, *(told(getattr(part, field)) for field in type(part).__match_args__)]

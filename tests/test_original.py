@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.checks import check
-from btq_lang.symbols import Kind
+from btq_lang.name_kinds import Kind
 from btq_lang.text import LineIndex
 from btq_lang.workspace import Workspace
 

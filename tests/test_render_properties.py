@@ -35,7 +35,7 @@ DIAGNOSTICS = st.builds(
         st.builds(Fix, TEXTS, st.lists(st.builds(Change, PLACES, TEXTS), max_size=3).map(tuple), st.booleans()),
         max_size=2,
     ).map(tuple),
-    st.lists(st.sampled_from(Tag), max_size=1).map(tuple),
+    st.lists(st.sampled_from(tuple(Tag)), max_size=1).map(tuple),
 )
 REPORTS = st.builds(
     Report,

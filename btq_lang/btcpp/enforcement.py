@@ -24,12 +24,12 @@ from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import START, FirstValues, Leaf, Wrapper, may_be_skipped, wrapped
 from btq_lang.diagnostics import Place
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.budgets import Budget, Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
 from btq_lang.requirements.spans import node_of
-from btq_lang.symbols import Kind
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -14,8 +14,8 @@ from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
 from btq_lang.file import File
+from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Models, Node, Tree
 from btq_lang.workspace import Workspace
 

@@ -6,8 +6,7 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 
 from __future__ import annotations
 
-from functools import cache
-
+from btq_lang.caches import cache
 from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -8,11 +8,10 @@ Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.
 
 from __future__ import annotations
 
-import re
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.catalog.kinds import DEFAULT_VERSION, RESULT, at_least
 from btq_lang.record import Record
+from btq_lang.regex import regex
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ class LiteralProblem(Record):
     reads: str | None = None
 
 
-@lru_cache(1_000)  # the same values are given again and again
+@cache_of(1_000)  # the same values are given again and again
 def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
     """What is wrong with a literal on a port of that type, in that version of the engine; None: nothing.
 
@@ -54,7 +53,7 @@ def is_pointer(text: str) -> bool:
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
 
 
-@lru_cache(1000)
+@cache_of(1000)
 def plain_type(port_type: str) -> str:
     """One name for a type that has several: `int32_t` is `int`, `std::vector<double, …>` is `std::vector<double>`."""
     item = _list_item(port_type)
@@ -107,7 +106,7 @@ def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
     """std::from_chars since 4.9; before, std::stod, which takes blanks and a `+` in front, and hexadecimal digits."""
     if len(text) < 16 and text.isascii() and text.replace(".", "", 1).isdecimal():
         return None  # as nearly all are
-    number = re.match(_REAL if at_least(version, "4.9") else _OLD_REAL, text)
+    number = (_REAL if at_least(version, "4.9") else _OLD_REAL).match(text)
     if number is None:
         return LiteralProblem("refused", f"is no {plain}")
     value = _value(number[0])
@@ -168,7 +167,7 @@ def _refuse_constant(word: str) -> None:
     raise ValueError(word)
 
 
-@lru_cache(500)
+@cache_of(500)
 def _plain(port_type: str) -> str:
     """One name for a type that has several: `std::int32_t` and `int`, `unsigned` and `unsigned int`."""
     name = " ".join(port_type.split())
@@ -177,10 +176,10 @@ def _plain(port_type: str) -> str:
     return _SYNONYMS.get(short, short if short in _INTEGERS else name)
 
 
-@lru_cache(500)
+@cache_of(500)
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items, or None for what is no list the engine can read."""
-    found = re.match(_LIST, " ".join(port_type.split())) if "<" in port_type else None
+    found = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
     if found is None:
         return None
     if "basic_string" in found[1] or found[1] in ("string", "std::string"):
@@ -191,7 +190,7 @@ def _list_item(port_type: str) -> str | None:
 
 
 def _mantissa(number: str) -> str:
-    return re.split(r"[pP]" if "x" in number.lower() else r"[eE]", number)[0].lower().replace("0x", "")
+    return number.lower().partition("p" if "x" in number.lower() else "e")[0].replace("0x", "")
 
 
 def _value(number: str) -> float:
@@ -250,6 +249,6 @@ _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.00649
 _NAMED: Final = r"(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?)"
 _DECIMAL: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _HEXADECIMAL: Final = r"0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
-_REAL: Final = rf"-?(?:{_NAMED}|{_DECIMAL})"
-_OLD_REAL: Final = rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})"
-_LIST: Final = r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]"
+_REAL: Final = regex(rf"-?(?:{_NAMED}|{_DECIMAL})")
+_OLD_REAL: Final = regex(rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})")
+_LIST: Final = regex(r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]")

@@ -11,8 +11,7 @@ is understood is an alias (another word, or another word in front), another edit
 
 from __future__ import annotations
 
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.near import near
@@ -76,7 +75,7 @@ class QualityMatch(Record):
     near: tuple[str, ...] = ()
 
 
-@lru_cache(1000)
+@cache_of(1000)
 def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
     """What the parts of a QualityPath mean in an edition.
 

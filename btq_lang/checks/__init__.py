@@ -6,7 +6,6 @@ count from that entry; it never raises, whatever the file.  A module holds the r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 
 from btq_lang.checks import (
@@ -62,13 +61,14 @@ from btq_lang.syntax import (
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
     from typing import TypeAlias
 
     from btq_lang.checks.answers import Answers
     from btq_lang.facts import Facts
     from btq_lang.workspace import Workspace
 
-Check: TypeAlias = Callable[[View, Entry], Iterator[Diagnostic]]
+Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
 
 # The checks of each kind of item: most items are small, and most checks have nothing to say of most of them.
 CHECKS: dict[type, tuple[Check, ...]] = {

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import ceil, floor, isfinite
 
+from btq_lang.caches import cache
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.quantities import parse_quantity
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Amount, Claim, Entry, Mission, Odds, OnViolation, Requirement, Scope, Signal, Word, walk
 from btq_lang.text import Span
 from btq_lang.tokens import NUMBER, QUANTITY

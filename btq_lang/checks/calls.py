@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
+from btq_lang.caches import cached_property
 from btq_lang.checks import lookups
-from btq_lang.symbols import Kind, Use
+from btq_lang.name_kinds import Kind
+from btq_lang.symbols import Use
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
-
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
 from btq_lang.text import Span
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.seen import SeenNode
 
-_INTEGER = r"-?[0-9]{1,18}"
+_INTEGER = regex(r"-?[0-9]{1,18}")
 _SWITCHES = tuple(tag for tag in BUILTINS if tag.startswith("Switch"))
 _THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 
@@ -118,7 +117,7 @@ def _is_switch_by_children(seen: SeenNode) -> bool:
 
 
 def _integer(word: Word | None) -> int | None:
-    return int(word.text) if word is not None and re.fullmatch(_INTEGER, word.text) else None
+    return int(word.text) if word is not None and _INTEGER.fullmatch(word.text) else None
 
 
 def _called(seen: SeenNode) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
-from btq_lang.symbols import Kind
+from btq_lang.name_kinds import Kind
 from btq_lang.syntax import (
     Clause,
     Confidence,

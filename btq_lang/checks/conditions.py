@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.symbols import Kind, requirements_at
+from btq_lang.name_kinds import Kind
+from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.tokens import NAME
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 
 from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Model, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
@@ -45,7 +44,7 @@ def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)
 
 
-@lru_cache(1)  # all items of a file ask
+@cache_of(1)  # all items of a file ask
 def _has_empty(text: str) -> bool:
     return any(sign in text for sign in ('""', "''", "{}"))
 

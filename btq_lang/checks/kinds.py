@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
@@ -12,9 +10,11 @@ from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.near import distance
+from btq_lang.regex import regex
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind, Symbol
+from btq_lang.symbols import Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
@@ -100,7 +100,7 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-@lru_cache(1_000)  # every tree of every file asks
+@cache_of(1_000)  # every tree of every file asks
 def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
     return [version for version in engines if not available(BUILTINS[tag], version)]
 
@@ -248,7 +248,7 @@ def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
 def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
     """What makes a file for version 4 of XML for version 3, where that is what a word comes from."""
     origin = view.look_up(lookups.origin)
-    if origin is None or known.word not in _TRANSLATED or re.search(_SAYS_VERSION_4, origin.text):
+    if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
         return ()
     return ("`btq import` makes a .btq file of it that says this as version 4 does",)
 
@@ -365,4 +365,4 @@ _MANY: Final = 5
 
 # Words of version 3 that an import says in another way.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
-_SAYS_VERSION_4: Final = r"""BTCPP_format\s*=\s*["']\s*4"""
+_SAYS_VERSION_4: Final = regex(r"""BTCPP_format\s*=\s*["']\s*4""")

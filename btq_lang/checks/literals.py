@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from math import isfinite
 
 from btq_lang.catalog.literals import check_literal, is_pointer
@@ -13,6 +12,7 @@ from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
+from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.seen import SeenNode
 
-_NUMBER = r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?"
+_NUMBER = regex(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 
@@ -200,7 +200,7 @@ def _as_quantity(value: Word, target: _Target, reads: str | None) -> tuple[Fix, 
 
 
 def _as_value(text: str) -> str:
-    return text if re.fullmatch(_NUMBER, text) else written(text)
+    return text if _NUMBER.fullmatch(text) else written(text)
 
 
 def _shown(text: str) -> str:

@@ -12,8 +12,8 @@ import posixpath
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -7,9 +7,7 @@ differs from it as only slips do.
 
 from __future__ import annotations
 
-from collections import Counter
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.near import distance
@@ -32,7 +30,9 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if any(isinstance(child, Verbatim) for node in view.nodes(entry) for child in node.node.children):
         return  # XML that nobody reads here may name any entry
     yield from _misspelt_booleans(mentions, view, tree.name.text)
-    counts = Counter(mention.name for mention in mentions)
+    counts: dict[str, int] = {}
+    for mention in mentions:
+        counts[mention.name] = counts.get(mention.name, 0) + 1
     if min(counts.values()) > 1:
         return
     others = dict.fromkeys((*counts, *(port.name.text for port in tree.ports if port.name is not None)))
@@ -46,9 +46,9 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for meant in alike.to(mention.name):
             if meant in told or _stand_together(mentions, mention, meant):
                 continue
-            if view.ask(_is_meant, tree.name.text, mention.name, meant, counts[meant] > 0) and view.scope.complete:
+            if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.scope.complete:
                 told.add(mention.name)
-                yield _told(mentions, mention, meant, counts[meant] == 1)
+                yield _told(mentions, mention, meant, counts.get(meant) == 1)
                 break
 
 
@@ -142,7 +142,7 @@ class _Alike:
         return sorted(likely, key=lambda other: (distance(name, other), other))
 
 
-@lru_cache(1_000)  # the same names are in tree after tree
+@cache_of(1_000)  # the same names are in tree after tree
 def _is_slip(word: str, meant: str) -> bool:
     """Whether a name is so near another one that nobody would call two things so: `traget`, `batteryLevel`, `imgg`.
 
@@ -170,7 +170,7 @@ def _is_slip(word: str, meant: str) -> bool:
     return any(one != two and min(len(one), len(two)) > 5 for one, two in pieces)
 
 
-@lru_cache(1_000)
+@cache_of(1_000)
 def _pieces(name: str) -> frozenset[str]:
     name = _folded(name)
     return frozenset((name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))))

@@ -7,9 +7,9 @@ from btq_lang.catalog.names import instance_name_problem, legal_name, model_name
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.record import replace
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Model, Models, Tree, Word
 from btq_lang.text import Span
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
-
+from btq_lang.caches import cache
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import lookups

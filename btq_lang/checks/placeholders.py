@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.name_kinds import Kind
 from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
@@ -101,7 +100,7 @@ def _placeholders(tree: Facts) -> Iterator[Word]:
             yield name
 
 
-@lru_cache(10_000)
+@cache_of(10_000)
 def _id_of(name: str) -> str:
     """The ID that a placeholder's name becomes; a mission names the same skills again and again."""
     return legal_name(name)
@@ -142,7 +141,7 @@ def _as_label(name: Word) -> str:
     return name.raw if name.quoted or (is_name(name.raw) and name.raw not in _NOT_A_KIND) else quote(name.text)
 
 
-@lru_cache(1000)
+@cache_of(1000)
 def _looks_like_builtin(name: str) -> bool:
     """Whether a node of that name would be taken for a misspelt one of the engine's."""
     return bool(near(name, (spelling for kind in BUILTINS.values() for spelling in spellings(kind))))

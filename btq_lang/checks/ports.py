@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
-
+from btq_lang.caches import cache
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
@@ -11,10 +10,10 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.near import distance, near
 from btq_lang.record import Record
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.text import Span
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btq_lang.checks.strings import in_source
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
-from btq_lang.symbols import Kind
+from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Entry, Requirement, Signal, Word
 from btq_lang.text import Span
 from btq_lang.units import Dimension, parse_unit

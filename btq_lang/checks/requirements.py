@@ -5,7 +5,8 @@ from __future__ import annotations
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
-from btq_lang.symbols import Kind, Symbol, same_requirement
+from btq_lang.name_kinds import Kind
+from btq_lang.symbols import Symbol, same_requirement
 from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

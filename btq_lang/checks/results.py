@@ -10,8 +10,8 @@ from __future__ import annotations
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import is_circular
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Node, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -9,8 +9,9 @@ from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
-from btq_lang.symbols import Kind, Use
+from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
 

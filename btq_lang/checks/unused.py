@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from btq_lang.checks import lookups
 from btq_lang.diagnostics import Diagnostic, Tag
+from btq_lang.name_kinds import Kind
 from btq_lang.near import near
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Context, Entry, Signal
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py

@@ -5,17 +5,17 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
-from functools import cache
-
 from btq_lang.attributes import meant_clause
+from btq_lang.caches import cache
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
+from btq_lang.name_kinds import Kind
 from btq_lang.near import near
-from btq_lang.symbols import Kind, Summary, Use
+from btq_lang.symbols import Summary, Use
 from btq_lang.syntax import (
     Apply,
     Entry,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, home_of, subject
 from btq_lang.file import Definition
 from btq_lang.mentions import What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace

@@ -8,7 +8,7 @@ from btq_lang.features import describe
 from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_match
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
-from btq_lang.symbols import Kind
+from btq_lang.name_kinds import Kind
 from btq_lang.text import Edit
 from btq_lang.workspace import Workspace
 

@@ -11,9 +11,9 @@ from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.file import Definition
 from btq_lang.mentions import What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
 from btq_lang.requirements import requirements
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Claim, Requirement
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace

@@ -10,7 +10,7 @@ from btq_lang.features.block import STEP
 from btq_lang.features.meaning import at, everywhere, subject
 from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
 from btq_lang.mentions import What
-from btq_lang.symbols import Kind
+from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model
 from btq_lang.text import Edit, Span
 from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token

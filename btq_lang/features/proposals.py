@@ -19,10 +19,10 @@ from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, replace
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES, Token
 from btq_lang.units import dimension_name, parse_unit, symbols

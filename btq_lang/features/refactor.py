@@ -13,8 +13,8 @@ from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
 from btq_lang.file import File
 from btq_lang.mentions import Mention, What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
 from btq_lang.syntax import (
     Clause,
     Entry,
@@ -28,7 +28,7 @@ from btq_lang.syntax import (
     is_name,
     quote,
 )
-from btq_lang.text import Edit, Span
+from btq_lang.text import Edit, Position, Span
 from btq_lang.tokens import BRACED
 from btq_lang.workspace import Workspace
 
@@ -126,7 +126,7 @@ def _item_end(file: File, entry: Entry) -> int:
     assert isinstance(tree, Tree), "only trees have nodes"
     end = max([tree.end, *(child.block_end for child in tree.children if isinstance(child, Node))])
     line = file.lines.position(entry.start + end).line
-    return file.lines.offset(file.lines.position(entry.start + end)._replace(column=len(file.lines.line(line))))
+    return file.lines.offset(Position(line, len(file.lines.line(line))))
 
 
 # ---- a subtree put in ----

@@ -19,9 +19,9 @@ from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.meaning import edition, match_of
 from btq_lang.mentions import Listener, What, tell
+from btq_lang.name_kinds import Kind
 from btq_lang.parser import Parsed
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Entry, Requirement
 from btq_lang.text import LINE_END, Span
 from btq_lang.token_list import pieces

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import TypeAlias
 
-Paint = Callable[[str, str], str]
+Paint: TypeAlias = "Callable[[str, str], str]"
 
 # Select Graphic Rendition parameters of ECMA-48: 1 bold, 31 to 36 colours.
 _CODES = {

@@ -5,8 +5,7 @@ Invariant: every place has a location; a span outside its text is clamped, a fil
 
 from __future__ import annotations
 
-from functools import lru_cache
-
+from btq_lang.caches import cache_of
 from btq_lang.record import Record
 from btq_lang.text import LineIndex, Span
 
@@ -46,6 +45,6 @@ def clamped(span: Span, text: str) -> Span:
     return Span(start, max(start, min(span.end, len(text))))
 
 
-@lru_cache(maxsize=16)  # findings come file by file, so few texts are enough; a hash of a text is computed once
+@cache_of(16)  # findings come file by file, so few texts are enough; a hash of a text is computed once
 def line_index(text: str) -> LineIndex:
     return LineIndex(text)

@@ -20,16 +20,17 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from functools import cached_property
 from operator import is_
 
+from btq_lang.caches import cached_property
+from btq_lang.name_kinds import Kind
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.memory import Memory, Table
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
-from btq_lang.symbols import Kind, Symbol
+from btq_lang.symbols import Symbol
 from btq_lang.syntax import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.syntax import Signal as WrittenSignal

@@ -7,15 +7,14 @@ were mended; anything else that begins no token is an ERROR token, of which the 
 
 from __future__ import annotations
 
-import re
-from functools import cache
-
+from btq_lang.regex import regex
 from btq_lang.script import mistakes
 from btq_lang.script.tree import ASSIGNMENT, RANK
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    import re
     from typing import Final
 
     from btq_lang.diagnostics import Diagnostic
@@ -106,7 +105,7 @@ def _matched(text: str) -> Tokens:
     tokens = Tokens()
     kinds, starts, ends = tokens.kinds, tokens.starts, tokens.ends
     words = False
-    for match in _pattern().finditer(text):
+    for match in _TOKEN.finditer(text):
         start, end = match.span()
         kind = match.lastgroup or ""
         if kind == "operator":
@@ -139,11 +138,9 @@ def _matched(text: str) -> Tokens:
     return tokens
 
 
-@cache
-def _pattern() -> re.Pattern[str]:
-    """One token (BehaviorTree.CPP 4.10, src/script_tokenizer.cpp); a catch-all is last, and nothing matches blanks."""
-    return re.compile(
-        r"""
+# One token (BehaviorTree.CPP 4.10, src/script_tokenizer.cpp); a catch-all is last, and nothing matches blanks.
+_TOKEN: Final = regex(
+    r"""(?xs)
           (?P<name>      [^\W\d]\w* | @\w+ )
         | (?P<number>    (?: 0[xX][0-9a-fA-F]+ | [0-9]+ (?:\.[0-9]+)? (?:[eE][+-]?[0-9]+)? )
                          (?P<garbage> (?: \w | \.(?!\.) )+ )? )
@@ -156,9 +153,9 @@ def _pattern() -> re.Pattern[str]:
         | (?P<braced>    \{ [ \t]* (?: [^\W\d]\w* | @\w+ ) [ \t]* \} )
         | (?P<blank>     [^\S \t\r\n]+ )
         | (?P<other>     [^ \t\r\n] )
-        """,
-        re.VERBOSE | re.DOTALL,
-    )
+    """
+)
+_NUMBER: Final = regex(r"[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 
 
 def _check_number(tokens: Tokens, text: str, match: re.Match[str]) -> None:
@@ -180,7 +177,7 @@ def _mended_number(raw: str) -> str | None:
     meant = f"0{raw}" if raw[0] == "." else f"{raw}0" if raw[-1] == "." else raw
     if raw.replace("_", "").isdecimal() and raw[-1] != "_" and "__" not in raw:
         meant = raw.replace("_", "")
-    return meant if re.fullmatch(r"[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", meant) and _fits(meant) else None
+    return meant if _NUMBER.fullmatch(meant) and _fits(meant) else None
 
 
 def _fits(raw: str) -> bool:

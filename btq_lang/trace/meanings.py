@@ -6,8 +6,8 @@ One invariant: every name has an answer; a name that nobody knows belongs to no 
 from __future__ import annotations
 
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS, Edition, Quality, find, fold, get, successors
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.symbols import Kind
 from btq_lang.syntax import Qualities, QualityDecl
 from btq_lang.workspace import Workspace
 
