@@ -80,6 +80,7 @@ class Server(LanguageServer):
         self.waiting: dict[str, None] = {}
         self._pause: asyncio.TimerHandle | None = None
         self._preparing: asyncio.Task[None] | None = None
+        self.answering = 0  # how many questions are answered step by step: somebody waits
         self._ready: set[str] = set()  # the files for whose first questions everything is there
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
@@ -263,7 +264,7 @@ class Server(LanguageServer):
             place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
             if place is not None:
                 for _ in chain(self.protocol.getting_ready(), features.getting_ready(*place)):
-                    await asyncio.sleep(0)
+                    await asyncio.sleep(A_PAUSE if self.answering else 0)
             self._ready.add(path)
 
     def publish(self, path: str) -> None:

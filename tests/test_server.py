@@ -484,6 +484,33 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
     assert steps == [WRONG] * 3 + [RIGHT] * 100
 
 
+def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0.05)
+    steps: list[int] = []
+
+    def making(*_: object) -> Iterator[None]:
+        for step in range(100):
+            steps.append(step)
+            yield
+
+    async def ask_meanwhile() -> None:
+        server = Server()
+        server.protocol.client_capabilities = types.ClientCapabilities()
+        server.answering = 1
+        server.check_soon(server.session.edit(str(tmp_path / "main.btq"), RIGHT))
+        while not steps:
+            await asyncio.sleep(0)
+        for _ in range(50):
+            await asyncio.sleep(0)
+        assert len(steps) < 10
+        server.answering = 0
+        while len(steps) < 100:
+            await asyncio.sleep(0)
+
+    monkeypatch.setattr("btq_lang.features.getting_ready", making, raising=False)
+    asyncio.run(ask_meanwhile())
+
+
 def test_what_the_server_does_not_know_is_nothing(editor: Editor) -> None:
     for method in ("hover", "completion", "prepareRename"):
         assert editor.request(f"textDocument/{method}", **editor.at("nowhere.btq", 0, 0)) is None

@@ -44,7 +44,11 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
     async def full(params: types.SemanticTokensParams) -> Json:
         if convert.path(params.text_document.uri) not in server.tokens:
-            await made(params.text_document)
+            server.answering += 1
+            try:
+                await made(params.text_document)
+            finally:
+                server.answering -= 1
         return whole(colours(params.text_document))
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, legend)
