@@ -8,7 +8,6 @@ and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from operator import attrgetter
 
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
@@ -70,7 +69,6 @@ if TYPE_CHECKING:
 # What an item begins in: the state of the lexer, the levels of the open Roots, and whether there was a Root.
 Start: TypeAlias = "tuple[tuple[tuple[str, ...], int], tuple[int, ...], bool]"
 
-_start_of: Final = attrgetter("start")
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 
 
@@ -144,7 +142,7 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
     old = before.entries
     behind = {
         old[index].start + by: index
-        for index in range(bisect_left(old, change.end, first, key=_start_of), len(old))
+        for index in range(bisect_left(old, change.end, first, key=lambda entry: entry.start), len(old))
         if before.starts[index] is not None
     }
     with NotCollecting():
@@ -162,7 +160,7 @@ def reparse(before: Parsed, text: str, change: Span | None = None) -> Parsed:
 def _first_touched(before: Parsed, change: int) -> int:
     """The first entry that may be another after a change there: an item's first line says where the one before it
     ends, so a change in that line touches both."""
-    first = bisect_right(before.entries, change, key=_start_of) - 1
+    first = bisect_right(before.entries, change, key=lambda entry: entry.start) - 1
     if first > 0:
         entry = before.entries[first]
         if change <= line_end(before.text, entry.start + entry.item.start):

@@ -8,8 +8,6 @@ left out: inheritance, keyword-only fields, default factories, ordering.
 
 from __future__ import annotations
 
-from operator import attrgetter
-
 from btq_lang.record_inits import INITS
 
 TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
@@ -32,23 +30,16 @@ class _Making(type):
         Raises:
             TypeError: a field without a default follows one with a default.
         """
-        fields = tuple(namespace.get("__annotations__", ()))
-        defaults = {field: namespace.pop(field) for field in fields if field in namespace}
-        required = len(fields) - len(defaults)
-        if tuple(defaults) != fields[required:]:
-            raise TypeError(f"{name}: a field without a default follows one with a default")
-        made: Any = None
-
-        def first(self: Any, *values: object, **named: object) -> None:
-            """The `__init__` of the first instance: of most classes a run makes none."""
-            made.__init__ = _init(made, fields, tuple(defaults.values()))
-            made.__init__(self, *values, **named)
-
-        namespace["__init__"] = first
-        namespace["__slots__"] = namespace["__match_args__"] = fields
-        namespace["_values"] = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
-        made = type(name, (_Record,), namespace)
-        return made
+        fields = namespace["__slots__"] = namespace["__match_args__"] = tuple(namespace.get("__annotations__", ()))
+        defaults: tuple[object, ...] = ()
+        for field in fields:
+            if field in namespace:
+                defaults += (namespace.pop(field),)
+            elif defaults:
+                raise TypeError(f"{name}: a field without a default follows one with a default")
+        if defaults:
+            namespace["_defaults"] = defaults
+        return type(name, (_Record,), namespace)
 
 
 if TYPE_CHECKING:
@@ -62,8 +53,7 @@ else:
 
 def replace(instance: T, **changes: object) -> T:
     """A copy of a record with some fields changed."""
-    before: Any = instance._values  # type: ignore[attr-defined]  # as above
-    values = [*map(changes.pop, fields_of(instance), before)]
+    values = [changes.pop(name) if name in changes else getattr(instance, name) for name in fields_of(instance)]
     return type(instance)(*values, **changes)  # what is left over is no field: a TypeError
 
 
@@ -74,10 +64,30 @@ def fields_of(part: object) -> tuple[str, ...]:
 
 
 class _Record:
-    """What all records do alike; a base, for a class made of fewer names is made faster."""
+    """What all records do alike; a base, for a class made of fewer names is made faster.
+
+    Attributes:
+        _defaults: those of the last fields.
+    """
 
     __slots__ = ()
-    _values: tuple[object, ...]
+    _defaults: tuple[object, ...] = ()
+
+    def __init__(self, *values: object, **named: object) -> None:
+        """That of the first instance, which makes the one of its class: of most classes a run has no instances."""
+        made: Any = type(self)
+        made.__init__ = _init(made)
+        made.__init__(self, *values, **named)
+
+    @property
+    def _values(self) -> tuple[object, ...]:
+        """Those of its fields, in order; the first instance that is asked makes what its class does so with."""
+        from operator import attrgetter  # most checks compare no records
+
+        made: Any = type(self)
+        fields = fields_of(self)
+        made._values = property(attrgetter(*fields) if len(fields) > 1 else lambda self: _few(self, fields))
+        return self._values
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -101,14 +111,15 @@ class _Record:
         return type(self), self._values
 
 
-def _init(made: type, fields: tuple[str, ...], defaults: tuple[object, ...]) -> Callable[..., None]:
+def _init(made: Any) -> Callable[..., None]:
     """`__init__` with the fields as parameters: the code of all classes with as many, given these names.
 
     It stores through the slots' own descriptors, which the refusing `__setattr__` does not see.
     """
+    fields = made.__match_args__
     init: Any = _with_setters(len(fields))(*[made.__dict__[name].__set__ for name in fields])
     init.__code__ = init.__code__.replace(co_varnames=("self", *fields))
-    init.__defaults__ = defaults
+    init.__defaults__ = made._defaults
     init.__name__, init.__qualname__ = "__init__", f"{made.__name__}.__init__"
     return init  # type: ignore[no-any-return]  # its parameters are known here alone
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from itertools import accumulate
-from operator import itemgetter
 
 from btq_lang.record import Record
 from btq_lang.regex import regex
@@ -43,12 +42,12 @@ else:  # as `collections.namedtuple` makes them, which takes longer to import th
     class _Ends(_Two):
         __slots__ = ()
         __match_args__ = ("start", "end")
-        start, end = property(itemgetter(0)), property(itemgetter(1))
+        start, end = property(lambda self: self[0]), property(lambda self: self[1])
 
     class _Place(_Two):
         __slots__ = ()
         __match_args__ = ("line", "column")
-        line, column = property(itemgetter(0)), property(itemgetter(1))
+        line, column = property(lambda self: self[0]), property(lambda self: self[1])
 
 
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import posixpath
-from operator import is_
 
 from btq_lang.checks import lookups
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -110,7 +109,7 @@ def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:
     trees = lookups.trees_of_mission(workspace, path)
     if file.known_errors is not None:
         project, rested_on, known_trees, known = file.known_errors
-        same_files = len(rested_on) == len(seen) and all(map(is_, rested_on, seen))
+        same_files = [*map(id, rested_on)] == [*map(id, seen)]
         if same_files and project == workspace.project and known_trees == trees:
             return known
     from btq_lang.checks import check  # it is what calls this

@@ -97,6 +97,9 @@ def _trouble(problem: LoadProblem) -> Trouble:
 
 def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...]]]:
     """The diagnostics of each file that was asked for, in order; many files on several processors."""
+    if len(group.given) == 1:  # as most often: nobody need be told how far it is
+        yield group.given[0], check(group.workspace, group.given[0])
+        return
     from btq_lang.commands.progress import Progress
 
     with Progress(len(group.given), "checked") as progress:

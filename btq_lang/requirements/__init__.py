@@ -20,8 +20,6 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from operator import is_
-
 from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
@@ -274,9 +272,7 @@ def _by_tree(held: list[Held], others: list[int] | None, memory: Memory) -> dict
             if others is None or tree in touched:
                 lists.setdefault(tree, []).append(applied)
     found = {
-        tree: old
-        if (old := known.get(tree)) is not None and len(old) == len(each) and all(map(is_, old, each))
-        else tuple(each)
+        tree: old if (old := known.get(tree)) is not None and [*map(id, old)] == [*map(id, each)] else tuple(each)
         for tree, each in lists.items()
     }
     if others is not None:

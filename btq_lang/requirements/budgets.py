@@ -7,7 +7,6 @@ holds for some activations only (a scope, some instances) is none here.
 
 from __future__ import annotations
 
-from heapq import heappop, heappush
 from math import fsum, inf
 
 from btq_lang.record import Record, replace
@@ -126,6 +125,8 @@ class Budgets:
         """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
         if not before:
             return
+        from heapq import heappop, heappush  # only an edit needs them
+
         nodes, by_tree = self._nodes, self._found.by_tree
         trees = nodes.in_order
         waiting: list[int] = []  # places in that order, of trees whose budgets may come out otherwise

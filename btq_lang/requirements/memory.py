@@ -6,8 +6,6 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
-from operator import is_
-
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
 from btq_lang.text import Span
@@ -177,6 +175,8 @@ class Table:
 
     def _not_as_before(self, before: Table) -> list[int]:
         """Where another owner stands than before, or one that is made of something else."""
+        from operator import is_  # only an edit asks
+
         found: set[int] = set()
         for now, then in ((self._owners, before._owners), (self._made_of, before._made_of)):
             found.update([at for at, same in enumerate(map(is_, now, then)) if not same])

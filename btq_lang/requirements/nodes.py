@@ -7,7 +7,6 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 from __future__ import annotations
 
 from itertools import chain
-from operator import is_
 
 from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
@@ -326,7 +325,7 @@ def _others(before: Sequence[TreeNodes], now: Sequence[TreeNodes]) -> list[tuple
     """The trees that stand in the place of another one, each behind that; None: there are more trees or fewer."""
     if len(before) != len(now):
         return None
-    return [(before[at], now[at]) for at, same in enumerate(map(is_, before, now)) if not same]
+    return [(one, other) for one, other in zip(before, now, strict=True) if one is not other]
 
 
 def _have_same_shape(pair: tuple[TreeNodes, TreeNodes]) -> bool:
@@ -336,7 +335,7 @@ def _have_same_shape(pair: tuple[TreeNodes, TreeNodes]) -> bool:
 
 
 def _same_or_new(before: tuple[SourceNode, ...], nodes: list[SourceNode]) -> tuple[SourceNode, ...]:
-    return before if len(before) == len(nodes) and all(map(is_, before, nodes)) else tuple(nodes)
+    return before if [*map(id, before)] == [*map(id, nodes)] else tuple(nodes)
 
 
 def _runs(node: SourceNode, tree: str) -> bool:
