@@ -50,7 +50,9 @@ if not COMPILED:
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from typing import Final, TypeAlias
+
+State: TypeAlias = "tuple[tuple[str, ...], tuple[tuple[str, ...], ...], int]"
 
 
 class Lexer:
@@ -130,19 +132,20 @@ class Lexer:
         self.position = position
         return self.open_line()
 
-    def state(self) -> tuple[tuple[str, ...], int] | None:
-        """The blanks of the open blocks and the level of an open Root's items, where they and the text from here on
-        are all that tells what follows; else None."""
+    def state(self) -> State | None:
+        """The blanks of the open blocks, what was taken for them, and the level of an open Root's items, where they and
+        the text from here on are all that tells what follows; else None."""
         searched = min(self._no_double, self._no_single, self._no_comment_end) <= self.size
-        if searched or self.problems or self.adopted or self.ended_early:
+        if searched or self.problems or self.ended_early:
             return None
-        return tuple(self.columns), self._root_level
+        return tuple(self.columns), tuple(self._aliases) if self.adopted else (), self._root_level
 
-    def begin_at(self, start: int, state: tuple[tuple[str, ...], int]) -> None:
+    def begin_at(self, start: int, state: State) -> None:
         """Stand before the line that starts there, in such a state."""
-        columns, self._root_level = state
+        columns, aliases, self._root_level = state
         self.columns = list(columns)
-        self._aliases = [()] * len(columns)
+        self._aliases = list(aliases) or [()] * len(columns)
+        self.adopted = aliases != ()
         self.level = len(columns) - 1
         self.position = start
 

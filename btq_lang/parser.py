@@ -66,8 +66,10 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
+    from btq_lang.lexer import State
+
 # What an item begins in: the state of the lexer, the levels of the open Roots, and whether there was a Root.
-Start: TypeAlias = "tuple[tuple[tuple[str, ...], int], tuple[int, ...], bool]"
+Start: TypeAlias = "tuple[State, tuple[int, ...], bool]"
 
 _BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
 

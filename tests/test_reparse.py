@@ -105,6 +105,18 @@ def test_a_line_indented_like_no_other_leaves_the_items_behind_as_they_were(text
     assert same(mended, before)
 
 
+def test_behind_an_item_that_is_indented_an_edit_touches_few() -> None:
+    text = missions.mission(200, 1, "short")
+    at = text.index("\nBehaviorTree") + 1
+    before = parse(f"{text[:at]} {text[at:]}")
+    assert [problem.rule for problem in before.diagnostics] == ["inconsistent-indentation"]
+    at = text.index("\n    ", text.index("\nBehaviorTree", at + 10))
+    after = reparse(before, f"{before.text[:at]}\n    Pick{before.text[at:]}")
+    assert same(after, parse(after.text))
+    kept = [mine.item is old.item for mine, old in zip(after.entries, before.entries, strict=True)]
+    assert kept.count(False) <= 3
+
+
 def test_an_edit_of_an_items_first_line_touches_the_item_before_it_too() -> None:
     text = "signal a : %\nsignal b : %\nsignal c : %\n"
     before = parse(text)
