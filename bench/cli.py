@@ -17,7 +17,7 @@ import sys
 import sysconfig
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -153,6 +153,12 @@ def _btq() -> tuple[str, ...]:
     return (sys.executable, str(script))
 
 
+def _notes() -> Iterator[str]:
+    """What to know of the script itself, which whoever installs btq writes."""
+    if "import re\n" in Path(_btq()[1]).read_text(encoding="utf-8"):
+        yield "The script `btq` imports `re`, which a small check does not need: pip before 25.1 has written it."
+
+
 def compare(measured: Sequence[Command]) -> list[Goal]:
     """The goals of docs/performance.md that this run can say something about."""
     took = {command.name: statistics.median(command.wall) for command in measured if not command.failure}
@@ -176,6 +182,7 @@ def as_text(measured: Sequence[Command], goals: Sequence[Goal]) -> str:
     base = statistics.median(measured[0].wall)
     lines = [
         machine(),
+        *_notes(),
         "",
         "| command | median ms | fastest | over `python -c pass` | processor ms | runs |",
         "|---|---|---|---|---|---|",
