@@ -5,16 +5,21 @@ One invariant: nothing compiled ever lies in the checkout.  The package is copie
 when the wheel is made, and only the compiled modules are taken from there; the sources stay beside them in the wheel,
 for tracebacks, and Python prefers the compiled ones.
 
-Which modules: those where a check of many files spends its time.  A record in them stays a class as Python makes it,
-for it is made while the module is loaded; a class with a `cached_property` must not be there, for mypyc makes one of it
-that is worked out every time.  No class is said to be `acyclic`, though most are: mypyc 2.4 has Python let go of such
-an object in a way that writes before it, where 50 objects are let go of inside each other.  It took a
-`sum` of floats, multiplied, for a whole number: `fsum` is none.
+Which modules: those where a check of many files spends its time.  Their records are written out as plain classes
+(tools/native_records.py), of which mypyc makes structures of C; a class with a `cached_property` must not be there, for
+mypyc makes one of it that is worked out every time.
+
+What mypyc 2.4 makes wrong, and how to tell: of a class that is said to be `acyclic`, though most are, Python lets go in
+a way that writes before the object, where 50 objects are let go of inside each other.  It took a `sum` of floats,
+multiplied, for a whole number: `fsum` is none.  In `x.y is a record and x.y.z …` it lets go of an `x.y` that it never
+took, if `x` is not compiled: the C compiler says that it "may be used uninitialized", and the build of a wheel fails;
+that of the test does not, for nothing is optimised there.  A name of its own for `x.y` helps.
 """
 
 from __future__ import annotations
 
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -27,10 +32,13 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PACKAGE = "btq_lang"
 COMPILED = (
+    "near",
     "quantities",
+    "diagnostics",
     "characters",
     "words",
     "node_clauses",
+    "syntax",
     "scan",
     "patterns",
     "plain",
@@ -48,17 +56,24 @@ COMPILED = (
     "nodes",
     "parser",
     "symbols",
+    "constraints",
     "placeholders",
     "script/tokens",
-    "catalog/names",
+    "catalog/kinds",
     "catalog/literals",
+    "catalog/names",
+    "catalog/nodes",
     "requirements/attach",
     "requirements/budgets",
     "requirements/clauses",
     "requirements/composition",
     "requirements/durations",
+    "requirements/memory",
+    "requirements/model",
+    "requirements/names",
     "requirements/paths",
     "requirements/reader",
+    "requirements/spans",
     "requirements/trees",
     "checks/bounds",
     "checks/budgets",
@@ -75,6 +90,7 @@ COMPILED = (
     "checks/kinds",
     "checks/limits",
     "checks/literals",
+    "checks/lookups",
     "checks/measures",
     "checks/misspelt",
     "checks/mixed_types",
@@ -88,6 +104,7 @@ COMPILED = (
     "checks/prose",
     "checks/qualities",
     "checks/reactive",
+    "checks/repeated",
     "checks/requirements",
     "checks/results",
     "checks/scripts",
@@ -141,6 +158,7 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     """
     shutil.copytree(root / PACKAGE, folder / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
     modules = [f"{PACKAGE}/{module}.py" for module in COMPILED]
+    modules.append(_write_records_out(root, folder, modules))
     flags = " ".join((*_flags(), os.environ.get("CFLAGS", ""))).strip()
     environment = {"MYPYC_OPT_LEVEL": "3"} | os.environ | {"MYPYPATH": str(folder), "CFLAGS": flags}
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
@@ -151,6 +169,17 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
         raise RuntimeError(f"mypyc failed:\n{done.stdout}{done.stderr}")
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     return sorted((*folder.glob(f"*{suffix}"), *(folder / PACKAGE).rglob(f"*{suffix}")))
+
+
+def _write_records_out(root: Path, folder: Path, modules: list[str]) -> str:
+    """Write out the records of the modules to compile; the module of their base, which is compiled, too."""
+    tool = runpy.run_path(str(root / "tools" / "native_records.py"))
+    for module in modules:
+        path = folder / module
+        path.write_text(tool["natively"](path.read_text(encoding="utf-8"), PACKAGE), encoding="utf-8")
+    base = f"{PACKAGE}/{tool['BASE_MODULE']}.py"
+    (folder / base).write_text(tool["BASE"], encoding="utf-8")
+    return base
 
 
 def _flags() -> tuple[str, ...]:

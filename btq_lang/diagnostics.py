@@ -7,20 +7,13 @@ leaves the workspace has no anchors left.
 
 from __future__ import annotations
 
-from btq_lang.enumeration import Enum
 from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
+from btq_lang.rules import Tag as Tag
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.text import Span
-
-
-class Tag(Enum):
-    """How an editor may show the place besides underlining it (LSP's DiagnosticTag)."""
-
-    UNNECESSARY = 1
-    DEPRECATED = 2
 
 
 class Place(Record):

@@ -7,6 +7,7 @@ from math import inf
 from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
+from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 from btq_lang.syntax import Model, Tree
 
@@ -30,7 +31,7 @@ Found: TypeAlias = tuple[Place, Diagnostic]
 Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
 
 
-class Demanded:
+class Demanded(Asker):
     """What is demanded in a file.  Rules look at one tree after the other; what they want to know of other trees, they
     ask, and it is noted.
 

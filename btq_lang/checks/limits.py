@@ -108,13 +108,15 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
 def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
     """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
     goal = requirement.goal
-    clause = _goal_clause(view, requirement) if isinstance(goal, Value) and requirement.path == view.path else None
-    if clause is None or not isinstance(goal, Value):
+    if not isinstance(goal, Value) or requirement.path != view.path:
         return
+    clause = _goal_clause(view, requirement)
+    if clause is None:
+        return
+    dimension = goal.unit.dimension
     for claim in requirement.claims:
         most, least = highest(claim), lowest(claim)
-        of = _dimension(claim)
-        if of is None or of != goal.unit.dimension:
+        if _dimension(claim) != dimension:
             continue
         if most is not None and goal.si > most[0]:
             message = f"the goal `{goal.text}` is worse than the bound, which is at most `{most[1]}`"
@@ -191,16 +193,18 @@ def _limits(claim: Claim) -> Iterator[_Limit]:
 def _compared(verb: str, condition: Compare) -> Iterator[_Limit]:
     pairs = zip(condition.operators, condition.operands, condition.operands[1:], strict=False)
     for operator, left, right in pairs:
-        if isinstance(left, Value) and isinstance(right, Read):
-            left, right = right, left
+        if isinstance(left, Read) and isinstance(right, Value):
+            read, bound = left, right
+        elif isinstance(left, Value) and isinstance(right, Read):
+            read, bound = right, left
             operator = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(operator, operator)
-        if not isinstance(left, Read) or not isinstance(right, Value):
+        else:
             continue
-        value = right.si, right.text
+        value = bound.si, bound.text
         if operator in ("<", "<="):
-            yield (verb, left.signal.name), None, value
+            yield (verb, read.signal.name), None, value
         elif operator in (">", ">="):
-            yield (verb, left.signal.name), value, None
+            yield (verb, read.signal.name), value, None
 
 
 def _timeouts(node: SourceNode) -> Iterator[tuple[SourceNode, float]]:

@@ -212,7 +212,7 @@ def is_crowded(workspace: Workspace, path: str, kind: Kind) -> bool:
     known = workspace.scope(path).names(kind)
     unknown = workspace.files[path].used(kind).difference(known)
     if kind is Kind.MODEL:
-        unknown -= BUILTINS.keys()
+        unknown = unknown.difference(BUILTINS)
     return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED
 
 

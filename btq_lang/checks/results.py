@@ -63,7 +63,8 @@ def _of_tree(view: View, tree: str) -> Results:
 def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
     """What the nodes of a tree can return; in a circle of trees anything."""
     found: dict[int, Results] = {}
-    tree = facts.item.name.text if isinstance(facts.item, Tree) and facts.item.name is not None else ""
+    item = facts.item
+    tree = item.name.text if isinstance(item, Tree) and item.name is not None else ""
     for seen in reversed(view.nodes_of(facts)):  # children before their parents
         found[id(seen.node)] = _of_node(view, tree, seen, found)
     return found

@@ -9,6 +9,7 @@ from __future__ import annotations
 from btq_lang.diagnostics import Diagnostic, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.record import Record, fields_of, replace
+from btq_lang.requirements import model
 from btq_lang.requirements.memory import is_same
 from btq_lang.requirements.model import (
     Applied,
@@ -165,7 +166,7 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
         return values.get(part.name, part)
     if isinstance(part, tuple):
         return tuple([_filled(each, values) for each in part])
-    if type(part).__module__ != Requirement.__module__ or isinstance(part, SourceNode):
+    if type(part).__module__ != model.__name__ or isinstance(part, SourceNode):
         return part
     fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:

@@ -13,7 +13,7 @@ from btq_lang.text import Span
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Sequence
-    from typing import Any, Protocol, TypeAlias, TypeVar
+    from typing import Any, TypeAlias, TypeVar
 
     from btq_lang.requirements.attach import Held, Uses
     from btq_lang.requirements.budgets import _TreeBudgets
@@ -22,17 +22,19 @@ if TYPE_CHECKING:
     T = TypeVar("T")
     Question: TypeAlias = tuple[Any, Hashable]
 
-    class Asker(Protocol):
-        """Whoever makes things and asks for others meanwhile.
 
-        Attributes:
-            noted: the questions since that was emptied, with their answers.
-        """
+class Asker:
+    """Whoever makes things and asks for others meanwhile.
 
-        noted: dict[Question, object]
+    Attributes:
+        noted: the questions since that was emptied, with their answers.
+    """
 
-        def answer(self, question: Question) -> object:
-            """What the answer is now."""
+    noted: dict[Question, object]
+
+    def answer(self, question: Question) -> object:
+        """What the answer is now."""
+        raise NotImplementedError
 
 
 class Memory:

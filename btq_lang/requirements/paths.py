@@ -9,6 +9,7 @@ from __future__ import annotations
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.near import near
 from btq_lang.record import Record
+from btq_lang.requirements.memory import Asker
 from btq_lang.syntax import Entry, Item, Path, Tree, Word, is_name, quote
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -32,7 +33,7 @@ class Problem(Record):
     diagnostic: Diagnostic
 
 
-class PathReader:
+class PathReader(Asker):
     """Reads paths of one scope; `begin` says where the next ones stand.  Whatever it looks up elsewhere it notes.
 
     Attributes:

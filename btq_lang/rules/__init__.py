@@ -20,6 +20,13 @@ class Severity(Enum):
     HINT = "hint"
 
 
+class Tag(Enum):
+    """How an editor may show the place besides underlining it (LSP's DiagnosticTag)."""
+
+    UNNECESSARY = 1
+    DEPRECATED = 2
+
+
 class Rule(Record):
     """A rule's name, its severity where nobody configured another, and what it finds in one line."""
 
