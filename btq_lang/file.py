@@ -18,7 +18,7 @@ from btq_lang.text import LineIndex, Span, changed
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from typing import Any, TypeVar
 
     from btq_lang.diagnostics import Diagnostic, Place
@@ -217,9 +217,9 @@ class File:
         """Every word of one of the file's entries that names something."""
         return self.facts[id(entry.item)].mentions
 
-    def mentioned(self, name: str) -> list[tuple[Entry, Mention]]:
-        """The words that say a name and name something, in the order of the text."""
-        return [(entry, one) for entry in self._saying(name) for one in self.mentions_of(entry) if one.name == name]
+    def mentioned(self, name: str) -> Iterator[tuple[Entry, Mention]]:
+        """The words that say a name and name something, in the order of the text; looked for as they are asked for."""
+        return ((entry, one) for entry in self._saying(name) for one in self.mentions_of(entry) if one.name == name)
 
     def _saying(self, name: str) -> Sequence[Entry]:
         """The entries that may say a name: those that hold it as it is, or all, where it may be written otherwise."""

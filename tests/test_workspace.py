@@ -123,3 +123,10 @@ def test_an_edit_of_one_file_parses_one_file() -> None:
     assert found(before, "/p/main.btq", Kind.REQUIREMENT, "fast") == "/p/requirements.btq:fast"
     assert after.with_file("/p/requirements.btq", FILES["/p/requirements.btq"]) == before
     assert before.without_file("/p/main.btq").with_file("/p/main.btq", FILES["/p/main.btq"]) == before
+
+
+def test_who_says_a_name_is_looked_for_no_further_than_asked() -> None:
+    file = Workspace.of({"main.btq": "BehaviorTree A\n    Dock\n\nBehaviorTree B\n    Dock\n"}).files["main.btq"]
+    entry, mention = next(file.mentioned("Dock"))
+    assert (entry.start, mention.name) == (0, "Dock")
+    assert ["mentions" in facts.__dict__ for facts in file.facts.values()] == [True, False]

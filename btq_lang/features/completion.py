@@ -45,12 +45,14 @@ def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -
         return False
     if name not in workspace.files[path].text[span.start : span.end]:
         return False
-    here = [mention.span.shifted(entry.start) for entry, mention in workspace.files[path].mentioned(name)]
-    if not here or any(at.start < span.start or at.end > span.end for at in here):
-        return False
-    return not any(
-        name in file.text and file.mentioned(name) for other, file in workspace.files.items() if other != path
-    )
+    is_here = False
+    for entry, mention in workspace.files[path].mentioned(name):  # the first one elsewhere is enough
+        at = mention.span.shifted(entry.start)
+        if at.start < span.start or at.end > span.end:
+            return False
+        is_here = True
+    elsewhere = (file for other, file in workspace.files.items() if other != path and name in file.text)
+    return is_here and not any(any(file.mentioned(name)) for file in elsewhere)
 
 
 def _complete(workspace: Workspace, path: str, offset: int) -> Completion:
