@@ -244,7 +244,10 @@ class Server:
     """A server and the editor's end of it: the editor takes whatever the server offers, and answers what it asks."""
 
     def __init__(self, command: tuple[str, ...], root: Path) -> None:
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENVIRONMENT)
+        # Not in a checkout: there `python -c` would import that, and not the package that is installed.
+        self.process = subprocess.Popen(
+            command, cwd=root, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENVIRONMENT
+        )
         assert self.process.stdin is not None, "it is a pipe"
         assert self.process.stdout is not None, "as above"
         self._to, self._from = self.process.stdin, self.process.stdout
