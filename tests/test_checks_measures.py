@@ -95,6 +95,12 @@ def test_a_number_with_an_unknown_unit_is_told_once() -> None:
     )
 
 
+def test_an_unknown_signal_is_declared_in_the_unit_of_what_is_wanted() -> None:
+    text = "QualityReq soon\n    takes at most PT30S\nBehaviorTree Main\n    Dock satisfies soon\n"
+    (found,) = check(Workspace.of({"main.btq": text}), "main.btq")
+    assert found.notes == ("declare it: `signal PT30S : s from {PT30S}`",)
+
+
 @pytest.mark.parametrize(
     ("compared", "unit"),
     [("< 20 %", "%"), ("< 3 m/s", "m/s"), ("< speed", "m/s"), ('== "full"', "text"), ("== true", "bool")],

@@ -88,10 +88,18 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
 
 
 @pytest.mark.parametrize("command", ["build", "import"])
-def test_a_folder_is_no_standard_output(btq: Run, command: str) -> None:
-    done = btq(command, "mission.btq", "-o", "-")
-    message = "error: argument -o/--output: it is a folder; what is read from `-` goes to standard output\n"
-    assert (done.returncode, done.stdout, done.stderr.endswith(message)) == (2, "", True)
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("-", "it is a folder; what is read from `-` goes to standard output"),
+        ("out.xml", "it is a folder, in which each file keeps its name"),
+        ("out.btq", "it is a folder, in which each file keeps its name"),
+    ],
+)
+def test_a_folder_is_asked_for(btq: Run, command: str, output: str, message: str) -> None:
+    done = btq(command, "mission.btq", "-o", output)
+    told = done.stderr.endswith(f"error: argument -o/--output: {message}\n")
+    assert (done.returncode, done.stdout, told) == (2, "", True)
 
 
 def test_check_a_clean_folder(btq: Run) -> None:
@@ -571,6 +579,12 @@ def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_p
     assert btq("format", "--check", "robot").returncode == 0
     again = btq("init", "robot")
     assert (again.returncode, "nothing written" in again.stderr) == (2, True)
+
+
+def test_what_is_next_can_be_pasted(btq: Run, tmp_path: Path) -> None:
+    assert btq("init", "my robot").stdout.endswith("Next: btq check 'my robot'\n")
+    (tmp_path / "old one.xml").write_text(OLD)
+    assert btq("import", "old one.xml").stderr.endswith("Next: btq check 'old one.btq'\n")
 
 
 def test_a_closed_pipe_is_no_traceback(tmp_path: Path) -> None:

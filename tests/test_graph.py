@@ -287,6 +287,23 @@ def test_the_command(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     )
 
 
+@pytest.mark.parametrize(("ending", "form"), [("svg", "svg"), ("gv", "dot"), ("MMD", "mermaid"), ("txt", "svg")])
+def test_the_file_s_ending_says_the_form(ending: str, form: str, tmp_path: Path) -> None:
+    mission, target = tmp_path / "a.btq", tmp_path / f"a.{ending}"
+    mission.write_text(MISSION, encoding="utf-8")
+    assert main(["graph", str(mission), "-o", str(target)]) == 0
+    assert target.read_text(encoding="utf-8") == draw(figures(Workspace.of({"a.btq": MISSION}), "a.btq"), form)
+    assert main(["graph", str(mission), "-o", str(target), "--format", "dot"]) == 0
+    assert target.read_text(encoding="utf-8").startswith("digraph")
+
+
+def test_no_other_form_is_written_under_its_name(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.btq").write_text(MISSION)
+    assert main(["graph", str(tmp_path / "a.btq"), "-o", str(tmp_path / "a.png")]) == 2
+    message = "btq graph: no .png is written, but svg, dot, mermaid: --format says which, whatever the name\n"
+    assert (capfd.readouterr().err, (tmp_path / "a.png").exists()) == (message, False)
+
+
 def test_what_the_command_cannot_draw(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.btq").write_text("signal battery : %\n")
     assert main(["graph", str(tmp_path / "a.btq")]) == 2

@@ -482,8 +482,11 @@ def test_the_command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypa
     assert [row["holds_for"][0]["nodes"] for row in requirements[:3]] == [
         row["holds_for"][0]["nodes"] for row in json.loads(out)["requirements"][:3]
     ]
-    assert main(["trace", "0.btq", "--format", "html", "-o", "docs/trace.html"]) == 0
+    assert main(["trace", "0.btq", "-o", "docs/trace.html"]) == 0
     assert (tmp_path / "docs" / "trace.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>\n")
+    capfd.readouterr()
+    assert main(["trace", "0.btq", "-o", "trace.pdf"]) == 2
+    assert capfd.readouterr().err.startswith("btq trace: no .pdf is written, but table, csv, json, markdown, html")
     assert main(["trace", "0.btq"]) == 0
     assert capfd.readouterr().out.startswith("Requirement ")
 

@@ -215,6 +215,8 @@ def test_si_form_and_back_is_the_value_as_typed(symbol: str, digits: int, places
         ("kw", ("kW",)),
         ("30sek", ("s",)),
         ("sek", ("s",)),
+        ("mps", ("m/s",)),
+        ("millis", ("ms",)),
         ("SEC", ("s",)),
         ("Mw", ("MW", "mW")),
         ("hz", ("Hz",)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from argparse import ArgumentParser, ArgumentTypeError, Namespace, RawDescriptionHelpFormatter
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -145,6 +146,8 @@ def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
     def folder(path: str) -> str:
         if path == "-":
             raise ArgumentTypeError("it is a folder; what is read from `-` goes to standard output")
+        if path.endswith((".btq", ".xml")) and not os.path.isdir(path):
+            raise ArgumentTypeError("it is a folder, in which each file keeps its name")
         return path
 
     parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
@@ -179,7 +182,7 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
     )
     _add_paths(parser)
     parser.add_argument("--bundle", action="store_true", help="what is enforced where missions are built with --bundle")
-    parser.add_argument("--format", choices=TRACE_FORMATS, default="table", help="default: table")
+    parser.add_argument("--format", choices=TRACE_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
 
@@ -197,7 +200,7 @@ def _add_graph(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
     )
-    parser.add_argument("--format", choices=GRAPH_FORMATS, default="svg", help="default: svg")
+    parser.add_argument("--format", choices=GRAPH_FORMATS, help="default: as the file of -o ends, else svg")
     parser.add_argument("--qualities", action="store_true", help="with qualities and requirements beside their nodes")
     parser.add_argument("--direction", choices=DIRECTIONS, default="down", help="where children stand; default: down")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")

@@ -6,9 +6,9 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, nothing_below, usage_problem
-from btq_lang.commands.output import write_output
+from btq_lang.commands.output import form_of, not_written, write_output
 from btq_lang.garbage import collecting_seldom
-from btq_lang.graph import draw
+from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.loader import LoadProblem, shown
 
@@ -19,7 +19,8 @@ def run(options: Namespace) -> int:
 
 
 def _run(options: Namespace) -> int:
-    if problem := usage_problem(options.paths):
+    form = form_of(options, FORMATS)
+    if problem := usage_problem(options.paths) or ("" if form else not_written(options, FORMATS)):
         print(f"btq graph: {problem}", file=sys.stderr)
         return 2
     groups, problems = Files().groups(options.paths, options.stdin_filename)
@@ -37,4 +38,4 @@ def _run(options: Namespace) -> int:
     if not found:
         print(f"btq graph: {shown(path)} has no trees", file=sys.stderr)
         return 2
-    return write_output("graph", options.output, draw(found, options.format, options.direction))
+    return write_output("graph", options.output, draw(found, form, options.direction))

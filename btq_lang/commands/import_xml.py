@@ -6,6 +6,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Mapping
+from shlex import quote
 
 from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.importing import Imported, import_xml
@@ -216,7 +217,7 @@ def _sum_up(written: list[_Job], refused: int) -> None:
     for command in dict.fromkeys(command for job in written for command in _missing(job)):
         print(f"also: {command}", file=sys.stderr)
     if len(written) == 1 and written[0].target is not None:
-        print(f"Next: btq check {shown(written[0].target)}", file=sys.stderr)
+        print(f"Next: btq check {quote(shown(written[0].target))}", file=sys.stderr)
 
 
 def _missing(job: _Job) -> Iterator[str]:
@@ -236,4 +237,5 @@ def _missing(job: _Job) -> Iterator[str]:
         if any(os.path.isfile(place) for place in places) or not os.path.isfile(xml):
             continue
         folder = os.path.dirname(absolute(os.path.join(os.path.dirname(job.target), item.path.text)))
-        yield f"btq import {shown(xml)}" + (f" -o {shown(folder)}" if folder != os.path.dirname(xml) else "")
+        into = f" -o {quote(shown(folder))}" if folder != os.path.dirname(xml) else ""
+        yield f"btq import {quote(shown(xml))}{into}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 from argparse import Namespace
 
@@ -71,5 +72,5 @@ def run(options: Namespace) -> int:
     except OSError as error:
         print(f"btq init: {error.filename or folder}: {error.strerror}", file=sys.stderr)
         return 2
-    print(f"Wrote {', '.join(FILES)}. Next: btq check {folder}")
+    print(f"Wrote {', '.join(FILES)}. Next: btq check {shlex.quote(folder)}")
     return 0

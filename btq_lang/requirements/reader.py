@@ -115,7 +115,7 @@ class Reader(PathReader):
         if written is None:
             return None
         if isinstance(written, Amount):
-            term = self._amount(written)
+            term = self._amount(written, wanted)
             fits = term is not None and (wanted is None or self._fits(term, wanted))
             return _simple(term.value) if term is not None and fits else None
         cases = []
@@ -155,10 +155,10 @@ class Reader(PathReader):
             return None
         return term.value if isinstance(term.value, Value) else None
 
-    def _amount(self, amount: Amount) -> Term | None:
+    def _amount(self, amount: Amount, wanted: Wanted | None) -> Term | None:
         if amount.word.kind in (NUMBER, QUANTITY):
             return self._number(amount.word, amount.negative)
-        return self._named(amount.word)
+        return self._named(amount.word, unit=wanted.unit if wanted is not None else None)
 
     def _number(self, word: Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
@@ -180,8 +180,13 @@ class Reader(PathReader):
             self.complain("invalid-literal", word.span, f"`{word.raw}` is more than any number")
         return isfinite(value)
 
-    def _named(self, word: Word, beside: Term | None = None) -> Term | None:
-        """A parameter, a signal, or a literal that looks like a name; `beside` is what it is compared with."""
+    def _named(self, word: Word, beside: Term | None = None, unit: str | None = None) -> Term | None:
+        """A parameter, a signal, or a literal that looks like a name.
+
+        Args:
+            beside: what it is compared with.
+            unit: what it is wanted in, where it stands alone.
+        """
         name = word.text
         if word.kind == STRING:
             return Term(Text(name), "text", None, None, word.span)
@@ -194,7 +199,7 @@ class Reader(PathReader):
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
             return None
-        self.unknown(word, ("parameters", "signals"), _unit_of(beside))
+        self.unknown(word, ("parameters", "signals"), unit or _unit_of(beside))
         return None
 
     def unknown(self, word: Word, kinds: tuple[str, ...], unit: str = "m") -> None:
