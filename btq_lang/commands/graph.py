@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, nothing_below, usage_problem
-from btq_lang.commands.output import form_of, not_written, write_output
+from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.garbage import collecting_seldom
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
@@ -19,8 +19,7 @@ def run(options: Namespace) -> int:
 
 
 def _run(options: Namespace) -> int:
-    form = form_of(options, FORMATS)
-    if problem := usage_problem(options.paths) or ("" if form else not_written(options, FORMATS)):
+    if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq graph: {problem}", file=sys.stderr)
         return 2
     groups, problems = Files().groups(options.paths, options.stdin_filename)
@@ -38,4 +37,4 @@ def _run(options: Namespace) -> int:
     if not found:
         print(f"btq graph: {shown(path)} has no trees", file=sys.stderr)
         return 2
-    return write_output("graph", options.output, draw(found, form, options.direction))
+    return write_output("graph", options.output, draw(found, form_of(options, FORMATS), options.direction))

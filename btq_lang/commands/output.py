@@ -12,16 +12,16 @@ from btq_lang.loader import LoadProblem, absolute, write_whole
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:
-    """Which of the forms to write: the one that is asked for, else the one that the file's name ends in, else the
-    first; empty where the name ends in one that nobody writes here."""
-    ending = os.path.splitext(options.output or "")[1].lower()
-    form = _ENDINGS.get(ending, forms[0])
-    return options.format or (form if form in forms or not form else forms[0])
+    """Which of the forms to write: the one asked for, else the one that the file's name ends in, else the first."""
+    named = _ENDINGS.get(_ending(options), "")
+    return options.format or (named if named in forms else forms[0])
 
 
-def not_written(options: Namespace, forms: Sequence[str]) -> str:
-    """What is wrong where that is empty."""
-    ending = os.path.splitext(options.output)[1]
+def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
+    """What is wrong where the file's name ends in a form that btq does not write, and none is asked for."""
+    ending = _ending(options)
+    if options.format or ending not in _OTHERS:
+        return None
     return f"no {ending} is written, but {', '.join(forms)}: --format says which, whatever the name"
 
 
@@ -44,6 +44,10 @@ def write_output(command: str, path: str | None, text: str) -> int:
     return 0
 
 
+def _ending(options: Namespace) -> str:
+    return os.path.splitext(options.output or "")[1].lower()
+
+
 _ENDINGS = {
     ".svg": "svg",
     **dict.fromkeys((".dot", ".gv"), "dot"),
@@ -52,5 +56,5 @@ _ENDINGS = {
     ".json": "json",
     **dict.fromkeys((".md", ".markdown"), "markdown"),
     **dict.fromkeys((".html", ".htm"), "html"),
-    **dict.fromkeys((".png", ".jpg", ".jpeg", ".gif", ".pdf", ".xlsx"), ""),
 }
+_OTHERS = frozenset((".png", ".jpg", ".jpeg", ".gif", ".pdf", ".xlsx"))

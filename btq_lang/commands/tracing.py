@@ -12,7 +12,7 @@ from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export, is_mission
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, nothing_below, usage_problem
-from btq_lang.commands.output import form_of, not_written, write_output
+from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import shown
 from btq_lang.render.colour import wants_colour
@@ -31,8 +31,7 @@ def run(options: Namespace) -> int:
 
 
 def _run(options: Namespace) -> int:
-    form = form_of(options, FORMATS)
-    if problem := usage_problem(options.paths) or ("" if form else not_written(options, FORMATS)):
+    if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2
     groups, problems = Files().groups(options.paths, options.stdin_filename)
@@ -45,7 +44,7 @@ def _run(options: Namespace) -> int:
     overview, errors = overview_of([(group.workspace, group.given) for group in groups], options.bundle)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
-    text = write(overview, form, colour=colour, width=_width() if to_terminal else 120)
+    text = write(overview, form_of(options, FORMATS), colour=colour, width=_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code
     if errors:
