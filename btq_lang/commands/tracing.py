@@ -64,7 +64,9 @@ def overview_of(parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool 
     broken = frozenset(path for path, number in errors.items() if number)
 
     def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
-        is_built = is_mission(workspace, path) and broken.isdisjoint(workspace.closure(path))
+        if not broken.isdisjoint(workspace.closure(path)):
+            return declared_ways(workspace, path, found, "nothing is built of a mission with errors")
+        is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 
     return collect(parts, ways, shown), sum(errors.values())

@@ -20,9 +20,15 @@ if TYPE_CHECKING:
     Ways: TypeAlias = Callable[[Workspace, str, Requirements], Sequence[Sequence[Clause]]]
 
 
-def declared_ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
-    """Each claim monitored, or reviewed where the requirement is verified by people."""
-    return [_clauses(applied) for applied in found.applied]
+def declared_ways(
+    workspace: Workspace, path: str, found: Requirements, because: str = ""
+) -> Sequence[Sequence[Clause]]:
+    """Each claim monitored, or reviewed where the requirement is verified by people.
+
+    Args:
+        because: why no more can be said of those that the engine is to enforce.
+    """
+    return [_clauses(applied, because) for applied in found.applied]
 
 
 def is_hard(requirement: Requirement) -> bool:
@@ -30,7 +36,7 @@ def is_hard(requirement: Requirement) -> bool:
     return requirement.action in ("fail", "halt") and requirement.method not in _BY_PEOPLE
 
 
-def _clauses(applied: Applied) -> tuple[Clause, ...]:
+def _clauses(applied: Applied, because: str) -> tuple[Clause, ...]:
     requirement = applied.requirement
     if not requirement.claims:
         return tuple(Clause(text, "reviewed", "it is not measurable") for text in said(applied)[:1])
@@ -38,7 +44,7 @@ def _clauses(applied: Applied) -> tuple[Clause, ...]:
         why = f"verified by {requirement.method}"
         return tuple(Clause(claim.text, "reviewed", why) for claim in requirement.claims)
     asked = is_hard(requirement)
-    why = f"nothing enforces `on violation {requirement.action}`" if asked else ""
+    why = because or f"nothing enforces `on violation {requirement.action}`" if asked else ""
     return tuple(Clause(claim.text, "monitored", why, asked) for claim in requirement.claims)
 
 
