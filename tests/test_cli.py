@@ -539,6 +539,7 @@ def test_explain_of_several_names(btq: Run) -> None:
     assert btq("explain", "time", "behaviour").stdout == btq("explain", "time-behaviour").stdout.replace(
         "`time-behaviour`", "`time behaviour`"
     )
+    assert btq("explain", "takes at most").stdout == btq("explain", "takes").stdout != ""
     done = btq("explain", "Retry", "nonsense")
     assert done.stdout == btq("explain", "Retry").stdout
     assert done.stderr == (

@@ -29,7 +29,7 @@ def run(options: Namespace) -> int:
     if not names:
         pages = ["\n".join(_overview())]
     elif not pages:
-        by_name = {name: list(_pages(name)) for name in names}
+        by_name = {name: list(_pages(name)) or list(_pages(name.split()[0])) for name in names}  # `takes at most`
         pages = [text for found in by_name.values() for text in found]
         unknown = [name for name, found in by_name.items() if not found]
     for name in unknown:
