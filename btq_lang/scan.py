@@ -95,6 +95,11 @@ def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
         likely: blanks with which the line probably begins, for most begin as the one before.
     """
     size: i64 = len(text)
+    if not COMPILED:  # as `word_end`
+        piece = text[start : start + _USUAL_LINE]
+        rest = piece.lstrip(" \t")
+        if rest and rest[0] not in "\r\n":
+            return start, start + len(piece) - len(rest)
     width: i64 = len(likely)
     at = start + width if text[start : start + width] == likely else start
     while at < size:
