@@ -30,7 +30,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
         base: where the item begins; offsets in the tree count from there.
 
     Returns:
-        Where the next line begins, or -1 if none was read; and the node that the last line is, if it is one.
+        Where what was not read begins, or -1 if nothing was; and the node that the last line is, if it is one.
     """
     read_line = patterns.read_line
     text, columns = lexer.text, lexer.columns
