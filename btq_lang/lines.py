@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from btq_lang import patterns
 from btq_lang.blocks import MAX_DEPTH, Block
-from btq_lang.patterns import NO_NODE, blank, pair_of, role_of, value_kind
+from btq_lang.patterns import NO_NODE, VALUE_KINDS, BlankNode, BlankPair, BlankWord, pair_of, role_of
 from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
 from btq_lang.tokens import NAME, NODE_CLAUSES
@@ -40,7 +40,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
     children = block.children
     node: Node | None = None
     found: list[NodeClause] | None
-    kind: Any  # like all that `blank` makes
+    kind: Any  # as all that is blank at first
     at = lexer.line_start
     behind = -1
     while match := read_line(text, at):
@@ -79,11 +79,11 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             if third is not None:
                 break
             category = None
-            kind = blank(Word)
+            kind = BlankWord()
             kind.kind = role
             kind.start = start
             kind.raw = first
-            label = None if second is None else Word(value_kind(second[0], NAME), start + len(first) + 1, second)
+            label = None if second is None else Word(VALUE_KINDS[second[0]], start + len(first) + 1, second)
         elif role == NO_NODE:
             if first not in NODE_CLAUSES or children or second == "QualityReq":
                 break
@@ -99,18 +99,18 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             kind = label = None
             if second is not None:
                 at = start + len(first) + 1
-                kind = Word(value_kind(second[0], NAME), at, second)
+                kind = Word(VALUE_KINDS[second[0]], at, second)
                 if third is not None:
-                    label = Word(value_kind(third[0], NAME), at + len(second) + 1, third)
+                    label = Word(VALUE_KINDS[third[0]], at + len(second) + 1, third)
         pairs: tuple[Pair, ...] = ()
         if key is not None:
-            pair = blank(Pair)  # as `pair_of` makes the further ones, of which few lines have any
-            pair.key = word = blank(Word)
+            pair = BlankPair()  # as `pair_of` makes the further ones, of which few lines have any
+            pair.key = word = BlankWord()
             word.kind = NAME
             word.start = match.start(5) - base
             word.raw = key
-            pair.value = word = blank(Word)
-            word.kind = value_kind(value[0], NAME)
+            pair.value = word = BlankWord()
+            word.kind = VALUE_KINDS[value[0]]
             word.start = match.start(6) - base
             word.raw = value
             if key2 is None:
@@ -143,7 +143,7 @@ def read_lines(lexer: Lexer, blocks: list[Block], base: int) -> tuple[int, Node 
             except (Unusual, IndexError):
                 break
             clauses = tuple(found)
-        made = blank(Node)
+        made = BlankNode()
         made.start = start
         made.end = node_end
         made.category = category

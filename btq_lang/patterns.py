@@ -7,9 +7,11 @@ it is only what needs no second look: words of letters, digits and `_`, single b
 from __future__ import annotations
 
 from btq_lang.caches import cache
+from btq_lang.record import fields_of
 from btq_lang.regex import regex
-from btq_lang.scan import number_at
+from btq_lang.scan import COMPILED, number_at
 from btq_lang.syntax import (
+    Node,
     NodeClause,
     Pair,
     Quality,
@@ -38,7 +40,6 @@ from btq_lang.tokens import (
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     import re
-    from collections.abc import Callable
     from typing import Any, Final
 
 
@@ -90,11 +91,11 @@ def _last_clause(text: str, start: int, blanks: str, base: int) -> tuple[NodeCla
     requirement = Requirement(
         match.start(7) - base,
         (match.end(8) if description is None else match.end(10)) - base,
-        Word(value_kind(name[0], NAME), match.start(8) - base, name),
+        Word(VALUE_KINDS[name[0]], match.start(8) - base, name),
         True,
         (),
         None,
-        None if description is None else Word(value_kind(description[0], NAME), match.start(10) - base, description),
+        None if description is None else Word(VALUE_KINDS[description[0]], match.start(10) - base, description),
         (),
     )
     start, end = match.span(4)
@@ -160,16 +161,16 @@ def read_pieces(text: str) -> list[tuple[int, int, str]] | None:
 
 def pair_of(key: str, start: int, value: str, value_start: int) -> Pair:
     """`key = value` of two words that a pattern has found"""
-    pair = blank(Pair)
-    pair.key = word = blank(Word)
+    pair = BlankPair()
+    pair.key = word = BlankWord()
     word.kind = NAME
     word.start = start
     word.raw = key
-    pair.value = word = blank(Word)
-    word.kind = value_kind(value[0], NAME)
+    pair.value = word = BlankWord()
+    word.kind = VALUE_KINDS[value[0]]
     word.start = value_start
     word.raw = value
-    return pair  # type: ignore[no-any-return]  # see `blank`
+    return pair  # type: ignore[no-any-return]  # see `_blank`
 
 
 def _path(start: int, raw: str) -> QualityPath:
@@ -278,13 +279,38 @@ def _piece() -> re.Pattern[str]:
     )
 
 
+# ---- words, pairs and nodes without their values ---------------------------------------------------------------------
+
+
+def _blank(of: type) -> Any:
+    """A class like another whose instances are made without their values: who sets them one by one pays half of what
+    calling that one costs, whose `__init__` a call of its own is; `object.__new__` costs a third more than this.
+
+    For words, pairs and nodes alone, of which a file has thousands; the type is Any, for only `__init__` may set what
+    is final.  The compiled `plain` does without, and of a compiled class none can be made.
+    """
+    if COMPILED:
+        return of
+
+    def __reduce__(self: object) -> tuple[object, ...]:  # a copy, or what is unpickled, is of the class itself
+        return of, tuple(getattr(self, field) for field in fields_of(self))
+
+    return type(of.__name__, (of,), {"__slots__": (), "__init__": object.__init__, "__reduce__": __reduce__})
+
+
+BlankWord: Final = _blank(Word)
+BlankPair: Final = _blank(Pair)
+BlankNode: Final = _blank(Node)
+
+
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
-# An instance without its values: who sets them one by one pays half of what calling the class costs, whose `__init__`
-# a call of its own is.  For words, pairs and nodes alone, of which a file has thousands; the type is Any, for only
-# `__init__` may set what is final.
-blank: Final[Callable[[type], Any]] = object.__new__
-value_kind: Final = (dict.fromkeys("\"'", STRING) | dict.fromkeys("-0123456789", NUMBER) | {"{": BRACED}).get
+VALUE_KINDS: Final = (  # what the first character of a value or a name says
+    dict.fromkeys("_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", NAME)
+    | dict.fromkeys("\"'", STRING)
+    | dict.fromkeys("-0123456789", NUMBER)
+    | {"{": BRACED}
+)
 _SYMBOLS: Final = frozenset(SYMBOLS)
 _piece_kind: Final = (  # what the first character says; ERROR: not enough
     dict.fromkeys([symbol[0] for symbol in SYMBOLS], ERROR)

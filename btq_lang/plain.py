@@ -53,7 +53,7 @@ from btq_lang.tokens import BRACED, CATEGORIES, DIRECTIONS, ERROR, NAME, NODE_CL
 
 if not COMPILED:
     from btq_lang import patterns
-    from btq_lang.patterns import read_attributes, read_list, value_kind
+    from btq_lang.patterns import VALUE_KINDS, read_attributes, read_list
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def plain_head(text: str, start: i64, base: i64) -> tuple[Word | None, i64]:
     if text[start:at] != "BehaviorTree ":
         return None, start
     if not COMPILED and (match := patterns.read_head(text, start)):
-        return Word(value_kind(match[1][0], NAME), match.start(1) - base, match[1]), match.end()
+        return Word(VALUE_KINDS[match[1][0]], match.start(1) - base, match[1]), match.end()
     try:
         if text[at : at + len("ID")] == "ID" and (value := _behind_equals(text, at + len("ID"))) >= 0:
             at = value

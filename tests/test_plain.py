@@ -7,6 +7,8 @@ into tokens.  The texts are the examples, made-up missions, and thousands of tor
 
 from __future__ import annotations
 
+import copy
+import pickle
 import random
 import re
 from collections.abc import Callable
@@ -15,7 +17,7 @@ from pathlib import Path
 import pytest
 from missions import mission
 
-from btq_lang import lexer, lines, nodes, parser, patterns, plain, scan, token_list
+from btq_lang import lexer, lines, nodes, parser, patterns, plain, scan, syntax, token_list
 from btq_lang.parser import Parsed, parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -99,6 +101,14 @@ def test_a_small_file_is_read_before_patterns_are_compiled(monkeypatch: pytest.M
     assert patterns.read_line is patterns._nothing
     parse(mission(1_000, 1, "short"))
     assert patterns.read_line is not patterns._nothing
+
+
+def test_what_is_made_without_its_values_passes_for_any_other() -> None:
+    tree = parse(CLASSIC).trees[0]
+    assert {type(part).__name__ for part in syntax.walk(tree.children)} >= {"Node", "Pair", "Word"}
+    same = pickle.loads(pickle.dumps(tree))
+    assert same == copy.deepcopy(tree) == tree
+    assert type(tree.children[0]) is not type(same.children[0]) is syntax.Node
 
 
 # ---- torn texts -----------------------------------------------------------------------------------------------------
