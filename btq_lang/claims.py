@@ -117,8 +117,8 @@ class ClaimParser(ConditionParser):
     def no_verb(self, subject: Subject) -> None:
         """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
         first = subject.names[0] if isinstance(subject, Path) and len(subject.names) == 1 else None
-        if isinstance(subject, Path) and self.kind == NAME and self.raw in _MODALS:
-            self.expected("a verb: takes, succeeds, needs, keeps, …", (_MEANT[self.raw],))
+        if isinstance(subject, Path) and self.kind == NAME and self.raw in MODALS:
+            self.expected("a verb: takes, succeeds, needs, keeps, …", (MEANT[self.raw],))
         elif isinstance(subject, Path) and self.at("."):
             fix = replace_fix("Write `/`", self.here(), "/")
             self.complain("syntax-error", self.here(), "the names of a path have `/` between them", (), (fix,))
@@ -126,8 +126,8 @@ class ClaimParser(ConditionParser):
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
             note = "a clause speaks of one node: write it for each, or `sum of A, B` for the time of both"
             self.expected(_A_VERB, (note,))
-        elif first is not None and first.kind == NAME and first.raw in _MEANT:
-            self.expected(f"a verb behind `{first.raw}` (takes, succeeds, needs, keeps, …)", (_MEANT[first.raw],))
+        elif first is not None and first.kind == NAME and first.raw in MEANT:
+            self.expected(f"a verb behind `{first.raw}` (takes, succeeds, needs, keeps, …)", (MEANT[first.raw],))
         elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
@@ -285,7 +285,7 @@ class ClaimParser(ConditionParser):
 
 
 QUALITY_IN_HEAD: Final = "a requirement's quality stands behind its name: `QualityReq fast : reliability`"
-_MEANT: Final = {  # by what is read as a node in front of a verb
+MEANT: Final = {  # by what is read as a node in front of a verb
     "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
     "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
@@ -306,7 +306,7 @@ _MEANT: Final = {  # by what is read as a node in front of a verb
         "a clause begins with its verb, without such a word: `takes at most 30 s`",
     ),
 }
-_MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
+MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 _COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"

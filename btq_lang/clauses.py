@@ -5,7 +5,7 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from btq_lang.claims import QUALITY_IN_HEAD, VERBS, ClaimParser
+from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.near import near
@@ -59,7 +59,7 @@ class ClauseParser(ClaimParser):
         quality = self.quality_path() if self.accept(":") else None
         if quality is not None:
             self.torn_quality(quality)
-        title = self.take() if self.kind == STRING else None
+        title = self.take() if self.kind == STRING else self.bare_title(quality is not None)
         if quality is None and title is not None and self.at(":"):
             self.complain("syntax-error", self.here(), "a requirement's quality stands before its title")
             self.advance()
@@ -96,6 +96,60 @@ class ClauseParser(ClaimParser):
             span = Span(last.start + self.base, self.here().end)
             self.complain("syntax-error", span, "a quality's name has no blanks", (), (fix,))
             self.advance()
+
+    def bare_title(self, has_quality: bool) -> Word | None:
+        """Complain of a title without its quotes, and take it; or of a quality without its `:`."""
+        following = self.index + 1
+        if self.kind != NAME or self.group or self.raw in VERBS or self.raw in HEADS or self.raw in _ENDS_CLAUSES:
+            return None
+        is_word = self.kinds[following] == NEWLINE
+        if self.kinds[following] == STRING and not has_quality:
+            self.complain("syntax-error", self.here(), _A_QUALITY, (), (self.colon_before(),))
+            self.advance()
+            return self.take()
+        if not (is_word or self.is_prose(following)):
+            return None
+        if self.raw in MEANT or (near(self.raw, VERBS | HEADS, limit=1) and not self.is_long_prose()):
+            return None
+        end = following
+        while self.kinds[end] != NEWLINE and not self.is_clause(end):
+            end += 1
+        start = self.starts[self.index]
+        span = Span(start, self.starts[end - 1] + len(self.raws[end - 1]))
+        text = self.text[start : span.end]
+        fixes = [replace_fix("Put quotes around it", span, quote(text))]
+        if is_word and not has_quality:
+            fixes.append(self.colon_before())
+        message = f"{_A_TITLE}, and {_A_QUALITY}" if len(fixes) > 1 else _A_TITLE
+        self.complain("syntax-error", span, message, (), tuple(fixes))
+        self.go_to(end)
+        return Word(NAME, start - self.base, text)
+
+    def colon_before(self) -> Fix:
+        at = self.here().start
+        return replace_fix("Put `:` before it", Span(at, at), ": ")
+
+    def is_prose(self, index: int) -> bool:
+        """Whether a word behind another is none that makes a claim of both: a verb, or `must` and a verb."""
+        if self.kinds[index] != NAME or self.raws[index] in VERBS or self.raws[index] in _ENDS_CLAUSES:
+            return False
+        if self.raws[index] in MODALS:
+            return not (self.kinds[index + 1] == NAME and near(self.raws[index + 1], VERBS, limit=1))
+        return not (self.is_clause(index) or near(self.raws[index], VERBS, limit=1))
+
+    def is_long_prose(self) -> bool:
+        """Whether nothing but words stands here to the end of the line, and more than two: `keep the arm still`."""
+        return len(self.kinds) - 1 - self.index > 2 and all(kind == NAME for kind in self.kinds[self.index : -1])
+
+    def is_clause(self, index: int) -> bool:
+        """Whether what stands at `index` can be nothing but the beginning of a clause, even behind prose."""
+        if self.kinds[index] != NAME:
+            return False
+        raw, second = self.raws[index], self.raws[index + 1] if self.kinds[index + 1] == NAME else ""
+        if raw in VERBS and second:
+            return second == "between" or (second, self.raws[index + 2]) in RELATIONS
+        is_reason = raw == "because" and self.kinds[index + 1] == STRING
+        return is_reason or raw in _ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
 
     def classic_requirement(self, start: int) -> Requirement:
         """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
@@ -349,5 +403,10 @@ _OTHER_SORTS: Final = {
     **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
     **dict.fromkeys(("int", "integer", "float", "double", "number", "count"), "1"),
 }
+_A_TITLE: Final = "a title stands in quotes"
+_A_QUALITY: Final = "a quality stands behind `:`"
+_BEGIN_CLAUSES: Final = frozenset(
+    (("in", "at"), ("with", "probability"), ("on", "violation"), ("over", "last"), ("verified", "by"))
+)
 _A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
 _ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))

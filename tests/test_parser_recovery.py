@@ -359,14 +359,33 @@ def test_a_slip_on_the_line_of_a_node(line: str, problem: str, mended: str) -> N
 VERB = "expected a verb: takes, succeeds, needs, keeps, …, found "
 EVENT = "expected starts, succeeds, fails, finishes or halts, found "
 IS_EVENT = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+TITLE = "a title stands in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
 
 
 @pytest.mark.parametrize(
     ("text", "problem", "note", "mended"),
     [
-        ("QualityReq r safety 't'\n", "expected a verb behind `safety` (takes, succeeds, needs, keeps, …), found `'t'`",
-         '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"', None),
+        ("QualityReq r safety 't'\n", "a quality stands behind `:`", None, "QualityReq r : safety 't'\n"),
+        ("QualityReq r reach the charger, then dock  # soon\n", TITLE, None,
+         'QualityReq r "reach the charger, then dock"  # soon\n'),
+        ("QualityReq r : time-behaviour reach it takes at most 3 s\n", TITLE, None,
+         'QualityReq r : time-behaviour "reach it" takes at most 3 s\n'),
+        ("QualityReq r arrive in time because 'it is late'\n", TITLE, None,
+         "QualityReq r \"arrive in time\" because 'it is late'\n"),
+        ("QualityReq r stop in the lab in at least 95 % of runs\n", TITLE, None,
+         'QualityReq r "stop in the lab" in at least 95 % of runs\n'),
+        ("QualityReq r keep the arm still\n", TITLE, None, 'QualityReq r "keep the arm still"\n'),
+        ("QualityReq r the robot shall arrive\n", TITLE, None, 'QualityReq r "the robot shall arrive"\n'),
+        ("QualityReq r robot shall arrive\n", TITLE, None, 'QualityReq r "robot shall arrive"\n'),
+        ("QualityReq r : safety calm\n", "a quality's name has no blanks", None, "QualityReq r : safety-calm\n"),
+        ("QualityReq r robot shall take at most 3 s\n",
+         "expected a verb: takes, succeeds, needs, keeps, …, found `shall`",
+         "a clause begins with its verb, without such a word: `takes at most 30 s`", None),
+        ("QualityReq r keep level > 5 %\n", "`keep` begins no clause: did you mean `keeps`?", None,
+         "QualityReq r keeps level > 5 %\n"),
+        ("QualityReq r robot leave level > 5 %\n",
+         "`leave` begins no clause: did you mean `leaves`?", None, "QualityReq r robot leaves level > 5 %\n"),
         ("QualityReq r : safety 'a' 'b'\n",
          "expected a verb behind `'b'` (takes, succeeds, needs, keeps, …), found the end of the line",
          "a requirement has one title, behind its name; reasons are written `because …`", None),
@@ -534,11 +553,14 @@ def test_a_slip_outside_of_trees(text: str, problem: str, note: str | None, mend
     assert [apply_fix(text, fix) for fix in only.fixes] == ([mended] if mended else [])
 
 
-def test_other_words_for_methods_and_actions_have_several_fixes() -> None:
+def test_what_may_be_meant_in_several_ways_has_several_fixes() -> None:
     for clause, words, fixed in (("verified by", "inspection", "review test"), ("on violation", "stop", "halt fail")):
         text = f"QualityReq r\n    {clause} {words}\n"
         (only,) = parse(text).diagnostics
         assert [apply_fix(text, fix) for fix in only.fixes] == [text.replace(words, each) for each in fixed.split()]
+    text = "QualityReq r calm\n"
+    (only,) = parse(text).diagnostics
+    assert [apply_fix(text, fix) for fix in only.fixes] == ['QualityReq r "calm"\n', "QualityReq r : calm\n"]
     text = "QualityReq r\n    takes at most 1,000 s\n"
     (only,) = parse(text).diagnostics
     assert [apply_fix(text, fix) for fix in only.fixes] == [text.replace(",", "."), text.replace(",", "")]

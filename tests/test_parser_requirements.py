@@ -113,8 +113,8 @@ def test_clauses_on_the_line_and_in_the_block() -> None:
         ),
         (
             "QualityReq a b",
-            "a",
-            f"1:15 syntax-error «» expected a verb behind `b` (takes, succeeds, needs, keeps, …), {END}",
+            "a b",
+            "1:14 syntax-error «b» a title stands in quotes, and a quality stands behind `:`",
         ),
         ("QualityReq ID =", "classic MISSING", f"1:16 syntax-error «» expected the requirement's ID, {END}"),
         ("QualityReq ID = a description =", "classic a", f"1:32 syntax-error «» expected the description, {END}"),
