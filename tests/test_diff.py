@@ -239,14 +239,14 @@ def test_longest_common_subsequences() -> None:
 # ---- the command ----
 
 
-def btq(*arguments: str, cwd: Path) -> tuple[int, str, str]:
-    return run("diff", *arguments, cwd=cwd)
+def btq(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
+    return run("diff", *arguments, cwd=cwd, stdin=stdin)
 
 
-def run(*arguments: str, cwd: Path) -> tuple[int, str, str]:
+def run(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
     command = [sys.executable, "-m", "btq_lang", *arguments]
-    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=cwd, env=environment, input=stdin, capture_output=True, text=True)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -257,6 +257,34 @@ def test_two_files(tmp_path: Path) -> None:
     assert btq("old.btq", "old.btq", cwd=tmp_path) == (0, "", "")
     code, out, _ = btq("old.btq", os.devnull, cwd=tmp_path)
     assert (code, out.splitlines()[0]) == (1, "old.btq (removed)")
+
+
+def test_a_file_and_standard_input(tmp_path: Path) -> None:
+    (tmp_path / "old.btq").write_text(OLD)
+    (tmp_path / "new.btq").write_text(NEW)
+    said = TEXT.replace("old.btq", "<stdin>")
+    assert btq("-", "new.btq", cwd=tmp_path, stdin=OLD) == (1, said, "")
+    assert btq("-", "new.btq", "--stdin-filename", "old.btq", cwd=tmp_path, stdin=OLD) == (1, TEXT, "")
+    assert btq("-", "new.btq", "--stdin-filename", "new.btq", cwd=tmp_path, stdin=NEW) == (0, "", "")
+    code, out, told = btq("old.btq", "-", cwd=tmp_path, stdin=NEW)
+    assert (code, out.splitlines()[0], told) == (1, "old.btq -> <stdin>", "")
+    code, out, told = btq(os.devnull, "-", cwd=tmp_path, stdin=NEW)
+    assert (code, out.splitlines()[0], told) == (1, "<stdin> (added)", "")
+
+
+def test_what_standard_input_includes_and_xml_there(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "reqs.btq").write_text("QualityReq rq1\n    takes at most 30 s\n")
+    main = 'include "reqs.btq"\nBehaviorTree Main\n    Go{} satisfies rq1\n'
+    (tmp_path / "lib" / "main.btq").write_text(main.format(""))
+    named = ("-", "lib/main.btq", "--stdin-filename", "lib/main.btq")
+    assert btq(*named, cwd=tmp_path, stdin=main.format("")) == (0, "", "")
+    said = "lib/main.btq -> lib/main.btq\n~ node Main/Go changed  lib/main.btq:3\n"
+    said += "    - name: slow\n\n1 node changed\n"
+    assert btq(*named, cwd=tmp_path, stdin=main.format(" slow")) == (1, said, "")
+    (tmp_path / "go.btq").write_text("Root Main\nBehaviorTree Main\n    Go\n")
+    xml = '<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main"><Go/></BehaviorTree></root>\n'
+    assert btq("-", "go.btq", cwd=tmp_path, stdin=xml) == (0, "", "")
 
 
 def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> None:
@@ -403,6 +431,13 @@ def test_a_mission_and_its_xml(tmp_path: Path) -> None:
             "btq diff: b.btq: cannot be read: No such file or directory\n",
         ),
         ((".", "nix"), "btq diff: nix: cannot be read: No such file or directory\n"),
+        (("-", "nix.btq"), "btq diff: nix.btq: cannot be read: No such file or directory\n"),
+        (("-", "-"), "btq diff: one of the two can be standard input, not both\n"),
+        (("-", "."), "btq diff: standard input is one file, and . is a folder\n"),
+        (
+            ("--git", "HEAD", "-"),
+            "btq diff: standard input has no revisions: git show REV:FILE | btq diff - FILE\n",
+        ),
     ],
 )
 def test_what_cannot_be_compared(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:

@@ -239,10 +239,17 @@ def _add_diff(commands: _SubParsersAction[Parser]) -> None:
         epilog="exit codes: 0 the same, 1 different, 2 usage or I/O\n\n"
         "examples:\n  btq diff old.btq new.btq                   two missions, XML or btq\n"
         "  btq diff --git HEAD                        what has changed since the last commit\n"
-        "  btq diff --git main...HEAD --format markdown mission.btq\n",
+        "  btq diff --git main...HEAD --format markdown mission.btq\n"
+        "  ssh robot cat mission.xml | btq diff - mission.btq\n",
     )
     parser.add_argument(
-        "paths", nargs="*", metavar="PATH", help="two files or folders, not `-`; with --git any number, default: ."
+        "paths",
+        nargs="*",
+        metavar="PATH",
+        help="two files or folders, `-` for standard input; with --git any number, default: .",
+    )
+    parser.add_argument(
+        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
     )
     parser.add_argument(
         "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"

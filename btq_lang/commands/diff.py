@@ -12,7 +12,7 @@ from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_generated, is_mission
 from btq_lang.btcpp.undeclared import made_models
 from btq_lang.commands.as_built import Built, Disk, as_built
-from btq_lang.commands.files import Files, Group
+from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared
@@ -35,7 +35,9 @@ def run(options: Namespace) -> int:
 
 def _run(options: Namespace) -> int:
     try:
-        comparisons = tuple(_of_revisions(options) if options.git is not None else _of_paths(options.paths))
+        comparisons = tuple(
+            _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)
+        )
     except (Trouble, GitTrouble) as trouble:
         print(f"btq diff: {trouble}", file=sys.stderr)
         return 2
@@ -84,9 +86,12 @@ def _first_error(file: File) -> str | None:
 # ---- two files, two folders ----
 
 
-def _of_paths(paths: list[str]) -> Iterator[Comparison]:
+def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparison]:
     if len(paths) != 2:
         raise Trouble(f"two missions can be compared, not {len(paths)}; revisions of one: btq diff --git HEAD FILE")
+    if STDIN in paths:
+        yield _with_stdin(paths, stdin_filename)
+        return
     old, new = (None if path == os.devnull else absolute(path) for path in paths)
     # Before anything is made of the paths, so that what is missing is called as it was asked for.
     missing = (path for path in (old, new) if path is not None and not os.path.exists(path))
@@ -98,6 +103,22 @@ def _of_paths(paths: list[str]) -> Iterator[Comparison]:
     sides = [{} if path is None else _sides(path) for path in (old, new)]
     for before, after in _pairs(*sides):
         yield _without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
+
+
+def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
+    """One file, and one that comes from standard input."""
+    other = next((path for path in paths if path != STDIN), None)
+    if other is None:
+        raise Trouble("one of the two can be standard input, not both")
+    if os.path.isdir(other):
+        raise Trouble(f"standard input is one file, and {other} is a folder")
+
+    def side(path: str) -> Side:
+        if path == os.devnull:
+            return NOWHERE
+        return (_built_on_disk(absolute(path)) if path != STDIN else None) or _on_disk(path, stdin_filename)
+
+    return _without_made_models(compared(*map(side, paths)))
 
 
 def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
@@ -142,9 +163,11 @@ def _sides(path: str) -> dict[str, Side]:
     return found
 
 
-def _on_disk(path: str) -> Side:
-    (group,) = _groups([path])
-    return Side(shown(path), group.workspace, group.workspace.closure(path), shown)
+def _on_disk(path: str, stdin_filename: str | None = None) -> Side:
+    """A file with what it includes; `-` is standard input."""
+    (group,) = _groups([path], stdin_filename)
+    (own,) = group.given
+    return Side(shown(own), group.workspace, group.workspace.closure(own), shown)
 
 
 def _by_itself(built: Side) -> Side:
@@ -177,8 +200,8 @@ def _xml_below(folder: str) -> tuple[str, ...]:
     return tuple(path for path, xml in texts.items() if is_mission(xml) and not is_built_of(xml, sources))
 
 
-def _groups(paths: list[str]) -> tuple[Group, ...]:
-    groups, problems = Files().groups(paths)
+def _groups(paths: list[str], stdin_filename: str | None = None) -> tuple[Group, ...]:
+    groups, problems = Files().groups(paths, stdin_filename)
     _raise(problems)
     return groups
 
@@ -192,6 +215,8 @@ def _raise(problems: tuple[LoadProblem, ...]) -> None:
 
 
 def _of_revisions(options: Namespace) -> Iterator[Comparison]:
+    if STDIN in options.paths:
+        raise Trouble("standard input has no revisions: git show REV:FILE | btq diff - FILE")
     for path in map(absolute, options.paths or ["."]):
         known = revisions(options.git, path)
         if not os.path.isdir(path) and not known.had_folder(path):
