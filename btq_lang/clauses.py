@@ -8,6 +8,7 @@ from __future__ import annotations
 from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.measured import measured
 from btq_lang.near import near
 from btq_lang.scan import is_unit, line_end, path_end, unit_run
 from btq_lang.slips import unknown_unit
@@ -31,7 +32,7 @@ from btq_lang.syntax import (
     unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
+from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -287,7 +288,23 @@ class ClauseParser(ClaimParser):
         if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
             self.expected(_A_CLAUSE)
             return None
+        if self.is_no_time():
+            at = self.starts[self.index]
+            self.report(unknown_unit(self.text, at, at + len(self.raw)))
+            self.advance()
+            return self.clause() if self.kind == NAME else None
         return self.claim()
+
+    def is_no_time(self) -> bool:
+        """Whether a word stands behind a number where its unit of time should be, and is nothing else."""
+        if self.kind != NAME or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
+            return False
+        following = self.index + 1
+        ends = self.kinds[following] in (NEWLINE, CLOSE) or (
+            self.kinds[following] == NAME and self.raws[following] in HEADS
+        )
+        is_misspelt = near(self.raw, VERBS | HEADS, limit=1)
+        return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
 
     def odds(self) -> Odds:
         """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from btq_lang.caches import cache_of
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.measured import measured
 from btq_lang.regex import regex
-from btq_lang.scan import line_end, number_end
+from btq_lang.scan import line_end, line_start, number_end
 from btq_lang.syntax import quote
 from btq_lang.text import Span
 from btq_lang.units import nearest_units
@@ -49,16 +50,17 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     """What stands there is no unit; the fixes replace it by what was probably meant."""
     word = text[start:end]
     glued = start > 0 and text[start - 1].isdigit()
-    symbols = _nearest_units(word)
+    wanted = measured(_WORD.findall(text[line_start(text, 0, start) : start]))
+    symbols = _nearest_units(word, wanted)
     fixes = tuple(
         replace_fix(f"Replace `{word}` by `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
         for symbol in symbols
     )
-    notes = (
-        ("a name that begins with a digit is written in quotes",)
-        if glued and (not symbols or word[:1].isupper())
-        else ()
-    )
+    notes: tuple[str, ...] = ()
+    if wanted == "s" and not symbols:
+        notes = ("what is measured here is a time: ms, s, min, h",)
+    elif glued and (not symbols or word[:1].isupper()):
+        notes = ("a name that begins with a digit is written in quotes",)
     message = f"`{word}` is no unit" + (f": did you mean `{symbols[0]}`?" if symbols else "")
     return Diagnostic("unknown-unit", Span(start, end), message, notes=notes, fixes=fixes)
 
@@ -116,6 +118,7 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
 
+_WORD: Final = regex(r"\w+|,")
 _nearest_units: Final = cache_of(256)(nearest_units)  # the same mistake is often made again
 _ESCAPE: Final = regex(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"

@@ -75,10 +75,13 @@ def parse_unit(text: str) -> Unit | None:
     return Unit("".join(written), (*dimension,), factor)  # type: ignore[arg-type]  # as long as it was
 
 
-def nearest_units(text: str) -> tuple[str, ...]:
+def nearest_units(text: str, wanted: str | None = None) -> tuple[str, ...]:
     """What somebody meant who wrote a unit that does not exist, best first: `kw` is `kW`, `30sek` and `sek` are `s`.
 
     Every answer is one that `parse_unit` reads; a number in front does not matter.
+
+    Args:
+        wanted: a unit that measures what they do; None: they may measure anything.
     """
     written = text
     number = len(text) - len(text.lstrip("0123456789.+- "))
@@ -86,16 +89,19 @@ def nearest_units(text: str) -> tuple[str, ...]:
     for wrong, right in (("²", "^2"), ("³", "^3"), ("·", "*"), ("**", "^"), (" ", "")):
         text = text.replace(wrong, right)
     factors = list(_factors(text))
+    target = parse_unit(wanted) if wanted is not None else None
+    alone = target if len(factors) == 1 and not factors[0][2] else None
     answers: dict[str, None] = {}
     for choice in range(3):  # the best for every factor, then the second best where there is one …
-        words = [(operator, _nearest_words(word, len(factors) == 1), power) for operator, word, power in factors]
+        words = [(operator, _nearest_words(word, len(factors) == 1, alone), power) for operator, word, power in factors]
         if choice >= max(len(found) for _, found, _ in words) or not all(found for _, found, _ in words):
             break
         guess = "".join(
             f"{operator}{found[min(choice, len(found) - 1)]}{'^' if power else ''}{power}"
             for operator, found, power in words
         )
-        if guess != written and parse_unit(guess) is not None:
+        unit = parse_unit(guess)
+        if guess != written and unit is not None and (target is None or unit.dimension == target.dimension):
             answers[guess] = None
     return tuple(answers)
 
@@ -168,8 +174,12 @@ def _tidy(value: float) -> float:
     return float(f"{value:.15g}")
 
 
-def _nearest_words(word: str, alone: bool) -> tuple[str, ...]:
-    """Symbols for one factor: itself where it is right, else what was probably meant."""
+def _nearest_words(word: str, alone: bool, target: Unit | None) -> tuple[str, ...]:
+    """Symbols for one factor: itself where it is right, else what was probably meant.
+
+    Args:
+        target: what it measures; None: nobody knows.
+    """
     if word == "1":
         return ("1",)
     if word in _TABLE:
@@ -179,7 +189,8 @@ def _nearest_words(word: str, alone: bool) -> tuple[str, ...]:
         return (_MEANT[word],)
     if word[-1:] in "23" and word[:-1] in _TABLE:  # m/s2
         return (f"{_TABLE[word[:-1]][0]}^{word[-1]}",)
-    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, SYMBOLS)))
+    known = SYMBOLS if target is None else [name for name in SYMBOLS if _TABLE[name][1] == target.dimension]
+    return tuple(dict.fromkeys(_TABLE[name][0] for name in near(word, known)))
 
 
 # ---- the table ----

@@ -22,7 +22,19 @@ ROWS: tuple[frozenset[str], ...] = (
         | {"rules", "diagnostics", "units", "quantities"}
     ),
     frozenset(
-        {"tokens", "characters", "scan", "slips", "lexer", "token_list", "words", "node_clauses", "syntax", "cursor"}
+        {
+            "tokens",
+            "characters",
+            "scan",
+            "measured",
+            "slips",
+            "lexer",
+            "token_list",
+            "words",
+            "node_clauses",
+            "syntax",
+            "cursor",
+        }
         | {
             "conditions",
             "claims",

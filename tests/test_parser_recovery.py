@@ -359,6 +359,7 @@ def test_a_slip_on_the_line_of_a_node(line: str, problem: str, mended: str) -> N
 VERB = "expected a verb: takes, succeeds, needs, keeps, …, found "
 EVENT = "expected starts, succeeds, fails, finishes or halts, found "
 IS_EVENT = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
+A_TIME = "what is measured here is a time: ms, s, min, h"
 TITLE = "a title stands in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
 
@@ -378,6 +379,13 @@ ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found 
         ("QualityReq r keep the arm still\n", TITLE, None, 'QualityReq r "keep the arm still"\n'),
         ("QualityReq r the robot shall arrive\n", TITLE, None, 'QualityReq r "the robot shall arrive"\n'),
         ("QualityReq r robot shall arrive\n", TITLE, None, 'QualityReq r "robot shall arrive"\n'),
+        ("QualityReq r takes at most 5 mtr on violation fail\n", "`mtr` is no unit", A_TIME, None),
+        ("QualityReq r takes at most 5mtr\n", "`mtr` is no unit", A_TIME, None),
+        ("QualityReq r takes at most 5 m if near else 7 metr\n", "`metr` is no unit", A_TIME, None),
+        ("QualityReq r takes at most 5 msk\n", "`msk` is no unit: did you mean `ms`?", None,
+         "QualityReq r takes at most 5 ms\n"),
+        ("QualityReq r keeps a < 5 metr\n", "`metr` is no unit: did you mean `m`?", None,
+         "QualityReq r keeps a < 5 m\n"),
         ("QualityReq r : safety calm\n", "a quality's name has no blanks", None, "QualityReq r : safety-calm\n"),
         ("QualityReq r robot shall take at most 3 s\n",
          "expected a verb: takes, succeeds, needs, keeps, …, found `shall`",

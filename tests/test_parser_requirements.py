@@ -241,7 +241,7 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
         ("takes at most {a}", "takes <= MISSING", f"1:15 syntax-error «{{a}}» expected {A_VALUE}, found `{{a}}`"),
         ("takes at most -a", "takes <= MISSING", f"1:16 syntax-error «a» expected {A_VALUE}, found `a`"),
         ("takes at most 30 sek", "takes <= 30", "1:18 unknown-unit «sek» `sek` is no unit: did you mean `s`?"),
-        ("takes at most 30 m/sek", "takes <= 30m", "1:18 unknown-unit «m/sek» `m/sek` is no unit: did you mean `m/s`?"),
+        ("takes at most 30 m/sek", "takes <= 30m", "1:18 unknown-unit «m/sek» `m/sek` is no unit"),
         ("takes between 3 s", "takes between 3s MISSING", f"1:18 syntax-error «» expected `and`, {END}"),
         ("takes between 3 s or 4 s", "takes between 3s MISSING", "1:19 syntax-error «or» expected `and`, found `or`"),
         ("takes at most 3 s if", "takes <= [3s if MISSING]", f"1:21 syntax-error «» expected {A_CONDITION}, {END}"),

@@ -248,6 +248,23 @@ def test_nearest_units(text: str, expected: tuple[str, ...]) -> None:
     assert nearest_units(text) == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "wanted", "expected"),
+    [
+        ("msk", None, ("ms", "mK")),
+        ("msk", "s", ("ms",)),
+        ("msk", "K", ("mK",)),
+        ("metr", "s", ()),
+        ("metr", "m", ("m",)),
+        ("m/sek", "s", ()),
+        ("m/sek", "m/s", ("m/s",)),
+        ("prc", "%", ()),
+    ],
+)
+def test_nearest_units_that_measure_something(text: str, wanted: str | None, expected: tuple[str, ...]) -> None:
+    assert nearest_units(text, wanted) == expected
+
+
 @given(st.text(alphabet="kKmMsSecW/*^123 -°²%C.", max_size=12) | st.text(max_size=8))
 @example("1")
 @example("1/")

@@ -17,6 +17,7 @@ class Expected(Record):
     Attributes:
         words: words of the grammar, or several of them that go together.
         condition: a condition begins: contexts, signals, `not` …
+        operand: what is compared or added: parameters, signals, `max()` …
         value: a value of a bound: parameters and signals.
         signal: the name of a signal.
         node: a path to a node.
@@ -25,6 +26,7 @@ class Expected(Record):
 
     words: tuple[str, ...] = ()
     condition: bool = False
+    operand: bool = False
     value: bool = False
     signal: bool = False
     node: bool = False
@@ -48,7 +50,7 @@ def expected(words: Sequence[Token]) -> Expected:
     if text in _AFTER:
         return _AFTER[text]
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
-        return Expected(condition=True)
+        return Expected(operand=True)
     if last.kind in (NUMBER, QUANTITY):
         return Expected(_behind_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
@@ -141,5 +143,5 @@ _AFTER = {
     "confidence": Expected(("95 %", "99 %")),
     "because": Expected(('""',)),
     ",": Expected(value=True, node=True),
-    "/": Expected(node=True, condition=True),
+    "/": Expected(node=True, operand=True),
 }

@@ -15,6 +15,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.features import proposals as offer
 from btq_lang.features.clause_words import Expected, expected
 from btq_lang.features.meaning import entry_at
+from btq_lang.features.measures import Measured, measured_at
 from btq_lang.features.place import Place, place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
@@ -135,7 +136,7 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     in_brackets = place.depth > 0 and place.node is not None
     if in_brackets and not (place.last == "=" or (place.group and place.group[-1].kind in (NUMBER, QUANTITY))):
         return None
-    wanted = measured = None
+    wanted = Measured()
     if in_brackets and place.node is not None:
         before = [word.text for word in place.group if word.kind in (NAME, STRING, OPERATOR)]
         key = (
@@ -143,25 +144,16 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
             if "=" in before[:-1]
             else place.key or (before[-2] if len(before) > 1 else "")
         )
-        wanted = offer.port_unit(workspace, path, place.node, key)
-        if begun[1] and wanted is None:
+        unit = offer.port_unit(workspace, path, place.node, key)
+        wanted = Measured("s" if unit == "ms" else unit, is_certain=True)  # btq writes the milliseconds
+        if begun[1] and wanted.unit is None:
             return None  # `num_attempts = 6 |`: the next attribute
     else:
-        wanted = measured = _unit_of_clause(workspace, path, place)
+        wanted = measured_at(workspace, path, place)
     separator = "" if begun[1] else " "
-    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted, measured))
+    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted))
     behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
     return Completion(Span(offset - len(begun[2]), offset), (*found, *behind))
-
-
-def _unit_of_clause(workspace: Workspace, path: str, place: Place) -> str | None:
-    """What a number is compared with: the nearest signal before it, or the time that a verb asks for."""
-    for word in reversed(place.words):
-        if word.text in ("takes", "within", "every"):
-            return "s"
-        if word.kind == NAME and (unit := offer.signal_unit(workspace, path, word.text)) is not None:
-            return unit
-    return None
 
 
 def _line_start(text: str, offset: int) -> int:
@@ -231,7 +223,7 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
 
 def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
     if last == ":":
-        yield from offer.units(None)
+        yield from offer.units(Measured())
         yield from offer.words(("bool", "text", "1"), "unit")
     elif len(place.words) >= 4:
         given = {word.text for word in place.words}
@@ -283,10 +275,12 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
 def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Place) -> Iterator[Proposal]:
     """What the grammar of clauses expects."""
     yield from offer.words(wanted.words, "keyword")
-    if wanted.condition or wanted.value:
-        yield from offer.values(workspace, path, entry_parameters=place.words + place.parent)
     if wanted.condition:
-        yield from offer.words(("not", "node", "max()", "min()", "mean()", "p95()"), "keyword")
+        yield from offer.operands(workspace, path, place, Measured())
+        yield from offer.words(("not", "node", *_FUNCTIONS), "keyword")
+    elif wanted.operand or wanted.value:
+        yield from offer.operands(workspace, path, place, measured_at(workspace, path, place), contexts=False)
+        yield from offer.words(_FUNCTIONS if wanted.operand else (), "keyword")
     if wanted.signal:
         yield from offer.signals(workspace, path)
     if wanted.node and place.last == "every":
@@ -356,3 +350,6 @@ def _in_list(workspace: Workspace, path: str, place: Place, word: str) -> Iterat
         yield from offer.words(("QualityReq",), "keyword")
     else:
         yield from offer.tags(workspace, path)
+
+
+_FUNCTIONS = ("max()", "min()", "mean()", "p95()")

@@ -6,7 +6,6 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import pairwise
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import beginning
@@ -14,6 +13,7 @@ from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.features.meaning import edition, is_main
+from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
@@ -24,7 +24,7 @@ from btq_lang.record import Record, replace
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
 from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
-from btq_lang.tokens import CATEGORIES, Token
+from btq_lang.tokens import CATEGORIES
 from btq_lang.units import dimension_name, parse_unit, symbols
 from btq_lang.workspace import Workspace
 
@@ -152,14 +152,7 @@ def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(found.symbol.name, "signal", unit, found.symbol.name, None, "", found.symbol.name, include)
 
 
-def signal_unit(workspace: Workspace, path: str, name: str) -> str | None:
-    """The unit of a signal; None where none is called so."""
-    found = workspace.scope(path).find(Kind.SIGNAL, name)
-    item = found.symbol.target if found is not None else None
-    return item.unit.text if isinstance(item, Signal) and item.unit is not None else None
-
-
-def contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
+def _contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for found, include in _defined(workspace, path, Kind.CONTEXT):
         item = found.symbol.target
         shown = ""
@@ -170,23 +163,19 @@ def contexts(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(found.symbol.name, "context", shown, found.symbol.name, None, "", found.symbol.name, include)
 
 
-def values(workspace: Workspace, path: str, entry_parameters: tuple[Token, ...]) -> Iterator[Proposal]:
-    """What may be compared: the requirement's parameters, contexts, signals."""
-    for word, colon in pairwise(entry_parameters):
-        if colon.text == ":" and is_name(word.text) and word.text not in ("QualityReq",):
-            name = _parameter_of(entry_parameters, word)
-            if name:
-                yield Proposal(name, "parameter", "parameter", name)
-    yield from contexts(workspace, path)
-    yield from signals(workspace, path)
-
-
-def _parameter_of(line: tuple[Token, ...], word: Token) -> str:
-    """The word, if it stands in the brackets behind a requirement's name."""
-    opened = [token.start for token in line if token.text == "("]
-    closed = [token.start for token in line if token.text == ")"]
-    inside = bool(opened) and opened[0] < word.start and (not closed or word.start < closed[0])
-    return word.text if inside else ""
+def operands(
+    workspace: Workspace, path: str, place: Place, wanted: Measured, contexts: bool = True
+) -> Iterator[Proposal]:
+    """What may be compared: the requirement's parameters, contexts, signals; those first that measure what is wanted,
+    and no others where that is certain."""
+    named = parameters_at(place)
+    found = [Proposal(name, "parameter", "parameter", name) for name in named]
+    found += _contexts(workspace, path) if contexts else ()
+    found += signals(workspace, path)
+    fits = [wanted.fits(named.get(one.label, one.detail)) for one in found]
+    yield from (one for one, fit in zip(found, fits, strict=True) if fit)
+    if not wanted.is_certain:
+        yield from (one for one, fit in zip(found, fits, strict=True) if not fit)
 
 
 def parameters(workspace: Workspace, path: str, requirement: str) -> Iterator[Proposal]:
@@ -403,14 +392,15 @@ def qualities(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
 
 
-def units(wanted: str | None, first: str | None = None) -> Iterator[Proposal]:
-    """Units, those that measure the same as `wanted` first, and of them the one that is spelt as `first` is."""
-    target = parse_unit(wanted) if wanted else None
+def units(wanted: Measured) -> Iterator[Proposal]:
+    """Units, those first that measure what is wanted, and of them the one that is spelt so; no others where that is
+    certain."""
     known = [*symbols(), *(unit for text in _COMPOUNDS if (unit := parse_unit(text)) is not None)]
-    if target is not None:
-        known.sort(key=lambda unit: (unit.dimension != target.dimension, unit.symbol != first))
+    fitting = {unit.symbol for unit in known if wanted.fits(unit.symbol)}
+    known.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != wanted.unit))
     for unit in known:
-        yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
+        if unit.symbol in fitting or not wanted.is_certain:
+            yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
 
 
 def rules() -> Iterator[Proposal]:

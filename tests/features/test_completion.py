@@ -34,6 +34,11 @@ BehaviorTree Far
 MAIN, LIB = FILES.split("//- lib.btq\n")
 
 
+FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+TIMES = "signal far : km\nsignal spent : s\nQualityReq a(limit : min = 2 min, near : m)\n"
+NODES = ("MoveBase", "Near", "Wait", "Script", "Sequence", "Main", "Dock")
+
+
 def typed(line: str) -> str:
     """The files, with a line being typed at the end of main.btq."""
     return f"{MAIN}{line}\n//- lib.btq\n{LIB}"
@@ -73,6 +78,18 @@ def typed(line: str) -> str:
         ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
         ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", "max()", "min()", "mean()", "p95()")),
         ('QualityReq a "t"\n    starts within 1 s after Dock $0', ("fails", "finishes", "halts", "starts", "succeeds")),
+        # Of what a value measures: no signal that is none where that is certain, else those that do first.
+        (f"{TIMES}    takes at most $0", ("limit", "spent")),
+        (f"{TIMES}    succeeds within $0", ("limit", "spent")),
+        (f"{TIMES}    runs every $0", ("limit", "spent", *NODES)),
+        (f"{TIMES}    takes at most 9 s\n    goal $0", ("limit", "spent")),
+        (f"{TIMES}    uses at most 9 m\n    goal $0", ("limit", "near", "battery", "far", "spent")),
+        (f"{TIMES}    tries at most $0", ("limit", "near", "battery", "far", "spent")),
+        (f"{TIMES}    keeps far <= $0", ("near", "far", "limit", "battery", "spent", *FUNCTIONS)),
+        (f"{TIMES}    keeps near <= $0", ("near", "far", "limit", "battery", "spent", *FUNCTIONS)),
+        (f"{TIMES}    keeps battery > 3 % and far + $0", ("near", "far", "limit", "battery", "spent", *FUNCTIONS)),
+        (f"{TIMES}    keeps far > 3 * $0", ("limit", "near", "battery", "far", "spent", *FUNCTIONS)),
+        (f"{TIMES}    in at least $0", ("battery",)),
         # Strings and comments.
         ('include "$0', ("lib.btq",)),
         ("include $0", ("lib.btq",)),
@@ -106,7 +123,7 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ),
         ("BehaviorTree X\n    SubTree Dock ($0", ("place", "name", "_autoremap"), ("station",)),
         ("BehaviorTree X\n    Timeout ($0)", ("msec", "name", "_skipIf"), ("satisfied",)),
-        ("BehaviorTree X\n    Timeout (msec = 3$0", ("s", "ms", "min", "m", "kg"), ("satisfies",)),
+        ("BehaviorTree X\n    Timeout (msec = 3$0", ("s", "ms", "min"), ("m", "kg", "satisfies")),
         ("BehaviorTree X\n    Retry (num_attempts = 3 $0", ("name", "_skipIf"), ("s", "num_attempts")),
         (
             "BehaviorTree X\n    Pick satisfices perf$0",
@@ -115,7 +132,7 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ),
         ("BehaviorTree X\n    Pick (satisfices Quality = $0", ("gentleness", "safety"), ("satisfies",)),
         ('QualityReq a : $0 "t"', ("gentleness", "safety"), ("takes at most",)),
-        ('QualityReq a "t" takes at most 30 $0', ("s", "min", "m", "if", "takes at most", "on violation"), ()),
+        ('QualityReq a "t" takes at most 30 $0', ("s", "min", "if", "takes at most", "on violation"), ("m", "%")),
         ('QualityReq a "t"\n    keeps battery >= 30$0', ("%", "m", "s"), ()),
         ('signal far : km\nQualityReq a "t"\n    keeps far < 3 $0', ("km", "m", "s", "%"), ()),
         ('signal far : km\nQualityReq a "t"\n    takes at most 3 s while far < 3 $0', ("km", "m", "s", "%"), ()),
@@ -125,7 +142,11 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
             ("satisfies", "BehaviorTree"),
         ),
         ('QualityReq a "t" on violation fail $0', ("takes at most", "goal"), ("on violation",)),
-        ("QualityReq a(n : m/s)\n    keeps battery <= $0", ("n", "low", "battery"), ("takes at most",)),
+        ("QualityReq a(n : m/s)\n    keeps battery <= $0", ("battery", "n", "max()"), ("low", "not", "takes at most")),
+        (f"{TIMES}    takes at most 3 s if low, $0", ("limit", "spent", "Main"), ("near", "battery", "far")),
+        (f"{TIMES}    takes at most 3 s if far > 3 $0", ("km", "m", "s", "%"), ()),
+        (f"{TIMES}    takes at most 3 s if far > 3 m else 3 $0", ("s", "ms", "min"), ("km", "m", "%")),
+        (f"{TIMES}    in at least 95 $0", ("%", "of runs"), ("s", "m")),
         ("signal a : $0", ("m", "%", "m/s", "bool", "text"), ("level",)),
         ("signal a : m/s $0", ("from {}", "level", "fresh within"), ("m",)),
         ('QualityReq a "t"\n    from $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("Sequence",)),

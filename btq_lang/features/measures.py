@@ -1,0 +1,78 @@
+"""What a value measures where somebody types it: what the verb demands, or the signal or parameter that it is compared
+with."""
+
+from __future__ import annotations
+
+from btq_lang.features.meaning import entry_at
+from btq_lang.features.place import Place
+from btq_lang.measured import measured
+from btq_lang.name_kinds import Kind
+from btq_lang.record import Record
+from btq_lang.syntax import Claim, Requirement, Signal, is_name
+from btq_lang.tokens import NAME
+from btq_lang.units import parse_unit
+from btq_lang.workspace import Workspace
+
+
+class Measured(Record):
+    """What a value measures.
+
+    Attributes:
+        unit: the unit, or one of its dimension; None: nobody knows.
+        is_certain: a value that measures anything else is wrong; else more may follow that makes it right.
+    """
+
+    unit: str | None = None
+    is_certain: bool = False
+
+    def fits(self, unit: str) -> bool:
+        """Whether something of a unit measures it; what has none may."""
+        if self.unit is None or not unit:
+            return True
+        wanted, given = parse_unit(self.unit), parse_unit(unit)
+        return self.unit == unit if wanted is None or given is None else wanted.dimension == given.dimension
+
+
+def measured_at(workspace: Workspace, path: str, place: Place) -> Measured:
+    """What a value measures at a place of a clause."""
+    words = [word.text for word in place.words]
+    if words[-1:] == ["goal"] or words[-2:-1] == ["goal"]:
+        return _of_goal(workspace, path, place)
+    unit = measured(words)
+    if unit is not None:
+        return Measured(unit, is_certain=True)
+    parameters = parameters_at(place)
+    for word in reversed(place.words):
+        if word.text in ("*", "/", "and", "or"):
+            return Measured()
+        if word.kind == NAME and (unit := parameters.get(word.text) or _signal_unit(workspace, path, word.text)):
+            return Measured(unit)
+    return Measured()
+
+
+def parameters_at(place: Place) -> dict[str, str]:
+    """The parameters of the requirement in which a place is, with their units: `QualityReq slow(limit : m/s)`."""
+    line = next((line for line in (place.words, place.parent) if any(word.text == "QualityReq" for word in line)), ())
+    texts = [word.text for word in line]
+    opened = texts.index("(") + 1 if "(" in texts else len(texts)
+    closed = texts.index(")", opened) if ")" in texts[opened:] else len(texts)
+    found: dict[str, str] = {}
+    for parameter in "".join(texts[opened:closed]).split(","):
+        name, colon, rest = parameter.partition(":")
+        if colon and is_name(name):
+            found[name] = rest.partition("=")[0]
+    return found
+
+
+def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:
+    """A goal stands beside the bound of a claim, perhaps on another line."""
+    entry = entry_at(workspace, path, place.span.start)
+    clauses = entry.item.clauses if entry is not None and isinstance(entry.item, Requirement) else ()
+    verbs = {clause.verb.raw for clause in clauses if isinstance(clause, Claim)} | {word.text for word in place.words}
+    return Measured("s", is_certain=True) if verbs & {"takes", "succeeds"} else Measured()
+
+
+def _signal_unit(workspace: Workspace, path: str, name: str) -> str | None:
+    found = workspace.scope(path).find(Kind.SIGNAL, name)
+    item = found.symbol.target if found is not None else None
+    return item.unit.text if isinstance(item, Signal) and item.unit is not None else None

@@ -1,0 +1,31 @@
+"""What a number of a clause measures, as far as the words before it say: a time behind `takes`, a share behind `in`.
+
+One invariant: an answer is certain from the words of the grammar alone; what signals and parameters measure is not
+known here.
+"""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Final
+
+
+def measured(words: Sequence[str]) -> str | None:
+    """The unit of what follows some words of a line, or one of its dimension; None: they do not say."""
+    is_behind_case = False
+    for word in reversed(words):
+        if word in ("else", ","):
+            is_behind_case = True  # `20 s if near, 30 s if slow else …`: what it is about stands before all of them
+        elif word in _UNITS and not (word == "if" and is_behind_case):
+            return _UNITS[word]
+    return None
+
+
+_UNITS: Final[dict[str, str | None]] = {
+    **dict.fromkeys(("takes", "within", "every", "per"), "s"),
+    **dict.fromkeys(("in", "probability", "confidence"), "%"),
+    **dict.fromkeys(("needs", "keeps", "never", "leaves", "uses", "tries", "runs"), None),
+    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially"), None),
+}
