@@ -81,6 +81,50 @@ def test_with_a_palette_a_missing_model_is_told_once() -> None:
     assert_fix(text, "Declare it: `Action Release`", text.replace("Behavior", "Action Release\n        Behavior"))
 
 
+def test_what_is_declared_has_the_ports_that_its_uses_show() -> None:
+    text = """
+        //- main.btq
+        include "lib.btq"
+        TreeNodesModel
+            Action Grasp
+        BehaviorTree Main
+          ->
+            Grasp
+            Release (force = 3 slowly = true to = "a b" out = {pose} width = 2)
+            SubTree Lib
+        //- lib.btq
+        BehaviorTree Lib
+            Release (width = 0.5 to = 1 out = x far = 30 s _skipIf = "x" name = y) satisfies r
+        QualityReq r "Calm"
+        """
+    model = """Action Release
+          input width : double
+          input to : string
+          inout out
+          input far
+          input force : int
+          input slowly : bool
+        """
+    title = "Declare it with its ports: `Action Release`"
+    assert_fix(text, title, text.replace("Behavior", f"{model}Behavior", 1))
+
+
+def test_what_is_declared_is_what_its_uses_say() -> None:
+    text = """
+        TreeNodesModel
+            Action Grasp
+        BehaviorTree Main
+        \t->
+        \t\tGrasp
+        \t\tGuard (limit = {=})
+        \t\tDecorator Guard
+        \t\t\tGrasp
+        """
+    declared = "Decorator Guard\n        \tinout limit\n        "
+    title = "Declare it with its ports: `Decorator Guard`"
+    assert_fix(text, title, text.replace("Behavior", f"{declared}Behavior"))
+
+
 def test_a_palette_of_subtrees_says_nothing_of_nodes() -> None:
     assert_clean("TreeNodesModel\n    SubTree Main\n" + tree("Release"))
 

@@ -13,11 +13,11 @@ from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
-from btq_lang.btcpp.undeclared import likely_category
 from btq_lang.catalog.kinds import CATEGORIES, at_least
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, xml_tag
 from btq_lang.comments import NO_COMMENTS
+from btq_lang.custom_nodes import likely_category
 from btq_lang.entry_types import is_number
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from typing import Final
 
     from btq_lang.checks.seen import SeenNode
+    from btq_lang.custom_nodes import LikelyPort
     from btq_lang.facts import Facts
 
 # How many children the nodes of a category have; None: any number.
@@ -272,14 +273,27 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
     fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
-        model = f"{likely_category(seen)} {written(name.text)}"
-        margin = view.text[entry.start : entry.start + entry.item.start]
-        fixes = (Fix(f"Declare it: `{model}`", (Change(Place(Span(0, 0)), f"{margin}{model}\n"),)),)
-        shortest = f"a line `{model}`"
+        category, ports = view.look_up(lookups.custom_node, name.text)
+        fixes = (_declared(view, entry, seen, f"{category} {written(name.text)}", ports),)
+        shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:
-            shortest = f'`<{likely_category(seen)} ID="{name.text}"/>` in <TreeNodesModel>'
+            shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
         notes = (f"the other nodes here have models; the shortest is {shortest}",)
     yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
+
+
+def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
+    """The model of a node with the ports that its uses show, put in before an item."""
+    margin = view.text[entry.start : entry.start + entry.item.start]
+    below = view.text[entry.start : entry.start + seen.node.start + 1].splitlines()[1:]
+    inside = next((line[: len(line) - len(line.lstrip())] for line in below if line.strip()), "")
+    inside = inside if inside.startswith(margin) and inside != margin else f"{margin}    "
+    lines = [f"{margin}{model}\n"]
+    for port in ports:
+        type_ = f" : {port.type}" if port.type else ""
+        lines.append(f"{inside}{port.direction} {written(port.name)}{type_}\n")
+    title = f"Declare it{' with its ports' if ports else ''}: `{model}`"
+    return Fix(title, (Change(Place(Span(0, 0)), "".join(lines)),))
 
 
 def _category_meant(seen: SeenNode) -> str | None:

@@ -18,6 +18,7 @@ from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from btq_lang.custom_nodes import LikelyPort
     from btq_lang.facts import Facts
     from btq_lang.file import Origin
     from btq_lang.text import Span
@@ -205,6 +206,14 @@ def names_unknown_requirements(workspace: Workspace, path: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
     used = workspace.files[path].used(Kind.REQUIREMENT)
     return not used.issubset(workspace.scope(path).names(Kind.REQUIREMENT))
+
+
+def custom_node(workspace: Workspace, path: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
+    """What the uses of a custom node suggest that it is: its category and its ports."""
+    from btq_lang.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
+
+    found = found_in_uses(workspace, path, name)
+    return found.category, found.ports
 
 
 def is_crowded(workspace: Workspace, path: str, kind: Kind) -> bool:

@@ -1,0 +1,152 @@
+"""What the uses of a custom node suggest of it: its category, its ports, which way they go and what they take.
+
+One invariant: the files of a mission suggest the same of a node, in whichever of them somebody asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from weakref import WeakKeyDictionary
+
+from btq_lang.catalog.kinds import CATEGORIES
+from btq_lang.catalog.literals import check_literal
+from btq_lang.catalog.names import is_port_name, legal_name
+from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
+from btq_lang.name_kinds import Kind
+from btq_lang.placeholders import is_placeholder
+from btq_lang.record import Record
+from btq_lang.syntax import Node, Tree, Word
+from btq_lang.tokens import QUANTITY
+from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.file import File
+
+
+class LikelyPort(Record):
+    """A port as the uses of its node suggest it; type: empty where they do not say."""
+
+    direction: str
+    name: str
+    type: str
+
+
+class CustomNode:
+    """A node that is none of the engine's, as its uses have it.
+
+    Attributes:
+        said: the category that a use says; None: none does.
+        children: how many a use has, at most.
+    """
+
+    __slots__ = ("_values", "children", "said")
+
+    def __init__(self, uses: Iterable[tuple[Node, str | None]] = ()) -> None:
+        self.said: str | None = None
+        self.children = 0
+        self._values: Final[dict[str, dict[str, Word]]] = {}  # by port and text
+        for use, said in uses:
+            self.add(use, said)
+
+    @property
+    def category(self) -> str:
+        """What it is, or may be as far as the number of its children goes."""
+        return self.said or likely_category(self.children)
+
+    @property
+    def ports(self) -> tuple[LikelyPort, ...]:
+        """Its ports, in the order in which they are met."""
+        return tuple([_likely_port(name, tuple(values.values())) for name, values in self._values.items()])
+
+    def add(self, use: Node, said: str | None) -> None:
+        """What a use tells; said: its category, where the use says it."""
+        self.said = self.said or said
+        self.children = max(self.children, len(use.children))
+        for pair in use.attributes:
+            key = pair.key.text
+            if pair.value is not None and is_port_name(key):
+                self._values.setdefault(key, {})[pair.value.text] = pair.value
+
+
+def custom_nodes(workspace: Workspace, path: str) -> Mapping[str, CustomNode]:
+    """The custom nodes in all files that are linked by includes with a file, by ID."""
+    missions = _MISSIONS.setdefault(workspace, {})
+    mission = workspace.missions[path]
+    if mission not in missions:
+        found = missions[mission] = {}
+        for other in sorted(workspace.linked(path)):
+            for node in _nodes(workspace.files[other]):
+                name, said = _named(node)
+                if name and name not in BUILTINS:
+                    found.setdefault(name, CustomNode()).add(node, said)
+    return missions[mission]
+
+
+def custom_node(workspace: Workspace, path: str, name: str) -> CustomNode:
+    """One of them; only the items that name it are looked at."""
+    uses = [
+        use.node
+        for other in sorted(workspace.linked(path))
+        if name in workspace.files[other].used(Kind.MODEL)
+        for facts in workspace.files[other].facts.values()
+        for use in facts.summary.uses
+        if use.node is not None and use.kind is Kind.MODEL and use.name == name
+    ]
+    return CustomNode((node, _named(node)[1]) for node in uses)
+
+
+def custom_nodes_of(file: File) -> frozenset[str]:
+    """The IDs of the custom nodes in one file."""
+    return frozenset([name for name, _ in map(_named, _nodes(file)) if name and name not in BUILTINS])
+
+
+def likely_category(children: int) -> str:
+    """The category of a custom node of so many children, where nothing says it."""
+    return ("Action", "Decorator", "Control")[min(children, 2)]
+
+
+def _nodes(file: File) -> Iterator[Node]:
+    for entry in file.parsed.entries:
+        if isinstance(entry.item, Tree):
+            yield from entry.item.walk()
+
+
+def _named(node: Node) -> tuple[str, str | None]:
+    """The ID of a node, as it is written, and the category that it says; no ID of a SubTree."""
+    kind = node.kind
+    if is_placeholder(node):
+        return legal_name(node.name.text if node.name else ""), PLACEHOLDERS[node.head.raw]
+    said = node.category.raw if node.category is not None else None
+    if said is None and kind is not None and kind.quoted and kind.text in CATEGORIES:
+        said = kind.text  # in quotes: the tag of an explicit form
+    if said is not None:
+        word = node.id if node.category is not None else node.attribute("ID")
+    else:
+        word = kind
+        if kind is not None and not kind.quoted and kind.raw in KNOWN_WORDS:
+            said = KNOWN_WORDS[kind.raw].category
+    tag = xml_tag(word.text, word.quoted, len(node.children)) if word is not None else ""
+    return ("", None) if said == "SubTree" or tag == "SubTreePlus" else (tag, said)
+
+
+def _likely_port(name: str, values: tuple[Word, ...]) -> LikelyPort:
+    """A literal can only go in; what an entry is for, nobody says, and its type others say."""
+    if any(value.text.startswith("{") for value in values):
+        return LikelyPort("inout", name, "")
+    if any(value.kind == QUANTITY for value in values):
+        return LikelyPort("input", name, "")  # a number, in whatever unit the port is
+    return LikelyPort("input", name, next(type_ for type_ in _TYPES if all(_takes(type_, value) for value in values)))
+
+
+def _takes(type_: str, value: Word) -> bool:
+    if type_ == "bool":
+        return value.text in ("true", "false")
+    return check_literal(type_, value.text) is None
+
+
+# What was found once, for as long as anybody has the workspace.
+_MISSIONS: Final[WeakKeyDictionary[Workspace, dict[str, dict[str, CustomNode]]]] = WeakKeyDictionary()
+_TYPES: Final = ("bool", "int", "double", "string")  # the narrowest first
