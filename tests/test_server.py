@@ -329,6 +329,18 @@ def test_formatting(editor: Editor) -> None:
     assert edits(ranged) == [(1, 2, 2, "  ")]
 
 
+def test_why_a_file_is_not_formatted(editor: Editor) -> None:
+    editor.open("main.btq", "BehaviorTree Main\n  Dock )\n")
+    options = {"tabSize": 4, "insertSpaces": True}
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 2, "character": 0}}
+    said = f"{editor.root / 'main.btq'}:2:8: not formatted, for there is an error: this `)` closes nothing"
+    for method, more in (("formatting", {}), ("rangeFormatting", {"range": whole})):
+        asked = {**editor.document("main.btq"), "options": options, **more}
+        assert editor.request(f"textDocument/{method}", **asked) is None
+        told = editor.wait_for(lambda message: message.get("method") == "window/logMessage")
+        assert told["params"] == {"type": 2, "message": said}
+
+
 def test_from_a_name_to_its_definition_and_back(editor: Editor) -> None:
     editor.open("skills.btq", SKILLS)
     editor.open("main.btq", MISSION)
@@ -770,7 +782,7 @@ def order(place: Message) -> tuple[int, int]:
 
 def test_xml_is_never_edited(foreign: Editor) -> None:
     options = {"tabSize": 4, "insertSpaces": True}
-    assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) == []
+    assert foreign.request("textDocument/formatting", **foreign.document("dock.xml"), options=options) is None
     for method in ("completion", "signatureHelp", "linkedEditingRange"):
         assert foreign.request(f"textDocument/{method}", **foreign.at("dock.xml", 3, 21)) is None
     place = {"start": {"line": 3, "character": 21}, "end": {"line": 3, "character": 21}}

@@ -70,7 +70,7 @@ def format_text(text: str, options: FormatOptions = DEFAULTS) -> Formatted:
         text: any string at all.
     """
     parsed = parse(text)
-    if error := _first_error(parsed):
+    if error := refused(parsed):
         return Formatted(text, refused=error)
     stretches = _stretches(parsed, options)
     return Formatted("".join(stretch.text for stretch in stretches), _edits(text, stretches))
@@ -83,7 +83,7 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
     half of a block in new columns and one in old ones would be another tree.
     """
     parsed = parse(text)
-    if _first_error(parsed):
+    if refused(parsed):
         return ()
     if _OLD_LINE_END.search(text):  # a new `\n` behind an old `\r` would be one line end and not two
         start, end = 0, len(text)
@@ -97,7 +97,8 @@ def format_range(text: str, start: int, end: int, options: FormatOptions = DEFAU
     return _edits(text, chosen)
 
 
-def _first_error(parsed: Parsed) -> Diagnostic | None:
+def refused(parsed: Parsed) -> Diagnostic | None:
+    """The first syntax error of a text, for which it is left as it is."""
     errors = (problem for problem in parsed.diagnostics if problem.effective_severity is Severity.ERROR)
     return min(errors, key=lambda problem: problem.span, default=None)
 

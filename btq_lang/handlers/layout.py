@@ -1,31 +1,50 @@
-"""Formatting."""
+"""Formatting.
+
+A text with a syntax error is left as it is.  Why is in the log and in no message box: the error is underlined already,
+and who formats on save would be told at every save.
+"""
 
 from __future__ import annotations
 
 from lsprotocol import types
 
 from btq_lang.editor import Server
+from btq_lang.workspace import Workspace
 
 
 def register(server: Server) -> None:
     convert = server.convert
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+    def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
         place = server.at(params.text_document)
-        if place is None:
-            return []
+        if place is None or _is_refused(server, *place):
+            return None
         from btq_lang.formatter import format_text  # imported when it is asked for, as features are
 
         workspace, path = place
         return convert.edits(*place, format_text(workspace.files[path].text).edits)
 
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
-    def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
+    def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit] | None:
         place = server.at(params.text_document)
-        if place is None:
-            return []
+        if place is None or _is_refused(server, *place):
+            return None
         from btq_lang.formatter import format_range  # as above
 
         workspace, path = place
         return convert.edits(*place, format_range(workspace.files[path].text, *convert.span(*place, params.range)))
+
+
+def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:
+    """Whether a file has a syntax error; then the log says so."""
+    from btq_lang.formatter import refused  # as above
+
+    file = workspace.files[path]
+    error = refused(file.parsed)
+    if error is None:
+        return False
+    line, column = file.lines.position(error.span.start)
+    message = f"{path}:{line + 1}:{column + 1}: not formatted, for there is an error: {error.message}"
+    server.window_log_message(types.LogMessageParams(types.MessageType.Warning, message))
+    return True
