@@ -55,8 +55,45 @@ def test_the_time_from_one_node_to_another_is_that_of_its_sequence() -> None:
         assert findings(text, "budget-exceeded") == expected
 
 
-def test_a_step_without_a_bound_hides_the_rest() -> None:
-    assert budget("takes at most 1 s") == []
+def test_a_step_without_a_bound_counts_as_none() -> None:
+    assert budget("takes at most 17 s") == []
+    assert budget("takes at most 1 s") == [
+        "2 warning «Work takes at most 1 s» `-> Work` may take 17 s, more than `1 s`: "
+        "`A` 5 s + `Retry` 12 s, and that without what has no bound"
+    ]
+
+
+NO_BOUND = ", and that without what has no bound"
+
+
+@pytest.mark.parametrize(
+    ("tree", "may_take"),
+    [
+        ("->\n    Action A\n    Action X", "`->` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("->\n    Action X\n    Action A", "`->` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("->\n    Action Y\n    Action A", "`->` may take 65 s, more than `30 s`: `Y` 5 s + `A` 60 s"),
+        ("->\n    ->\n        Action A\n        Action X", "`->` may take 60 s, more than `30 s`: `->` 60 s"),
+        ("?\n    Action X\n    Action A", "`?` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("All||\n    Action X\n    Action A", "`All||` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("||\n    Action X\n    Action A", "`||` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("R->\n    Condition X\n    Action A\n    SubTree Nobody", None),  # A is begun again and again
+        ("|| (success_count = 2)\n    Action X\n    Action Z\n    Action A", None),  # X and Z are enough
+        ("Repeat (num_cycles = -1)\n    ->\n        Action A\n        Action X", None),  # it has no end anyway
+        ("->\n    Repeat (num_cycles = -1)\n        Action X\n    Action A", None),  # A is never reached
+        ("->\n    ForceFailure\n        Action X\n    Action A", None),
+        ("?\n    ForceSuccess\n        Action X\n    Action A", None),
+        ("->\n    Custom\n        Action A\n    Action X", None),  # nobody knows whether it runs A
+        ("->\n    Timeout (msec = 20 s)\n        Action A\n    Action X", None),  # told as a bound never reached
+        ("->\n    Action W\n    Action X", None),  # that is demanded in some situations only
+        ("->\n    Action O\n    Action X", None),  # it is seldom late
+    ],
+)
+def test_a_child_that_may_take_longer_than_its_parent(tree: str, may_take: str | None) -> None:
+    bounds = ("a A takes at most 60 s", "y Y takes at least 5 s")
+    others = ("w W takes at most 60 s|when W", "o O takes at most 60 s|in at least 90 % of activations")
+    text = mission(tree, "main Main takes at most 30 s", *(each for each in (*bounds, *others) if each[2] in tree))
+    expected = [f"2 warning «Main takes at most 30 s» {may_take}{NO_BOUND}"] if may_take else []
+    assert findings(text, "budget-exceeded") == expected
 
 
 def test_what_can_never_hold_is_told_with_odds_too() -> None:
@@ -203,6 +240,35 @@ def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
     text = mission(f"{root}\n    Action A", f"q {subject} succeeds", "a A succeeds|in at least 99 % of activations")
     (found,) = problems(text, "odds-beyond-children")
     assert found.message == f"{called} is to do so in 100 %; what is demanded below it ensures 99 %"
+
+
+@pytest.mark.parametrize(
+    ("tree", "ensured"),
+    [
+        ("->\n    Action A\n    Action X", "90 %, even if all else succeeds"),
+        ("->\n    Action X\n    ->\n        Action A\n        Action X", "90 %, even if all else succeeds"),
+        ("->\n    Action A\n    Action A\n    Action X", "80 %, even if all else succeeds"),
+        (
+            "Repeat (num_cycles = 2)\n    ->\n        Action A\n        SubTree Nobody",
+            "80 %, even if all else succeeds",
+        ),
+        ("||\n    Action A\n    Action X", "90 %, even if all else succeeds"),
+        ("->\n    Action A\n    Action A", "80 %"),
+        ("->\n    Action X\n    Action X", None),
+        ("?\n    Action A\n    Action X", None),  # X may succeed where A does not
+        ("|| (success_count = 1)\n    Action A\n    Action X", None),
+        ("->\n    Action A (_skipIf = never)\n    Action X", None),
+        ("->\n    Retry (num_attempts = 2)\n        Action A\n    Action X", None),
+        ("->\n    Inverter\n        Action A\n    Action X", None),
+        ("->\n    Custom\n        Action A\n    Action X", None),
+        ("->\n    Action B\n    Action X", None),
+    ],
+)
+def test_odds_of_a_child_that_are_lower_than_its_parents(tree: str, ensured: str | None) -> None:
+    steps = ("a every A succeeds|in at least 90 % of activations", "b every B succeeds|in at least 95 % of activations")
+    told = [f"`Main` is to do so in 95 %; what is demanded below it ensures {ensured}"] if ensured else []
+    text = mission(tree, "q Main succeeds|in at least 95 % of activations", *(s for s in steps if f"n {s[8]}" in tree))
+    assert [found.message for found in problems(text, "odds-beyond-children")] == told
 
 
 def test_windows() -> None:

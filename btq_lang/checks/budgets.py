@@ -13,6 +13,10 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from btq_lang.requirements.composition import Budget
+    from btq_lang.requirements.durations import Range
+    from btq_lang.requirements.model import Claim
+
 
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
     """What the children may take is more than their parent may: in the worst case, or always."""
@@ -20,17 +24,22 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
         most = highest(claim) if claim.verb in ("takes", "succeeds") else None
         if most is None or not (node.children or node.category == "SubTree"):
             continue
-        budget = demanded.budgets.composed(node)
-        allowed = budget.success if claim.verb == "succeeds" else budget.completes
+        allowed = _held_against(claim, demanded.budgets.composed(node))
         if allowed is None:
             continue
-        terms = together(allowed.terms)
         if allowed.low > most[0]:
             message = f"{node.shown} takes at least {seconds(allowed.low)}, so it can never keep to `{most[1]}`"
-        elif allowed.high == inf or allowed.high <= most[0] or applied.requirement.odds is not None:
+        elif applied.requirement.odds is not None:
             continue
         else:
-            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}`: {summed(terms)}"
+            is_known = allowed.high < inf
+            allowed = allowed if is_known else _held_against(claim, demanded.budgets.composed_of_known(node))
+            if allowed is None or allowed.high <= most[0]:
+                continue
+            rest = "" if is_known else ", and that without what has no bound"
+            what = summed(together(allowed.terms))
+            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}`: {what}{rest}"
+        terms = together(allowed.terms)
         related = tuple(Related(term.node.place, _share(term)) for term in terms)
         yield place, Diagnostic("budget-exceeded", place.span, message, related=related)
 
@@ -48,6 +57,11 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
         related = (Related(child.place, f"takes at least {seconds(success.low)}"),)
         message = f"{node.shown} can never succeed: {child.shown} takes at least {seconds(success.low)}"
         yield node.place, Diagnostic("timeout-never-succeeds", node.place.span, message, related=related)
+
+
+def _held_against(claim: Claim, budget: Budget) -> Range | None:
+    """What of a budget a claim speaks of."""
+    return budget.success if claim.verb == "succeeds" else budget.completes
 
 
 def _share(term: Term) -> str:

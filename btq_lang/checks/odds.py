@@ -30,10 +30,10 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         ensured = _ensured(demanded.budgets, claim, node)
         if ensured is None or ensured[0] >= wanted - 1e-9:
             continue
-        likely, parts = ensured
+        likely, parts, rest = ensured
         message = (
             f"{_called(applied, node)} is to do so in {_percent(wanted)}; "
-            f"what is demanded below it ensures {_percent(likely)}"
+            f"what is demanded below it ensures {_percent(likely)}{rest}"
         )
         related = tuple(Related(part.place, f"misses in up to {_percent(share)}") for part, share in parts if share)
         notes = ("what each of several steps may miss adds up (the union bound)",) if len(related) > 1 else ()
@@ -61,22 +61,26 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
     yield window.place, Diagnostic("window-too-small", window.place.span, message, related=related)
 
 
-def _ensured(budgets: Budgets, claim: Claim, node: SourceNode) -> tuple[float, list[tuple[SourceNode, float]]] | None:
-    """How likely what is demanded below a node makes a claim true, and what each child may miss; None: nobody says,
-    or it takes too long anyway."""
+def _ensured(
+    budgets: Budgets, claim: Claim, node: SourceNode
+) -> tuple[float, list[tuple[SourceNode, float]], str] | None:
+    """How likely what is demanded below a node makes a claim true, what each child may miss, and what that leaves out;
+    None: nobody says, or it takes too long anyway."""
     most = highest(claim)
     limit = most[0] if most is not None else inf
     if claim.verb == "succeeds":
         success = budgets.success(node)
+        rest = "" if success is not None else ", even if all else succeeds"
+        success = success or budgets.success_of_known(node)
         if success is None or success.seconds > limit:
             return None
-        return success.probability, list(success.parts)
+        return success.probability, list(success.parts), rest
     if claim.verb == "takes" and most is not None:
         budget = budgets.composed(node)
         if not budget.is_bounded or budget.running.high > limit:
             return None
         shares = [(child, 1.0 - budgets.of(child).probability) for child in node.children]
-        return budget.probability, shares
+        return budget.probability, shares, ""
     return None
 
 

@@ -94,12 +94,28 @@ class Budgets:
         root = self._run_before(node)
         return found.composed[id(node)] if root is None else _as_part(root, self.of(root))
 
+    def composed_of_known(self, node: SourceNode) -> Budget:
+        """The same, if what nobody knows a bound of takes no longer than it must: what the others may take alone."""
+        return self._compose_known(self._work_out(node), node)
+
     def success(self, node: SourceNode) -> Success | None:
         """How likely a node succeeds, and within which time, if all below it are as demanded; None: nobody says."""
         root = self._nodes.run_by(node)
         if root is not None:
             return _success_as_part(root, self._work_out(root).successes[id(root)])
         return self._composed_success(self._work_out(node), node)
+
+    def success_of_known(self, node: SourceNode) -> Success | None:
+        """The same, if that of which nobody says it always succeeds, at once: no more is ensured."""
+        found = self.success(node)
+        if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
+            return found
+        successes = self._work_out(node).successes
+        parts = [successes[id(child)] or self.success_of_known(child) for child in node.children]
+        if not any(parts):
+            return None
+        known = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
+        return _success_of(node, [part or _SURE for part in known])
 
     def gaps(self, node: SourceNode) -> tuple[Gap, ...]:
         """Why no bound can be said of a node, if all below it are as demanded; the first reasons, if there are many."""
@@ -239,6 +255,22 @@ class Budgets:
         parts = {id(child.node): _as_part(child, at.held[id(child)]) for child in node.children}
         return compose(node, [parts.get(id(child), _XML) for child in node.node.children])
 
+    def _compose_known(self, at: _TreeBudgets, node: SourceNode) -> Budget:
+        composed = at.composed[id(node)]
+        if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
+            return composed if _is_sure(composed) else _shortest(composed)
+        parts = {id(child.node): _as_part(child, self._known(at, child)) for child in node.children}
+        found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
+        return found if found.is_bounded else _shortest(composed)
+
+    def _known(self, at: _TreeBudgets, node: SourceNode) -> Budget:
+        held = at.held[id(node)]
+        if _is_sure(held):
+            return held
+        sure = [claim for applied, claim in at.claims.get(id(node), ()) if applied.requirement.odds is None]
+        found = _all_narrowed(self._compose_known(at, node), sure)
+        return found if found.is_bounded else _shortest(found)
+
     # ---- the likelihood of success ----
 
     def _succeeding(self, at: _TreeBudgets, node: SourceNode) -> Success | None:
@@ -262,14 +294,18 @@ class Budgets:
         if not node.children:
             sure = budget.success is not None and budget.failure is None and budget.success.high < inf
             return Success(budget.success.high, 1.0) if sure and budget.success is not None else None
-        for child in node.children:
-            if child.node.attributes and any(pair.key.text in _CHANGING for pair in child.node.attributes):
-                return None
+        if _may_be_passed(node):
+            return None
         parts = [_success_as_part(child, at.successes[id(child)]) for child in node.children]
         known = [part for part in parts if part is not None]
         if len(known) < len(node.node.children):
             return None
         return _success_of(node, known)
+
+
+def _may_be_passed(node: SourceNode) -> bool:
+    """Whether the outcome of one of a node's children may be another than that of what it does."""
+    return any(pair.key.text in _CHANGING for child in node.children for pair in child.node.attributes)
 
 
 def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
@@ -294,6 +330,17 @@ def _success_of(node: SourceNode, parts: list[Success]) -> Success | None:
 def _success_as_part(node: SourceNode, found: Success | None) -> Success | None:
     """A child's success, as a part of its parent's."""
     return Success(found.seconds, found.probability, ((node, 1.0 - found.probability),)) if found is not None else None
+
+
+def _is_sure(budget: Budget) -> bool:
+    """Whether it has a bound that is not only likely."""
+    return budget.is_bounded and budget.probability == 1.0
+
+
+def _shortest(budget: Budget) -> Budget:
+    """The shortest time that a budget allows, for each outcome."""
+    found = _with_ranges(budget, lambda each: Range(each.low, each.low) if each is not None else None)
+    return replace(found, probability=1.0, endless=False)
 
 
 def _as_part(node: SourceNode, budget: Budget) -> Budget:
@@ -407,5 +454,6 @@ def _extreme(bounded: Bounded, *, highest: bool) -> float:
 _MOST_GAPS: Final = 5
 _CONDITION: Final = Budget(ZERO, ZERO, None, False)
 _NO_CLAUSE: Final = Budget(ANY, ANY, None, reason="has no `takes` clause")
+_SURE: Final = Success(0.0, 1.0)
 _XML: Final = unknown("has a child in XML")
 _CHANGING: Final = frozenset(("_failureIf", "_successIf", "_skipIf", "_while"))
