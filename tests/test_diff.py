@@ -539,6 +539,44 @@ def test_the_side_file_of_a_revision_is_read(repository: Path) -> None:
     )
 
 
+def test_built_xml_whose_mission_is_in_another_repository(repository: Path) -> None:
+    git = ("git", "-c", "user.name=a", "-c", "user.email=a@b")
+    lib = "signal s : {} from {{s}}\nBehaviorTree Lib\n    Go{} satisfies QualityReq rq1 takes at most 9 s\n"
+    main = 'include "lib.btq"\nRoot Main\nBehaviorTree Main\n    SubTree Lib\n'
+    (repository / "built").mkdir()
+
+    def build(unit: str, name: str) -> None:
+        (repository / "m.btq").write_text(main)
+        (repository / "lib.btq").write_text(lib.format(unit, name))
+        assert run("build", "m.btq", "-o", "built", cwd=repository)[0] == 0
+        (repository / "m.btq").unlink()
+        (repository / "lib.btq").unlink()
+
+    build("m", "")
+    subprocess.run([*git, "add", "built"], cwd=repository, check=True)
+    subprocess.run([*git, "commit", "-q", "-m", "built"], cwd=repository, check=True)
+    assert btq("--git", "HEAD", "built", cwd=repository) == (0, "", "")
+    build("m", " Fast")
+    said = "HEAD:built/lib.xml -> built/lib.xml\n~ node Lib/Fast changed  built/lib.qreq.json:built/lib.btq:3\n"
+    said += "    + name: Fast\n\n1 node changed\n"
+    assert btq("--git", "HEAD", "built", cwd=repository) == (1, said, "")
+    subprocess.run([*git, "commit", "-q", "-a", "-m", "built again"], cwd=repository, check=True)
+    code, out, told = btq("--git", "HEAD~1..HEAD", "built", cwd=repository)
+    assert (code, titles(out), told) == (1, ["HEAD~1:built/lib.xml -> HEAD:built/lib.xml"], "")
+    build("kg", " Fast")  # which the side file alone says
+    said = "HEAD:built/lib.xml -> built/lib.xml\n~ signal s changed  built/lib.qreq.json:built/lib.btq:1\n"
+    said += "    ~ unit: m -> kg\n\n1 signal changed\n"
+    assert btq("--git", "HEAD", "built", cwd=repository) == (1, said, "")
+    (repository / "lib.btq").write_text(lib.format("kg", " Fast"))  # HEAD says it in XML alone
+    assert btq("--git", "HEAD", "built", cwd=repository) == (1, said, "")
+    subprocess.run([*git, "add", "."], cwd=repository, check=True)
+    subprocess.run([*git, "commit", "-q", "-a", "-m", "with its mission"], cwd=repository, check=True)
+    build("s", " Slow")
+    (repository / "lib.btq").write_text(lib.format("s", " Slow"))
+    code, out, told = btq("--git", "HEAD", cwd=repository)
+    assert (code, titles(out), told) == (1, ["HEAD:lib.btq -> lib.btq"], "")
+
+
 INCLUDED = '<root BTCPP_format="4"><BehaviorTree ID="X"><{}/></BehaviorTree></root>\n'
 
 

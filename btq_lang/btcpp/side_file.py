@@ -34,6 +34,7 @@ Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | Non
 
 FORMAT: Final = "btq-requirements"
 VERSION: Final = 1
+SIDE_SUFFIX: Final = ".qreq.json"
 
 
 class Built(Record):
@@ -58,7 +59,12 @@ class Built(Record):
 
 def side_path(xml: str) -> str:
     """The place of the side file of an XML file."""
-    return f"{posixpath.splitext(xml)[0]}.qreq.json"
+    return f"{posixpath.splitext(xml)[0]}{SIDE_SUFFIX}"
+
+
+def xml_path(side: str) -> str:
+    """The place of the XML file of a side file."""
+    return f"{side.removesuffix(SIDE_SUFFIX)}.xml"
 
 
 def is_side_file(text: str) -> bool:

@@ -158,7 +158,9 @@ def _sides(path: str) -> dict[str, Side]:
     for group in _groups([path, *_xml_below(path)]):
         for each in group.given:
             built = _built_on_disk(each)
-            side = Side(shown(each), group.workspace, (each,), shown) if built is None else _by_itself(built)
+            side = Side(shown(each), group.workspace, (each,), shown)
+            if built is not None:
+                side = _by_itself(built, os.path.isfile)
             found[each.removeprefix(f"{path}/")] = side
     return found
 
@@ -170,10 +172,10 @@ def _on_disk(path: str, stdin_filename: str | None = None) -> Side:
     return Side(shown(own), group.workspace, group.workspace.closure(own), shown)
 
 
-def _by_itself(built: Side) -> Side:
+def _by_itself(built: Side, is_file: Callable[[str], bool]) -> Side:
     """A built file of a folder without what it includes, as long as that is in XML of its own."""
     *included, own = built.paths
-    bundled = (path for path in included if not os.path.isfile(f"{os.path.splitext(path)[0]}.xml"))
+    bundled = (path for path in included if not is_file(f"{os.path.splitext(path)[0]}.xml"))
     return replace(built, paths=(*bundled, own))
 
 
@@ -237,15 +239,17 @@ def _revised(known: Revisions, revision: str | None, path: str | None, with_incl
     if revision is None:
         if not os.path.exists(path):
             return NOWHERE
-        side = _built_on_disk(path) if with_includes else None
+        side = _built_on_disk(path)
         if side is not None:
-            return side
+            return side if with_includes else _by_itself(side, os.path.isfile)
         group = _groups([path])[0]
         return Side(shown(path), group.workspace, group.workspace.closure(path) if with_includes else (path,), shown)
     name = _named(known.names[revision])
-    built = as_built(path, Commit(known, revision), name) if with_includes else None
+    commit = Commit(known, revision)
+    built = as_built(path, commit, name)
     if built is not None:
-        return _side(name(path), built)
+        side = _side(name(path), built)
+        return side if with_includes else _by_itself(side, commit.is_file)
     workspace = known.workspace(revision, path)
     if workspace is None:
         return NOWHERE

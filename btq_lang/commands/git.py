@@ -6,9 +6,11 @@ One invariant: nothing is written, and no argument that comes from outside is re
 from __future__ import annotations
 
 import os
+import posixpath
 import subprocess
 
-from btq_lang.btcpp.marks import is_generated, is_mission
+from btq_lang.btcpp.marks import is_built_of, is_mission
+from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
 from btq_lang.file import SUFFIXES, File
 from btq_lang.loader import absolute, file_of, find_project, read
 from btq_lang.project import include_candidates
@@ -36,25 +38,32 @@ class Revisions:
         self.new: Final = new
         self.names: Final = names
         self._root: Final = root
+        self._missions: dict[str | None, frozenset[str]] = {}  # what `_sources` has found
 
     def changed(self, folder: str) -> list[tuple[str | None, str | None]]:
         """The missions below a folder whose text changed: where they were and are; None where they were or are not.
 
-        XML is one that somebody wrote, be it by itself or for others to include; what a build wrote, its .btq says.
+        XML is one that somebody wrote, be it by itself or for others to include; what a build wrote, its .btq says, if
+        there is one, and else the side file, too.
         """
         commits = [self.old] if self.new is None else [self.old, self.new]
         run = ["diff", "--name-status", "--find-renames", "-z", *commits, "--", self._inside(folder) or "."]
         words = _git(self._root, *run).split("\0")
-        pairs: list[tuple[str | None, str | None]] = []
+        pairs: dict[tuple[str | None, str | None], None] = {}
         at = 0
         while at + 1 < len(words):
             status, path = words[at][:1], self._outside(words[at + 1])
             target = self._outside(words[at + 2]) if status in ("R", "C") else path
             at += 3 if status in ("R", "C") else 2
-            pair = (None if status in ("A", "C") else path, None if status == "D" else target)
-            if any(each is not None and each.endswith(SUFFIXES) for each in pair) or self._is_xml(*pair):
-                pairs.append(pair)
-        return pairs
+            before, after = (None if status in ("A", "C") else path, None if status == "D" else target)
+            if path.endswith(SIDE_SUFFIX) and target.endswith(SIDE_SUFFIX):  # its XML may be as it was
+                xml = xml_path(path), xml_path(target)
+                before = xml[0] if self._is_there(self.old, xml[0]) else None
+                after = xml[1] if self._is_there(self.new, xml[1]) else None
+            ours = any(each is not None and each.endswith(SUFFIXES) for each in (before, after))
+            if ours or self._is_xml(before, after):
+                pairs[before, after] = None
+        return [*pairs]
 
     def workspace(self, commit: str, path: str, known: dict[str, str] | None = None) -> Workspace | None:
         """A file of a commit with all that it includes there; None where the commit has no such file.
@@ -89,13 +98,26 @@ class Revisions:
         return data.decode("utf-8", "replace").removeprefix("\ufeff")
 
     def _is_xml(self, before: str | None, after: str | None) -> bool:
-        """Whether XML that somebody wrote was or is a mission."""
-        texts: list[str | None] = []
-        if before is not None and before.endswith(".xml"):
-            texts.append(self.text(self.old, before))
-        if after is not None and after.endswith(".xml"):
-            texts.append(read(after)[0] if self.new is None else self.text(self.new, after))
-        return any(text is not None and is_mission(text) and not is_generated(text) for text in texts)
+        """Whether XML of which no .btq file says the same was or is a mission."""
+        for revision, path in ((self.old, before), (self.new, after)):
+            if path is None or not path.endswith(".xml"):
+                continue
+            text = read(path)[0] if revision is None else self.text(revision, path)
+            if text is not None and is_mission(text) and not is_built_of(text, self._sources(revision)):
+                return True
+        return False
+
+    def _is_there(self, revision: str | None, path: str) -> bool:
+        return os.path.isfile(path) if revision is None else self.has(revision, path)
+
+    def _sources(self, revision: str | None) -> frozenset[str]:
+        """The names of a revision's .btq files, without folders."""
+        if revision not in self._missions:
+            run = ("ls-tree", "-r", "--name-only", "-z", revision) if revision is not None else _OF_WORKING_TREE
+            paths = _git(self._root, *run).split("\0")
+            names = frozenset(posixpath.basename(path) for path in paths if path.endswith(SUFFIXES))
+            self._missions[revision] = names
+        return self._missions[revision]
 
     def has(self, commit: str, path: str) -> bool:
         """Whether a commit has a file."""
@@ -185,3 +207,6 @@ def _run(folder: str, *arguments: str) -> subprocess.CompletedProcess[bytes]:
         return subprocess.run(["git", "-C", folder or ".", *arguments], capture_output=True)
     except OSError as error:
         raise GitTrouble(f"git cannot be run: {error.strerror}") from error
+
+
+_OF_WORKING_TREE: Final = ("ls-files", "--cached", "--others", "--exclude-standard", "-z")
