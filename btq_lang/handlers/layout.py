@@ -9,7 +9,10 @@ from __future__ import annotations
 from lsprotocol import types
 
 from btq_lang.editor import Server
-from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.workspace import Workspace
 
 
 def register(server: Server) -> None:
