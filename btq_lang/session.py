@@ -8,7 +8,7 @@ is known here.
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
@@ -117,13 +117,13 @@ class Session:
         )
 
     def let_go(self) -> None:
-        """Forget the trees of files that nobody works in, where they have become many: they are most of what a large
-        folder takes of the memory, and most of them nobody asks for again."""
+        """Pack the files that nobody works in, where what was made of them has become much: it is most of what a large
+        folder takes of the memory, and nobody asks for most of it again."""
         for workspace in self._workspaces:
-            held = [path for path, file in workspace.files.items() if file.has_tree]
+            held = [path for path, file in workspace.files.items() if file.is_unpacked]
             idle = [path for path in held if not self._is_worked_in(workspace, path)]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
-                workspace.forget_trees(idle)
+                workspace.pack(idle)
                 gc.collect()  # much of it refers to itself, and Python would wait until there is far more
 
     def _is_worked_in(self, workspace: Workspace, path: str) -> bool:
@@ -187,7 +187,7 @@ class Session:
         return value if isinstance(value, bool) else default
 
 
-def _misses(workspace: Workspace, path: str, names: frozenset[Name]) -> bool:
+def _misses(workspace: Workspace, path: str, names: Set[Name]) -> bool:
     """Whether a file uses one of the names and does not find it: then it is told where else it is defined."""
     missed = names & workspace.files[path].used_names
     return bool(missed) and not missed <= _names_in_scope(workspace, path)

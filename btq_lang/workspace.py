@@ -60,11 +60,11 @@ class Workspace:
             after._take_over(self, path)
         return after
 
-    def forget_trees(self, paths: Iterable[str]) -> None:
-        """Hold nothing of the trees of some files; who holds a definition in one of them must not ask for it again."""
+    def pack(self, paths: Iterable[str]) -> None:
+        """Hold as little of some files as can be; who holds a definition in one of them must not ask for it again."""
         gone = frozenset(paths)
         for path in gone:
-            self.files[path].forget_tree()
+            self.files[path].pack()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
         self._main_trees.clear()

@@ -53,7 +53,7 @@ ROWS: tuple[frozenset[str], ...] = (
     frozenset({"catalog"}),
     frozenset(
         {"toml_places", "project", "name_kinds", "symbols", "constraints", "mentions", "facts", "file", "workspace"}
-        | {"placeholders", "entry_types", "custom_nodes", "requirements", "graph"}
+        | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
     frozenset(

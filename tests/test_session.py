@@ -123,7 +123,7 @@ def patched(data: list[int], changes: list[Change]) -> list[int]:
 def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def held() -> set[str]:
         (workspace,) = session.workspaces()
-        return {Path(path).name for path, file in workspace.files.items() if file.has_tree}
+        return {Path(path).name for path, file in workspace.files.items() if file.is_unpacked}
 
     session = session_of(folder, {f"{folder}/other.btq": OTHER})
     told = {path: session.diagnostics(path) for path in session.paths()}
@@ -134,7 +134,7 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
     assert held() == {"other.btq"}
     session.edit(f"{folder}/skills.btq", SKILLS)
     session.let_go()
-    assert held() == {"other.btq"}
+    assert held() == {"other.btq", "skills.btq"}  # which is open now: its text is compared
     assert {path: session.diagnostics(path) for path in session.paths()} == told
     session.reload()
     assert {path: session.diagnostics(path) for path in session.paths()} == told
@@ -156,7 +156,7 @@ def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
     assert [fix.title for fix in unknown.fixes] == ["Include `skills.btq`"]
     workspace = session.workspace_of(other)
     assert workspace is not None
-    assert [path for path, file in workspace.files.items() if file.has_tree] == [other]
+    assert [path for path, file in workspace.files.items() if file.is_unpacked] == [other]
 
 
 def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None:
