@@ -7,6 +7,7 @@ is open.
 from __future__ import annotations
 
 import argparse
+import functools
 import logging
 import sys
 from collections.abc import Sequence
@@ -19,7 +20,9 @@ from btq_lang.handlers import register
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Serve until the editor goes."""
-    parser = argparse.ArgumentParser(prog="btq-lsp", description="The language server of btq, for editors.")
+    # To find out how wide a terminal is, argparse imports shutil, and that bz2 and lzma: half a megabyte.
+    formatter = functools.partial(argparse.HelpFormatter, width=78)
+    parser = argparse.ArgumentParser("btq-lsp", description=_DESCRIPTION, formatter_class=formatter)
     add_server_options(parser)
     parser.add_argument("-V", "--version", action="version", version=f"btq-lsp {__version__}")
     return serve(parser.parse_args(arguments))
@@ -46,6 +49,9 @@ def make_server() -> Server:
     server = Server()
     register(server)
     return server
+
+
+_DESCRIPTION = "The language server of btq, for editors."
 
 
 def _is_no_refusal(record: logging.LogRecord) -> bool:
