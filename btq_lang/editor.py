@@ -44,7 +44,6 @@ class Refused(JsonRpcException):
 
 NOTHING = Json('{"kind": "full", "items": []}')
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
-A_FEW = 2  # of the files, behind which is let go what is held for nobody
 MOST_DETAILS = 500  # a parameter may hold a whole text
 
 
@@ -243,8 +242,7 @@ class Server(LanguageServer):
                 self.publish(path)
             except Exception:  # one file that cannot be checked must not silence the others, nor end the server
                 logging.getLogger(__name__).exception("checking %s", path)
-            if len(self.waiting) % A_FEW == 0:
-                self.session.let_go()
+            self.session.let_go()
             await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)

@@ -7,7 +7,7 @@ import json
 
 from lsprotocol import types
 
-from btq_lang.editor import A_FEW, NOTHING, Server
+from btq_lang.editor import NOTHING, Server
 from btq_lang.handlers.progress import checking
 from btq_lang.protocol import Json
 
@@ -60,8 +60,7 @@ def _diagnostics(server: Server) -> None:
             for done, path in enumerate(paths, 1):
                 report = server.report(path, known.get(path))
                 items.append(_about(convert.uri(path), server.versions.get(path), report))
-                if done % A_FEW == 0:
-                    session.let_go()
+                session.let_go()
                 if done % A_PART == 0:
                     told(done)
                     if params.partial_result_token is not None:

@@ -106,9 +106,13 @@ async def _first_check(server: Server) -> None:
         return
     async with checking(server, len(paths)) as told:
         server.check_soon(paths)
+        is_kept = False
         while server.task is not None and not server.task.done():
             told(len(paths) - len(server.waiting))
             await asyncio.wait((server.task,), timeout=0.2)
+            if not is_kept:  # what the first checks have read would be looked through whenever trees are let go
+                keep_what_is_there()
+                is_kept = True
 
 
 def _endings() -> tuple[str, ...]:
