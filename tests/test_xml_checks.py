@@ -47,6 +47,28 @@ def test_what_no_included_xml_has_is_nowhere() -> None:
     )
 
 
+def test_the_engine_knows_no_namespaces() -> None:
+    text = """
+        //- main.xml
+        <root BTCPP_format="4" xmlns:x="u">
+          <x:include path="a.xml"/>
+          <BehaviorTree ID="Main"><x:Go/></BehaviorTree>
+          <x:BehaviorTree ID="T"><Go/></x:BehaviorTree>
+          <x:notes>of somebody else</x:notes>
+        </root>
+        """
+    ignored = "warning xml-ignored «{0}» the engine ignores <{0}>: it knows no namespaces, and reads <{1}>"
+    assert_problems(
+        text,
+        f"2:4 {ignored.format('x:include', 'include')}",
+        "3:28 error forbidden-name «x:Go» the engine refuses the node name `x:Go`: it contains `:`",
+        f"4:4 {ignored.format('x:BehaviorTree', 'BehaviorTree')}",
+    )
+    workspace = workspace_of({"main.xml": text.replace("//- main.xml", "").strip()})
+    notes = [note for found in check(workspace, "main.xml") for note in found.notes]
+    assert notes == ["it knows no namespaces of XML: to it the prefix is part of the name"]
+
+
 def test_what_could_not_be_read_may_hold_anything() -> None:
     text = SKILLS.format(more="        SubTree Pikc\n").replace("</TreeNodesModel>", "</TreeNodes>")
     told = "</TreeNodes> stands where </TreeNodesModel> is expected"

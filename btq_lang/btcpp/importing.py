@@ -191,7 +191,17 @@ class _Writer:
             self.line(level, element, [tag])
             self.models(element, level + 1)
         else:
+            self.prefixed(element)
             self.verbatim(element, level)
+
+    def prefixed(self, element: Element) -> None:
+        """Tell of `<x:BehaviorTree>`, which means something to who knows namespaces."""
+        meant = element.tag.rpartition(":")[2]
+        if meant == element.tag or meant not in ("BehaviorTree", "include", "TreeNodesModel"):
+            return
+        span = Span(element.start + 1, element.start + 1 + len(element.tag))
+        message = f"the engine ignores <{element.tag}>: it knows no namespaces, and reads <{meant}>"
+        self.ignored.append(Diagnostic("xml-ignored", span, message))
 
     def first(self, element: Element, key: str) -> Attribute | None:
         """The attribute that this language writes first; told where it was not."""

@@ -10,7 +10,7 @@ from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replac
 from btq_lang.name_kinds import Kind
 from btq_lang.record import replace
 from btq_lang.rules import Severity
-from btq_lang.syntax import Entry, Model, Models, Tree, Word
+from btq_lang.syntax import Entry, Model, Models, Tree, Word, is_name
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
 
+_NO_NAMESPACES = ("it knows no namespaces of XML: to it the prefix is part of the name",)
 _UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
 
 
@@ -78,7 +79,14 @@ def _of_id(view: View, seen: SeenNode, name: Word, reason: str) -> Iterator[Diag
     if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
         yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
-        yield _refused("node", name, reason, _explicit(seen, name))
+        refused = _refused("node", name, reason, _explicit(seen, name))
+        yield replace(refused, notes=_NO_NAMESPACES) if _is_prefixed(name.text) else refused
+
+
+def _is_prefixed(name: str) -> bool:
+    """Whether it is a name in a namespace of XML: `x:Foo`."""
+    prefix, _, rest = name.partition(":")
+    return is_name(prefix) and is_name(rest)
 
 
 def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:

@@ -78,7 +78,7 @@ _TABLE = (
     Rule("xml-syntax", _E, "XML that the engine cannot read"),
     Rule("xml-root", _E, "a document element that is not `root`"),
     Rule("xml-not-well-formed", _W, "XML that the engine reads and other tools refuse"),
-    Rule("xml-ignored", _W, "text in XML where the engine looks for none"),
+    Rule("xml-ignored", _W, "text or trees in XML where the engine looks for none"),
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
     Rule("no-models", _H, "many nodes with ports, and no model of any of them"),
