@@ -62,6 +62,20 @@ def test_models_of_the_file_alone_are_no_palette(model: str, node: str) -> None:
     assert_clean(f"Action {model}\n{tree(node)}")
 
 
+def test_where_most_nodes_have_models_one_without_is_a_hint() -> None:
+    models = "Action Grasp\nCondition Full\n"
+    told = "5:9 hint unknown-node «Release» unknown node `Release`"
+    assert_problems(models + tree("Release"), told)
+    assert_problems(models + tree("Release\n        Release"), told)
+    assert_fix(
+        models + tree("Release (force = 3)"),
+        "Declare it with its ports: `Action Release`",
+        models + "Action Release\n    input force : int\n" + tree("Release (force = 3)"),
+    )
+    assert_clean(models + tree("Action Release"))  # which says that there is one
+    assert_clean(models + tree("Release\n        Wait"))  # nearly as many have none
+
+
 def test_with_a_palette_a_missing_model_is_told_once() -> None:
     text = """
         TreeNodesModel

@@ -266,9 +266,10 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         if seen.node.category is not None:
             return  # written as a declaration: `Action Foo` says that there is such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        if not likely:
+        is_odd = view.scope.complete and not seen.is_placeholder and view.look_up(lookups.most_have_models)
+        if not (likely or is_odd):
             return
-    elif not likely and not view.is_first_use(entry, seen.node, name.text):
+    if not likely and not view.is_first_use(entry, seen.node, name.text):
         return  # what is missing is one model, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
@@ -278,8 +279,11 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
-        notes = (f"the other nodes here have models; the shortest is {shortest}",)
-    yield Diagnostic("unknown-node", name.span, f"unknown node `{name.text}`", notes=notes, fixes=fixes)
+        others = "the other nodes here" if has_palette else "most nodes here"
+        notes = (f"{others} have models; the shortest is {shortest}",)
+    severity = None if likely or has_palette else Severity.HINT
+    message = f"unknown node `{name.text}`"
+    yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
 def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import posixpath
 
 from btq_lang.catalog.names import legal_name, model_name_problem
-from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
@@ -214,6 +214,13 @@ def custom_node(workspace: Workspace, path: str, name: str) -> tuple[str, tuple[
 
     found = found_in_uses(workspace, path, name)
     return found.category, found.ports
+
+
+def most_have_models(workspace: Workspace, path: str) -> bool:
+    """Whether of the custom nodes that a file knows or uses few have no model: a third at most."""
+    known = workspace.scope(path).names(Kind.MODEL)
+    unknown = workspace.files[path].used(Kind.MODEL).difference(known)
+    return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
 
 
 def is_crowded(workspace: Workspace, path: str, kind: Kind) -> bool:
