@@ -7,8 +7,9 @@ importing   a document as a mission; `wording` spells its words, `version3` says
 export      a mission as a document; `source` is what its parts share, `trees`, `models`, `attributes`, `descriptions`
             and `spelling` the parts, `fragment` looks at elements that a mission spells out,
             `undeclared` makes models of what is only used
-enforcement what requirements put around nodes, and how each clause is held; `guards` what a clause needs, `conditions`
-            its scripts, `keys` its names, `wrappers` the elements, in and out again
+enforcement what requirements put around nodes, and how each clause is held; `judging` whether the engine can hold it,
+            `guards` what it needs, `around` that as data, `conditions` its scripts, `keys` its names, `wrappers` the
+            elements, in and out again
 bundle      a mission and all that it includes as one document
 side_file   what a mission says beyond its XML; `instances` numbers the nodes as the engine does
 restoring   a mission from its XML and its side file

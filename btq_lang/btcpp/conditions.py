@@ -10,8 +10,6 @@ Source: the engines' own grammars, src/script_parser.cpp (4.9 and later) and scr
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
 from math import inf
 
 from btq_lang.requirements.model import (
@@ -35,11 +33,11 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
-from btq_lang.script import check_script, parse_script, variables
 from btq_lang.units import Unit, from_si
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Final, TypeAlias
 
     # The variable that a value table is read into, when the node starts; it has the value in this unit, None: in SI.
@@ -115,7 +113,7 @@ def signal_script(signal: Signal) -> str:
     key = (signal.key or "").removeprefix("@")
     if signal.key is None:
         raise NoScript(f"`{signal.name}` names no blackboard entry")
-    if not _NAME.fullmatch(key):
+    if not (key.isascii() and key.isidentifier()):
         raise NoScript(f"`{signal.name}` is read from `{key}`, which is no name in a script")
     return f"@{key}"
 
@@ -203,6 +201,8 @@ def _text(text: str) -> str:
 
 def _own_script(script: Script) -> str:
     """A script in a classic description: one expression that changes nothing, and means the same everywhere."""
+    from btq_lang.script import check_script, parse_script, variables  # few missions have one
+
     parsed = parse_script(script.code)
     if check_script(parsed, expects_value=True) or len(parsed.statements) != 1:
         raise NoScript("its script is not one expression that every version of the engine reads alike")
@@ -216,4 +216,3 @@ def _none_stored(_table: Table, _unit: Unit | None) -> str:
 
 
 _LONGEST: Final = 10_000
-_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

@@ -16,20 +16,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
-from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
+from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
 from btq_lang.btcpp.document import Comment, Document, Element
 from btq_lang.btcpp.export import Export, is_mission
-from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
+from btq_lang.btcpp.guards import NotEnforced
+from btq_lang.btcpp.judging import Elsewhere, Judge, Looks, first_looks, where_else
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
-from btq_lang.btcpp.wrappers import START, FirstValues, Leaf, Wrapper, may_be_skipped, wrapped
+from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.diagnostics import Place
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements, requirements
-from btq_lang.requirements.budgets import Budget, Budgets
-from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
-from btq_lang.requirements.spans import node_of
+from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -191,14 +190,6 @@ def _plan(
     return _Plan(held, wrappers, planner.enforced, planner.cells, planner.first, tuple(planner.stops))
 
 
-class _Elsewhere(NotEnforced):
-    """A node stands in a file that is not written together with the clause's."""
-
-    def __init__(self, node: SourceNode) -> None:
-        super().__init__()
-        self.node: Final = node
-
-
 class _Planner:
     def __init__(
         self,
@@ -207,6 +198,7 @@ class _Planner:
         path: str,
         files: frozenset[str],
         others: Sequence[_Plan],
+        looks: Looks | None = None,
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, Held]] = {}
@@ -218,9 +210,11 @@ class _Planner:
         self._path: Final = path
         self._files: Final = files
         self._others: Final = others
-        self._shared: Final = path in workspace.included_files
-        self._has_start: Final = self._shared or _begins(workspace, found, path, files)
         self._keys: Final = Keys()
+        is_shared = path in workspace.included_files
+        has_start = is_shared or _begins(workspace, found, path, files)
+        self._looks: Final = looks or first_looks(found)
+        self._judge: Final = Judge(found, self._looks, files=files, is_shared=is_shared, has_start=has_start)
 
     def held(self, applied: Applied, claim: Claim) -> Held:
         """What is done about a clause; what it needs is remembered."""
@@ -231,20 +225,20 @@ class _Planner:
             requirement.name, claim.text, claim.place, applied.node, "monitored", asked=True, subject=applied.shown
         )
         try:
-            node = self._node(applied, claim)
+            node = self._judge.node(applied, claim)
             identity = (requirement.name, claim.text, id(node.node), applied.arguments)
             known = self.enforced.get(identity)
             if known is None and node.path not in self._files:
                 known = next((each for other in self._others if (each := other.enforced.get(identity))), None)
                 if known is None:
-                    raise _Elsewhere(node)
+                    raise Elsewhere(node)
             if known is None:
                 known = replace(held, way="enforced", why=self._guard(requirement, claim, node))
                 self.enforced[identity] = known
-        except _Elsewhere as elsewhere:
+        except Elsewhere as elsewhere:
             bundled = self._bundled.held(applied, claim)
             is_helped = bundled.way == "enforced"
-            return replace(held, why=_where_else(self._workspace, elsewhere.node) if is_helped else bundled.why)
+            return replace(held, why=where_else(self._workspace, elsewhere.node) if is_helped else bundled.why)
         except NotEnforced as reason:
             return replace(held, why=str(reason))
         return known
@@ -253,27 +247,7 @@ class _Planner:
     def _bundled(self) -> _Planner:
         """The same for a bundle: what cannot be enforced there either has another reason than where its node stands."""
         files = _written(self._workspace, self._path, True)
-        return _Planner(self._workspace, self._found, self._path, files, ())
-
-    def _node(self, applied: Applied, claim: Claim) -> SourceNode:
-        requirement, subject = applied.requirement, applied.subject
-        if requirement.odds is not None:
-            raise NotEnforced("odds are judged over many runs")
-        if requirement.window is not None:
-            raise NotEnforced("a window is looked at in the logs of many runs")
-        if isinstance(subject, Target) and subject.through:
-            raise NotEnforced("its path names some instances of a node only")
-        if (
-            isinstance(subject, Span)
-            and claim.verb == "takes"
-            and (node := node_of(subject, self._budgets)) is not None
-        ):
-            return node
-        if not isinstance(subject, Target | Mission):
-            raise NotEnforced("it is about the time between nodes, and nothing stands around that")
-        if subject.node is None:
-            raise NotEnforced("nobody can say which tree is the mission")
-        return subject.node
+        return _Planner(self._workspace, self._found, self._path, files, (), self._looks)
 
     def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
         """Remember what a clause needs; what there is to say of it.
@@ -282,16 +256,7 @@ class _Planner:
             NotEnforced: the engine cannot do it.
         """
         name = self._keys.next(requirement.name)
-        made = guarded(requirement, claim, node, name, self._keys.stop(requirement.name), self._shared)
-        self._can_stand(claim, node, made)
-        first: dict[str, str] = {}
-        for signal in made.signals:
-            first |= _first_value(signal)
-        if (first or made.cells or made.stop) and not self._has_start:
-            raise NotEnforced("nobody can say which tree is the mission, and where it begins")
-        if made.stop is not None and not self._shared:
-            assert self._found.mission is not None, "there is a mission that begins"
-            _can_stand_around(self._found.mission, self._budget_of(self._found.mission).skip is not None)
+        made, first = self._judge.needs(requirement, claim, node, name, self._keys.stop(requirement.name))
         self._keys.take(name)
         self.cells.update(made.cells)
         self.first.update(first)
@@ -299,63 +264,15 @@ class _Planner:
             self.stops[made.stop] = None
         for each, wrapper in made.wrappers:
             self.wrappers.setdefault(id(each.node), []).append(wrapper)
-        unset = [signal.name for signal in made.signals if signal.initially is None]
         notes = [made.note] if made.note else []
-        if unset:
-            names = ", ".join(f"`{name}`" for name in unset)
-            notes.append(
-                f"the mission ends where {names} {'is' if len(unset) == 1 else 'are'} read before a first sample"
-            )
+        if unset := [signal.name for signal in made.signals if signal.initially is None]:
+            notes.append(f"the mission ends where {_are(unset)} read before a first sample")
         return "; ".join(notes)
 
-    def _can_stand(self, claim: Claim, node: SourceNode, made: Guarded) -> None:
-        if claim.verb in ("takes", "succeeds") and claim.limit is not None and not self._budget_of(node).waits:
-            raise NotEnforced(f"{node.shown} completes within one tick")
-        for each in dict.fromkeys(each for each, _ in made.wrappers):
-            if each.path not in self._files:
-                raise _Elsewhere(each)
-            _can_stand_around(each, self._budget_of(each).skip is not None)
 
-    def _budget_of(self, node: SourceNode) -> Budget:
-        return self._budgets.composed(node)
-
-    @cached_property
-    def _budgets(self) -> Budgets:
-        return Budgets(self._found)
-
-
-def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
-    """Whether the tree stays as it is with something around a node.
-
-    Raises:
-        NotEnforced: it does not.
-    """
-    if is_skipped_inside:
-        raise NotEnforced(f"{node.shown} may be skipped from within, and what stands around it could not be")
-    names = [pair.key.text for pair in node.node.attributes]
-    if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
-        raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
-    # Nobody resets the condition of these: when it is asked again, an action says what it said before, and `_failureIf`
-    # is not looked at.  With something around it, it would be reset.
-    asks = node.parent if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") else None
-    is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
-    if asks is not None and node.index == 0 and not is_asked_anew:
-        raise NotEnforced(f"{node.shown} is the condition of {asks.shown}, which would ask it in another way")
-
-
-def _first_value(signal: Signal) -> dict[str, str]:
-    if signal.initially is None:
-        return {}
-    try:
-        return {signal_script(signal): first_value_script(signal)}
-    except NoScript as reason:
-        raise NotEnforced(str(reason)) from reason
-
-
-def _where_else(workspace: Workspace, node: SourceNode) -> str:
-    if workspace.files[node.path].origin is not None:
-        return f"{node.shown} stands in an XML file, which is not built; with --bundle it is enforced"
-    return f"{node.shown} stands in an included file, which other missions may include; with --bundle it is enforced"
+def _are(names: Sequence[str]) -> str:
+    """`a` is; `a`, `b` are"""
+    return f"{', '.join(f'`{name}`' for name in names)} {'is' if len(names) == 1 else 'are'}"
 
 
 # ---- what is put around nodes ----
@@ -403,5 +320,3 @@ def _put(document: Document, wrappers: Mapping[int, Sequence[Wrapper]]) -> None:
 
 
 _ALL: Final = "*"
-_ASKED_ANEW: Final = frozenset(("Condition", "Control", "Decorator"))
-_POSTCONDITIONS: Final = ("_onSuccess", "_onFailure", "_post")

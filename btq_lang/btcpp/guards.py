@@ -6,11 +6,9 @@ seen at work, or the engine does by itself what it asks.  It does not know eleme
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
 from btq_lang.btcpp.conditions import NoScript, condition_script, real, signal_script, table_script, value_script
 from btq_lang.btcpp.keys import legal
-from btq_lang.btcpp.wrappers import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
 from btq_lang.record import Record, replace
 from btq_lang.requirements.model import (
     Bounded,
@@ -31,9 +29,10 @@ from btq_lang.units import Unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Final
 
-    from btq_lang.btcpp.wrappers import WrapperTag
+    from btq_lang.btcpp.around import WrapperTag
 
 
 class NotEnforced(Exception):

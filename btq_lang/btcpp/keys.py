@@ -11,7 +11,7 @@ share one.
 
 from __future__ import annotations
 
-import re
+from btq_lang.regex import regex
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -55,8 +55,10 @@ class Keys:
 
 def legal(name: str) -> str:
     """A name with `_` for all that no script has in its names."""
+    if name.isascii() and name.isidentifier():
+        return name
     plain = _OTHER.sub("_", name)
     return f"_{plain}" if plain[:1].isdigit() else plain or "_"
 
 
-_OTHER: Final = re.compile(r"[^A-Za-z0-9_]")
+_OTHER: Final = regex(r"[^A-Za-z0-9_]")
