@@ -229,6 +229,18 @@ def test_reasons(clauses: str, why: str) -> None:
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [f"r: monitored: {why}"]
 
 
+def test_a_guard_minds_no_age_and_says_so() -> None:
+    text = (
+        "signal speed : m/s from {speed} fresh within 1 s initially 0 m/s\n"
+        "signal near : bool from {near} fresh within 1 s initially false\n"
+        f"QualityReq q\n    Move keeps speed <= 1 m/s\n    Move needs not near and speed == 0 m/s\n{FAIL}{TAIL}"
+    )
+    assert states(Workspace.of({"main.btq": text}), "main.btq") == [
+        "q: enforced: `speed` is read however old it is",
+        "q: enforced: `near`, `speed` are read however old they are",
+    ]
+
+
 def test_a_node_that_is_skipped_from_within_stays_so() -> None:
     text = "QualityReq r\n    takes at most 5 s\n    on violation fail\napply r to Some\nRoot Main\nBehaviorTree Main\n"
     text += '    ?\n        -> Some\n            Move (_skipIf = "off")\n        Rest\n'

@@ -267,6 +267,8 @@ class _Planner:
         notes = [made.note] if made.note else []
         if unset := [signal.name for signal in made.signals if signal.initially is None]:
             notes.append(f"the mission ends where {_are(unset)} read before a first sample")
+        if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
+            notes.append(f"{_are(aging)} read however old {'it is' if len(aging) == 1 else 'they are'}")
         return "; ".join(notes)
 
 

@@ -134,7 +134,12 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("level", "signal charge : % level", "it runs down", "uses of it are the value before less that after"),
         ("counter", "signal energy : Wh counter", "it counts up", "uses of it are the value after less that before"),
         ("gauge", "signal speed : m/s gauge", "just a value", "a value that nothing uses up"),
-        ("fresh within", "signal speed : m/s fresh within 200 ms", "its age", "an older reading counts as unknown"),
+        (
+            "fresh within",
+            "signal speed : m/s fresh within 200 ms",
+            "its age",
+            "in a log an older reading counts as unknown; guards read the last one, however old",
+        ),
         (
             "initially",
             "signal speed : m/s initially 0 m/s",
