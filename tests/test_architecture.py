@@ -78,6 +78,7 @@ ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
 # The rules' pages, the catalog's data and the page of the preview too.
 READS_THE_DISK = frozenset({"loader", "rules", "commands", "catalog", "preview"})
 READS_SIBLINGS = {
+    "checks": frozenset({"btcpp"}),  # whether a build enforces what it is asked to
     "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
     "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours
 }

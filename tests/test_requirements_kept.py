@@ -93,6 +93,47 @@ QualityReq budget : time-behaviour "Never longer FailureIf battery < 3 %"
 QualityReq classic "FailureIf(takes at most 20 s)"
 """
 FILES = {"/p/main.btq": MAIN, "/p/skills.btq": SKILLS, "/p/requirements.btq": REQUIREMENTS}
+GUARDS = {
+    "/p/main.btq": """include "skills.btq"
+include "requirements.btq"
+Root Main
+BehaviorTree Main
+    ->
+        Sense (speed = {speed})
+        Pick satisfies slow
+        SubTree Carry (to = "x")
+        || Beside
+            SubTree Watch (_autoremap = true)
+            Place satisfies slow, still
+apply still to every MoveBase
+BehaviorTree Watch
+    -> Inner
+        Sense (speed = {speed})
+        Sleep (msec = 3 s)
+""",
+    "/p/skills.btq": """include "requirements.btq"
+Condition Sense
+    output speed : double
+Action Pick
+Action Place
+Action MoveBase
+BehaviorTree Carry
+    input to : string
+    R->
+        Condition Quiet
+        MoveBase satisfies slow
+""",
+    "/p/requirements.btq": """signal speed : m/s from {speed} initially 0 m/s
+signal people : person from {people} initially 0 person
+QualityReq slow
+    keeps speed <= 1 m/s
+    on violation halt
+QualityReq still
+    leaves speed <= 0.1 m/s
+    takes at least 1 s
+    on violation fail
+""",
+}
 CLASSIC = {"/p/main.btq": missions.mission(60, 2, "classic")}
 SHORT = {"/p/main.btq": missions.mission(90, 3, "short")}
 EXAMPLE = {"/p/main.btq": (Path(__file__).parent / "every_form.btq").read_text(encoding="utf-8")}
@@ -112,6 +153,7 @@ WORDS = (
         "40 s",
         "0.2 m/s",
     ),
+    *("Sense", "Watch", "R->", "->", "||", "halt", "(speed = {speed})", "{speed}", "still"),
     *("x", "1", "9 s", "-1", "Retry", "Sleep", "Fallback", "SubTree Help", "at least", "fail", "risky", "apply"),
 )
 LINES = (
@@ -124,7 +166,11 @@ LINES = (
 
 
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("files", [FILES, CLASSIC, SHORT, EXAMPLE], ids=["includes", "classic", "short", "every form"])
+@pytest.mark.parametrize(
+    "files",
+    [FILES, GUARDS, CLASSIC, SHORT, EXAMPLE],
+    ids=["includes", "guards", "classic", "short", "every form"],
+)
 def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
     chance = random.Random(seed)
     workspace = Workspace.of(files)

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import Any, TypeAlias
 
+    from btq_lang.btcpp.judging import Judge
     from btq_lang.checks.swallowing import WaysUp
     from btq_lang.checks.view import View
+    from btq_lang.checks.writers import Entries
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.durations import Term
@@ -41,6 +43,8 @@ class Demanded(Asker):
         tree: the tree that is looked at.
         claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
             a span the one that takes as long), and where to tell of it.
+        hard: all that are to be enforced, for whichever node of it; the place is None where nothing in this file speaks
+            of it; and why the engine does not hold it, if it does not.
         noted: what was asked of other trees.
         ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was.
         turned: the trees of whose callers others were known then: what was found of a way through one holds no more.
@@ -49,6 +53,7 @@ class Demanded(Asker):
 
     tree: TreeNodes
     claims: tuple[tuple[Applied, Claim, SourceNode, Place], ...]
+    hard: tuple[tuple[Applied, Claim, SourceNode, Place | None, str | None], ...]
 
     def __init__(self, view: View) -> None:
         assert view.requirements is not None, "the rules are asked only where there are requirements"
@@ -66,6 +71,8 @@ class Demanded(Asker):
         self.turned: frozenset[str | None] = of_ways.turned_since(view.resolved.ways_up[1])
         self.ends_at: dict[SourceNode, Any] = {}
         self._ports: dict[str, tuple[Port, ...]] | None = None
+        self._entries: list[Entries] | None = None
+        self._judge: Judge | None = None
         view.resolved.ways_up = self.ways_up, of_ways
 
     def look_at(self, tree: TreeNodes) -> None:
@@ -75,18 +82,41 @@ class Demanded(Asker):
         for _, _, node, _ in self.claims:
             if node.category == "SubTree":
                 self.ask((_root, node))  # budgets of it name the root
+        self.hard = tuple(_hard_claims(self))
 
     def ask(self, question: Question) -> Any:
         """What is so outside of the tree: a function, called with this and with what it is asked about."""
         answer = self.noted[question] = self.answer(question)
         return answer
 
-    def answer(self, question: Question) -> object:
+    def answer(self, question: Question) -> Any:
         """What the answer is now."""
         if question not in self._answers:
             what, about = question
             self._answers[question] = what(self, about)
         return self._answers[question]
+
+    def why_not(self, applied: Applied, claim: Claim) -> str | None:
+        """Why the engine does not hold a claim that it is asked to; None: it does, if all files are written as one."""
+        if applied.requirement.method in ("review", "test", "analysis"):
+            return f"verified by {applied.requirement.method}"
+        if self._judge is None:
+            self._judge = _judge(self)
+        self.ask((_mission, self.view.path))
+        return self._judge.why_not(applied, claim)
+
+    @property
+    def entries(self) -> list[Entries]:
+        """The entries that nodes name, for each tree in scope."""
+        if self._entries is None:
+            from btq_lang.checks.writers import entries_of  # few missions have a signal
+
+            noted, self.noted = self.noted, {}
+            table = self.view.resolved.table("entries", self)
+            trees = self.requirements.nodes.trees
+            self._entries = table.all(trees, [None] * len(trees), lambda at: entries_of(self, trees[at]))
+            self.noted = noted
+        return self._entries
 
     @property
     def ports(self) -> dict[str, tuple[Port, ...]]:
@@ -121,8 +151,50 @@ class Callers(Record):
         return frozenset((*turned, *((was, self.mission) if was != self.mission else ())))
 
 
+def _hard_claims(
+    demanded: Demanded,
+) -> Iterator[tuple[Applied, Claim, SourceNode, Place | None, str | None]]:
+    for applied in demanded.requirements.in_tree(demanded.tree):
+        if applied.requirement.action not in ("fail", "halt"):
+            continue
+        for claim in applied.requirement.claims:
+            node = _node(applied, claim, demanded.budgets) or applied.nodes[0]
+            place = told_at(demanded.view, applied, claim)
+            if place is None and node.path == demanded.view.path:
+                place = node.place
+            yield applied, claim, node, place, demanded.why_not(applied, claim)
+
+
 def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:
     return demanded.requirements.nodes.run_by(node)
+
+
+def _judge(demanded: Demanded) -> Judge:
+    """Who judges what is written if all files are written as one."""
+    from btq_lang.btcpp.judging import Judge, Looks  # few missions have a claim that is to be enforced
+    from btq_lang.requirements.spans import node_of
+
+    def is_skipped(node: SourceNode) -> bool:
+        ask = demanded.answer if node.item is demanded.tree.item else demanded.ask
+        return bool(ask((_is_skipped, node)))
+
+    looks = Looks(
+        lambda node: demanded.budgets.composed(node).waits, is_skipped, lambda span: node_of(span, demanded.budgets)
+    )
+    found, is_shared = demanded.requirements, demanded.view.path in demanded.view.workspace.included_files
+    has_start = is_shared or found.mission is not None
+    return Judge(found, looks, files=None, is_shared=is_shared, has_start=has_start)
+
+
+def _is_skipped(demanded: Demanded, node: SourceNode) -> bool | None:
+    """None: the node is gone."""
+    nodes = demanded.requirements.nodes
+    return demanded.budgets.composed(node).skip is not None if nodes.has(node.item) else None
+
+
+def _mission(demanded: Demanded, path: str) -> tuple[SourceNode | None, int]:
+    """The mission's root, and whether others include the file."""
+    return demanded.requirements.mission, int(path in demanded.view.workspace.included_files)
 
 
 def _claims(
@@ -130,14 +202,19 @@ def _claims(
 ) -> Iterator[tuple[Applied, Claim, SourceNode, Place]]:
     for applied in held:
         for claim in applied.requirement.claims:
-            node = applied.node
-            if isinstance(applied.subject, Span) and claim.verb == "takes":
-                from btq_lang.requirements.spans import node_of  # few claims speak of a way between two nodes
-
-                node = node_of(applied.subject, budgets)
+            node = _node(applied, claim, budgets)
             place = told_at(view, applied, claim) if node is not None else None
             if node is not None and place is not None:
                 yield applied, claim, node, place
+
+
+def _node(applied: Applied, claim: Claim, budgets: Budgets) -> SourceNode | None:
+    """The node that a claim is about; of a span the one that takes as long."""
+    if isinstance(applied.subject, Span) and claim.verb == "takes":
+        from btq_lang.requirements.spans import node_of  # few claims speak of a way between two nodes
+
+        return node_of(applied.subject, budgets)
+    return applied.node
 
 
 def told_at(view: View, applied: Applied, claim: Claim) -> Place | None:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded, Found, Guard
     from btq_lang.checks.view import View
     from btq_lang.diagnostics import Diagnostic
+    from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.trees import TreeNodes
     from btq_lang.syntax import Entry
@@ -48,15 +49,18 @@ def _all_demands(view: View) -> ByItem:
         if known[1]:
             guards += known[1]
     table = memory.table("demands by themselves", demanded)
-    lonely = [each for each in demanded.requirements.all.values() if each.goal is not None or each.window is not None]
-    found += table.all(lonely, [None] * len(lonely), lambda at: _of_requirement(view, lonely[at]))
+    pairs = zip(demanded.requirements.all.values(), demanded.requirements.held, strict=True)
+    told = [(each, _between(each, held)) for each, held in pairs]
+    told = [(each, held) for each, held in told if each.goal is not None or each.window is not None or held is not None]
+    lonely, between = [each for each, _ in told], [held for _, held in told]
+    found += table.all(lonely, between, lambda at: _of_requirement(demanded, lonely[at], between[at]))
     found.append(_by_item(view, of_signals(demanded, guards, memory)))
     return _together(found)
 
 
 def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
     """What the rules find of the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, odds, signals, swallowing  # as above
+    from btq_lang.checks import budgets, limits, odds, signals, swallowing, unenforced  # as above
 
     demanded.look_at(tree)
     rules = (
@@ -70,16 +74,26 @@ def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
         budgets.timeout_never_succeeds,
         odds.odds_beyond_children,
         swallowing.swallowed_failure,
+        unenforced.not_enforced,
     )
     found = [each for rule in rules for each in rule(demanded)]
     return _by_item(demanded.view, found), list(signals.guards(demanded))
 
 
-def _of_requirement(view: View, requirement: Requirement) -> ByItem:
-    """What is wrong with a requirement, whatever it holds for."""
-    from btq_lang.checks import limits, odds  # as above
+def _between(requirement: Requirement, held: Held) -> Held | None:
+    """What a requirement holds for that is to be enforced, if there is more of it than what nodes are held to."""
+    is_hard = requirement.action in ("fail", "halt")
+    return held if is_hard and len(held.applied) > len(held.by_tree) else None
 
-    found = (*limits.goal_beyond_bound(view, requirement), *odds.window_too_small(requirement))
+
+def _of_requirement(demanded: Demanded, requirement: Requirement, between: Held | None) -> ByItem:
+    """What is wrong with a requirement, whatever it holds for."""
+    from btq_lang.checks import limits, odds, unenforced  # as above
+
+    view = demanded.view
+    found = [*limits.goal_beyond_bound(view, requirement), *odds.window_too_small(requirement)]
+    if between is not None:
+        found += unenforced.not_enforced_between(demanded, between)
     return _by_item(view, found)
 
 

@@ -2,40 +2,23 @@
 
 from __future__ import annotations
 
-from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
+from btq_lang.checks.writers import declared_port, isolated
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.entry_types import is_text
 from btq_lang.near import near
-from btq_lang.record import Record
 from btq_lang.rules import Severity
-from btq_lang.syntax import Pair, Port
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from btq_lang.requirements import Memory, Requirements
+    from btq_lang.checks.writers import Entries
+    from btq_lang.requirements import Memory
     from btq_lang.requirements.memory import Table
-    from btq_lang.requirements.model import Signal, SourceNode
-    from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.requirements.model import Signal
 
 _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
-
-
-class _Entries(Record):
-    """The blackboard entries that the nodes of a tree name.
-
-    Attributes:
-        writes: those that something may write, with the node that does, those of the root blackboard with their `@`.
-        written: the same, without.
-        pointers: the attributes in braces, with their nodes, by the entry, without its `@`; and whether it had one.
-    """
-
-    writes: tuple[tuple[SourceNode, str], ...]
-    written: frozenset[str]
-    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]]
 
 
 def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> Iterator[Found]:
@@ -50,9 +33,7 @@ def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> I
     yield from _may_be_unset(demanded, guards)
     if not here:
         return
-    table = memory.table("entries", demanded)
-    trees = demanded.requirements.nodes.trees
-    entries = table.all(trees, [None] * len(trees), lambda at: _entries_of(demanded, trees[at]))
+    entries = demanded.entries
     yield from _never_written(demanded, here, entries, guards, memory.table("near", demanded))
     yield from _of_text(demanded, here, entries)
 
@@ -73,7 +54,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
 
 
 def _never_written(
-    demanded: Demanded, here: list[Signal], entries: list[_Entries], guards: list[Guard], table: Table
+    demanded: Demanded, here: list[Signal], entries: list[Entries], guards: list[Guard], table: Table
 ) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
     same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
@@ -91,7 +72,7 @@ def _never_written(
     likely_keys = dict(zip(keys, near_keys, strict=True))
     for signal in here:
         key = (signal.key or "").removeprefix("@")
-        if key in written and signal.name in guarding and (writer := _isolated(found, entries, key)) is not None:
+        if key in written and signal.name in guarding and (writer := isolated(found, entries, key)) is not None:
             message = f"`{signal.name}` is read from the root's `{key}`, and the tree `{writer.tree}` writes its own"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
@@ -114,7 +95,7 @@ def _never_written(
         )
 
 
-def _of_text(demanded: Demanded, here: list[Signal], entries: list[_Entries]) -> Iterator[Found]:
+def _of_text(demanded: Demanded, here: list[Signal], entries: list[Entries]) -> Iterator[Found]:
     """A signal that is a number, whose entry a port of texts writes: a script that compares it converts the text, and
     throws where it is no number."""
     mission = demanded.requirements.mission
@@ -124,7 +105,7 @@ def _of_text(demanded: Demanded, here: list[Signal], entries: list[_Entries]) ->
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
             if not is_of_root and (mission is None or node.tree != mission.tree):
                 continue
-            port = _declared(demanded, node, pair.key.text)
+            port = declared_port(demanded, node, pair.key.text)
             if port is None or port.type is None or port.direction.raw == "input" or not is_text(port.type.text):
                 continue
             message = (
@@ -162,95 +143,3 @@ def _may_be_unset(demanded: Demanded, guards: Iterable[Guard]) -> Iterator[Found
                 notes=("give it one: `initially …`",),
             ),
         )
-
-
-def _isolated(found: Requirements, entries: list[_Entries], key: str) -> SourceNode | None:
-    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root."""
-    if found.mission is None:
-        return None
-    calls: dict[str | None, list[tuple[str, SourceNode]]] = {}
-    for tree in found.nodes.trees:
-        calls.setdefault(tree.name, []).extend(tree.calls)
-    # Which name the root's entry has in which tree.
-    names = {(found.mission.tree, key)}
-    waiting = [found.mission.tree]
-    while waiting:
-        at = waiting.pop()
-        for called, node in calls.get(at, ()):
-            for name in _passed_on(node, {name for of, name in names if of == at}):
-                if (called, name) not in names:
-                    names.add((called, name))
-                    waiting.append(called)
-    writes = [write for each in entries for write in each.writes]
-    writers = [node for node, written in writes if written.removeprefix("@") == key]
-    if any(written == f"@{key}" or (node.tree, written) in names for node, written in writes):
-        return None
-    return writers[0]
-
-
-def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:
-    """The names by which a tree that runs another one makes its entries known to that."""
-    given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
-    for port, text in given.items():
-        if is_pointer(text) and (port if text[1:-1].strip() == "=" else text[1:-1].strip()) in names:
-            yield port
-    if given.get("_autoremap", "false").lower() not in ("false", "0"):
-        yield from (name for name in names if name not in given and not name.startswith("_"))
-
-
-def _entries_of(demanded: Demanded, tree: TreeNodes) -> _Entries:
-    writes: list[tuple[SourceNode, str]] = []
-    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]] = {}
-    for node in tree.all:
-        for pair in node.node.attributes:
-            if pair.value is None:
-                continue
-            text = pair.value.text
-            port = pair.key.text
-            is_entry = is_pointer(text)
-            if is_entry:
-                key = text[1:-1].strip()
-                key = port if key == "=" else key
-                pointers.setdefault(key.removeprefix("@"), []).append((node, pair, key[:1] == "@"))
-            if _is_script(node, port):
-                writes += ((node, name) for name in _assigned(text))
-            elif port == "output_key" and node.tag == "SetBlackboard":
-                writes.append((node, text.strip("{}")))
-            elif is_entry and _may_write(demanded, node, port):
-                writes.append((node, key))
-    written = frozenset([name.removeprefix("@") for _, name in writes])
-    return _Entries(tuple(writes), written, pointers)
-
-
-def _is_script(node: SourceNode, key: str) -> bool:
-    attribute = RESERVED_ATTRIBUTES.get(key)
-    port = node.kind.port(key) if node.kind is not None else None
-    return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
-
-
-def _assigned(script: str) -> Iterator[str]:
-    from btq_lang.script import parse_script, variables
-
-    for variable in variables(parse_script(script)):
-        if variable.writes:
-            yield variable.name
-
-
-def _may_write(demanded: Demanded, node: SourceNode, port: str) -> bool:
-    """Whether a port may be written: all but those that are said to be inputs."""
-    if node.kind is not None:
-        builtin = node.kind.port(port)
-        return builtin is not None and builtin.direction != "input"
-    declared = _declared(demanded, node, port)
-    return declared is None or declared.direction.raw != "input"
-
-
-def _declared(demanded: Demanded, node: SourceNode, port: str) -> Port | None:
-    """The port as the node's model, or the tree behind a SubTree, declares it."""
-    name = node.node.id
-    ports: tuple[Port, ...] = demanded.ask((_ports, name.text)) if name is not None else ()
-    return next((each for each in ports if each.name is not None and each.name.text == port), None)
-
-
-def _ports(demanded: Demanded, name: str) -> tuple[Port, ...]:
-    return demanded.ports.get(name, ())

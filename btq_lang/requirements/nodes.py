@@ -86,6 +86,10 @@ class Nodes:
         """The written root of a tree; None where the tree has none, or nobody knows it."""
         return self._roots.get(tree)
 
+    def has(self, item: Tree) -> bool:
+        """Whether a tree is one of these."""
+        return id(item) in self._of_item
+
     def within(self, item: Tree) -> TreeNodes:
         """The nodes of one of the trees.
 

@@ -159,6 +159,7 @@ _TABLE = (
     Rule("odds-beyond-children", _W, "odds that what is demanded of the children does not ensure"),
     Rule("window-too-small", _W, "odds that no such window can show"),
     Rule("swallowed-failure", _W, "`on violation fail` where a parent goes on after the failure"),
+    Rule("not-enforced", _W, "`on violation fail` or `halt` where the engine cannot be made to do it"),
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
     Rule("unused-signal", _H, "a signal that nothing asks for"),
     Rule("unused-context", _H, "a context that no condition names"),

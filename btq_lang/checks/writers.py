@@ -1,0 +1,145 @@
+"""Which nodes write which blackboard entries, as far as a mission says it.
+
+One invariant: a node that may write an entry is said to: only ports that are declared as inputs are not.  It does not
+know when nodes run.
+"""
+
+from __future__ import annotations
+
+from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.literals import is_pointer
+from btq_lang.record import Record
+from btq_lang.syntax import Pair, Port, Verbatim
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from btq_lang.checks.demanded import Demanded
+    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.model import SourceNode
+    from btq_lang.requirements.trees import TreeNodes
+
+
+class Entries(Record):
+    """The blackboard entries that the nodes of a tree name.
+
+    Attributes:
+        writes: those that something may write, with the node that does, those of the root blackboard with their `@`.
+        written: the same, without.
+        pointers: the attributes in braces, with their nodes, by the entry, without its `@`; and whether it had one.
+        mentioned: names without braces that a node is given, which may do with that entry what it likes.
+        is_open: something in it may write any entry: XML as it is, or an entry that another one names.
+    """
+
+    writes: tuple[tuple[SourceNode, str], ...]
+    written: frozenset[str]
+    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]]
+    mentioned: frozenset[str]
+    is_open: bool
+
+
+def entries_of(demanded: Demanded, tree: TreeNodes) -> Entries:
+    """Those of a tree."""
+    writes: list[tuple[SourceNode, str]] = []
+    pointers: dict[str, list[tuple[SourceNode, Pair, bool]]] = {}
+    mentioned: set[str] = set()
+    is_open = any(isinstance(child, Verbatim) for child in tree.item.children)
+    for node in tree.all:
+        if node.node.children and len(node.children) < len(node.node.children):
+            is_open = is_open or any(isinstance(child, Verbatim) for child in node.node.children)
+        for pair in node.node.attributes:
+            if pair.value is None:
+                continue
+            text = pair.value.text
+            port = pair.key.text
+            is_entry = is_pointer(text)
+            if is_entry:
+                key = key_of(text, port)
+                pointers.setdefault(key.removeprefix("@"), []).append((node, pair, key[:1] == "@"))
+            if _is_script(node, port):
+                writes += ((node, name) for name in _assigned(text))
+            elif port == "output_key" and node.tag == "SetBlackboard":
+                writes.append((node, text.strip("{}")))
+                is_open = is_open or is_entry
+            elif is_entry:
+                if _may_write(demanded, node, port):
+                    writes.append((node, key))
+            elif node.tag == "UnsetBlackboard" or (node.kind is None and text.isidentifier()):
+                mentioned.add(text.removeprefix("@"))
+    written = frozenset([name.removeprefix("@") for _, name in writes])
+    return Entries(tuple(writes), written, pointers, frozenset(mentioned), is_open)
+
+
+def key_of(pointer: str, port: str) -> str:
+    """The entry that a port is given: `{speed}`, or `{=}` for one of the port's own name."""
+    key = pointer[1:-1].strip()
+    return port if key == "=" else key
+
+
+def isolated(found: Requirements, entries: Iterable[Entries], key: str) -> SourceNode | None:
+    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root."""
+    if found.mission is None:
+        return None
+    calls: dict[str | None, list[tuple[str, SourceNode]]] = {}
+    for tree in found.nodes.trees:
+        calls.setdefault(tree.name, []).extend(tree.calls)
+    # Which name the root's entry has in which tree.
+    names = {(found.mission.tree, key)}
+    waiting = [found.mission.tree]
+    while waiting:
+        at = waiting.pop()
+        for called, node in calls.get(at, ()):
+            for name in _passed_on(node, {name for of, name in names if of == at}):
+                if (called, name) not in names:
+                    names.add((called, name))
+                    waiting.append(called)
+    writes = [write for each in entries for write in each.writes]
+    writers = [node for node, written in writes if written.removeprefix("@") == key]
+    if any(written == f"@{key}" or (node.tree, written) in names for node, written in writes):
+        return None
+    return writers[0]
+
+
+def declared_port(demanded: Demanded, node: SourceNode, port: str) -> Port | None:
+    """The port as the node's model, or the tree behind a SubTree, declares it."""
+    name = node.node.id
+    ports: tuple[Port, ...] = demanded.ask((_ports, name.text)) if name is not None else ()
+    return next((each for each in ports if each.name is not None and each.name.text == port), None)
+
+
+def _is_script(node: SourceNode, key: str) -> bool:
+    attribute = RESERVED_ATTRIBUTES.get(key)
+    port = node.kind.port(key) if node.kind is not None else None
+    return (attribute is not None and attribute.is_script) or (port is not None and port.content == "script")
+
+
+def _assigned(script: str) -> Iterator[str]:
+    from btq_lang.script import parse_script, variables
+
+    for variable in variables(parse_script(script)):
+        if variable.writes:
+            yield variable.name
+
+
+def _may_write(demanded: Demanded, node: SourceNode, port: str) -> bool:
+    """Whether a port may be written: all but those that are said to be inputs."""
+    if node.kind is not None:
+        builtin = node.kind.port(port)
+        return builtin is not None and builtin.direction != "input"
+    declared = declared_port(demanded, node, port)
+    return declared is None or declared.direction.raw != "input"
+
+
+def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:
+    """The names by which a tree that runs another one makes its entries known to that."""
+    given = {pair.key.text: pair.value.text for pair in node.node.attributes if pair.value is not None}
+    for port, text in given.items():
+        if is_pointer(text) and key_of(text, port) in names:
+            yield port
+    if given.get("_autoremap", "false").lower() not in ("false", "0"):
+        yield from (name for name in names if name not in given and not name.startswith("_"))
+
+
+def _ports(demanded: Demanded, name: str) -> tuple[Port, ...]:
+    return demanded.ports.get(name, ())
