@@ -47,6 +47,8 @@ class Demanded(Asker):
             of it; and why the engine does not hold it, if it does not.
         noted: what was asked of other trees.
         ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was.
+        renewing: by the `id` of a tree and the name of an entry, the `id`s of the nodes that write it there, and of
+            those with such a node in them, or in a tree that they run.
         turned: the trees of whose callers others were known then: what was found of a way through one holds no more.
         ends_at: of SubTree nodes on these ways, what a failure below them ends at.
     """
@@ -70,6 +72,7 @@ class Demanded(Asker):
         self.ways_up_before: dict[str | None, WaysUp] = view.resolved.ways_up[0]
         self.turned: frozenset[str | None] = of_ways.turned_since(view.resolved.ways_up[1])
         self.ends_at: dict[SourceNode, Any] = {}
+        self.renewing: dict[tuple[int, str], tuple[set[int], set[int]]] = {}
         self._ports: dict[str, tuple[Port, ...]] | None = None
         self._entries: list[Entries] | None = None
         self._judge: Judge | None = None

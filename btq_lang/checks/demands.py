@@ -60,7 +60,7 @@ def _all_demands(view: View) -> ByItem:
 
 def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
     """What the rules find of the nodes of a tree, and the claims about them for which the engine reads signals."""
-    from btq_lang.checks import budgets, limits, odds, signals, swallowing, unenforced  # as above
+    from btq_lang.checks import budgets, limits, odds, renewals, signals, swallowing, unenforced  # as above
 
     demanded.look_at(tree)
     rules = (
@@ -75,6 +75,7 @@ def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
         odds.odds_beyond_children,
         swallowing.swallowed_failure,
         unenforced.not_enforced,
+        renewals.guard_never_renewed,
     )
     found = [each for rule in rules for each in rule(demanded)]
     return _by_item(demanded.view, found), list(signals.guards(demanded))

@@ -65,6 +65,7 @@ def _never_written(
     if view.path in view.workspace.included_files:
         return  # who writes it may be in the files that include this one
     written = frozenset().union(*(each.written for each in entries))
+    writes = [write for each in entries for write in each.writes] if guards else []
     guarding = {signal.name for signals, _ in guards for signal in signals}
     unwritten = [signal for signal in here if (signal.key or "").removeprefix("@") not in written]
     keys = [(signal.key or "").removeprefix("@") for signal in unwritten]
@@ -72,7 +73,7 @@ def _never_written(
     likely_keys = dict(zip(keys, near_keys, strict=True))
     for signal in here:
         key = (signal.key or "").removeprefix("@")
-        if key in written and signal.name in guarding and (writer := isolated(found, entries, key)) is not None:
+        if key in written and signal.name in guarding and (writer := isolated(found, writes, key)) is not None:
             message = f"`{signal.name}` is read from the root's `{key}`, and the tree `{writer.tree}` writes its own"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)

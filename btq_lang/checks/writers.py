@@ -13,7 +13,7 @@ from btq_lang.syntax import Pair, Port, Verbatim
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Sequence
 
     from btq_lang.checks.demanded import Demanded
     from btq_lang.requirements import Requirements
@@ -26,13 +26,15 @@ class Entries(Record):
 
     Attributes:
         writes: those that something may write, with the node that does, those of the root blackboard with their `@`.
-        written: the same, without.
+        sure: those of them that are said to be written: by a port declared so, or by a script.
+        written: all of them, without.
         pointers: the attributes in braces, with their nodes, by the entry, without its `@`; and whether it had one.
         mentioned: names without braces that a node is given, which may do with that entry what it likes.
         is_open: something in it may write any entry: XML as it is, or an entry that another one names.
     """
 
     writes: tuple[tuple[SourceNode, str], ...]
+    sure: tuple[tuple[SourceNode, str], ...]
     written: frozenset[str]
     pointers: dict[str, list[tuple[SourceNode, Pair, bool]]]
     mentioned: frozenset[str]
@@ -42,6 +44,7 @@ class Entries(Record):
 def entries_of(demanded: Demanded, tree: TreeNodes) -> Entries:
     """Those of a tree."""
     writes: list[tuple[SourceNode, str]] = []
+    perhaps: list[tuple[SourceNode, str]] = []
     pointers: dict[str, list[tuple[SourceNode, Pair, bool]]] = {}
     mentioned: set[str] = set()
     is_open = any(isinstance(child, Verbatim) for child in tree.item.children)
@@ -63,12 +66,14 @@ def entries_of(demanded: Demanded, tree: TreeNodes) -> Entries:
                 writes.append((node, text.strip("{}")))
                 is_open = is_open or is_entry
             elif is_entry:
-                if _may_write(demanded, node, port):
-                    writes.append((node, key))
+                may_write = _writes(demanded, node, port)
+                if may_write is not False:
+                    (writes if may_write else perhaps).append((node, key))
             elif node.tag == "UnsetBlackboard" or (node.kind is None and text.isidentifier()):
                 mentioned.add(text.removeprefix("@"))
-    written = frozenset([name.removeprefix("@") for _, name in writes])
-    return Entries(tuple(writes), written, pointers, frozenset(mentioned), is_open)
+    told = (*writes, *perhaps)
+    written = frozenset([name.removeprefix("@") for _, name in told])
+    return Entries(told, tuple(writes), written, pointers, frozenset(mentioned), is_open)
 
 
 def key_of(pointer: str, port: str) -> str:
@@ -77,8 +82,12 @@ def key_of(pointer: str, port: str) -> str:
     return port if key == "=" else key
 
 
-def isolated(found: Requirements, entries: Iterable[Entries], key: str) -> SourceNode | None:
-    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root."""
+def isolated(found: Requirements, writes: Sequence[tuple[SourceNode, str]], key: str) -> SourceNode | None:
+    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root.
+
+    Args:
+        writes: as of `Entries`; at least one is of the entry.
+    """
     if found.mission is None:
         return None
     calls: dict[str | None, list[tuple[str, SourceNode]]] = {}
@@ -94,7 +103,6 @@ def isolated(found: Requirements, entries: Iterable[Entries], key: str) -> Sourc
                 if (called, name) not in names:
                     names.add((called, name))
                     waiting.append(called)
-    writes = [write for each in entries for write in each.writes]
     writers = [node for node, written in writes if written.removeprefix("@") == key]
     if any(written == f"@{key}" or (node.tree, written) in names for node, written in writes):
         return None
@@ -122,13 +130,13 @@ def _assigned(script: str) -> Iterator[str]:
             yield variable.name
 
 
-def _may_write(demanded: Demanded, node: SourceNode, port: str) -> bool:
-    """Whether a port may be written: all but those that are said to be inputs."""
+def _writes(demanded: Demanded, node: SourceNode, port: str) -> bool | None:
+    """Whether a port is written, which is no input; None: nobody says."""
     if node.kind is not None:
         builtin = node.kind.port(port)
         return builtin is not None and builtin.direction != "input"
     declared = declared_port(demanded, node, port)
-    return declared is None or declared.direction.raw != "input"
+    return declared.direction.raw != "input" if declared is not None else None
 
 
 def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:

@@ -160,6 +160,7 @@ _TABLE = (
     Rule("window-too-small", _W, "odds that no such window can show"),
     Rule("swallowed-failure", _W, "`on violation fail` where a parent goes on after the failure"),
     Rule("not-enforced", _W, "`on violation fail` or `halt` where the engine cannot be made to do it"),
+    Rule("guard-never-renewed", _W, "a guard on what no node writes while the guarded one runs"),
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
     Rule("unused-signal", _H, "a signal that nothing asks for"),
     Rule("unused-context", _H, "a context that no condition names"),

@@ -21,6 +21,7 @@ from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
+from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.workspace import Workspace
 
@@ -598,6 +599,46 @@ def test_when_the_tree_runs_again_the_last_values_count(engine: Engine) -> None:
     answer = run(engine, again, parts)
     assert (answer.status, answer.statuses("Measure").count("SUCCESS")) == ("FAILURE", 2)
     assert run(engine, again, {}).status == "SUCCESS"
+
+
+# ---- values that nobody writes meanwhile ----
+
+SENSED = "signal speed : m/s from {speed} initially 0 m/s\nQualityReq q\n    Move keeps speed <= 1 m/s\n"
+SENSED += (
+    "    on violation halt\nCondition Sense\n    output speed : double\nAction Move\nRoot Main\nBehaviorTree Main\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("tree", "fires"),
+    [
+        ("->\n    {}\n    Move", False),
+        ("IfThenElse\n    {}\n    Move", False),
+        ("->\n    Move\n    {}", False),
+        ("R->\n    {}\n    Move", True),
+        ("R->\n    {}\n    ->\n        AlwaysSuccess\n        Move", True),
+        ("||\n    Repeat (num_cycles = 5)\n        {}\n    Move", True),
+    ],
+)
+def test_a_guard_sees_only_what_is_written_meanwhile(engine: Engine, tree: str, fires: bool) -> None:
+    lines = tree.replace("{}", "Sense (speed = {@speed})").split("\n")
+    text = SENSED + "".join(f"    {line}\n" for line in lines)
+    found = [each.rule for each in check(Workspace.of({"main.btq": text}), "main.btq")]
+    assert found == ([] if fires else ["guard-never-renewed"])
+    # Whoever is asked again says that the robot has become too fast.
+    slow, fast = ({"status": "SUCCESS", "output": {"speed": speed}} for speed in (0.5, 9.0))
+    parts: Parts = {"Sense": [[slow], [fast]], "Move": ["RUNNING"] * 3 + ["SUCCESS"]}
+    answer = run(engine, guarded(text), parts)
+    assert answer.status == ("FAILURE" if fires else "SUCCESS")
+
+
+def test_in_a_loop_such_a_guard_decides_at_the_start(engine: Engine) -> None:
+    lines = ["Repeat (num_cycles = 2)", "    ->", "        Sense (speed = {@speed})", "        Move"]
+    text = SENSED + "".join(f"    {line}\n" for line in lines)
+    slow, fast = ({"status": "SUCCESS", "output": {"speed": speed}} for speed in (0.5, 9.0))
+    answer = run(engine, guarded(text), {"Sense": [[slow], [fast]], "Move": ["RUNNING", "SUCCESS"]})
+    assert (answer.status, answer.statuses("Sense").count("SUCCESS")) == ("FAILURE", 2)
+    assert answer.statuses("Move") == ["RUNNING", "SUCCESS", "IDLE"]  # it was not started again
 
 
 # ---- several files ----
