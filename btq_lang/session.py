@@ -117,8 +117,11 @@ class Session:
         )
 
     def let_go(self) -> None:
-        """Pack the files that nobody works in, where what was made of them has become much: it is most of what a large
-        folder takes of the memory, and nobody asks for most of it again."""
+        """Let go of what edits have replaced, while nobody waits for it.  Pack the files that nobody works in, where
+        what was made of them has become much: it is most of what a large folder takes of the memory, and nobody asks
+        for most of it again."""
+        for answers in self._answers.values():
+            answers.let_go()
         for workspace in self._workspaces:
             held = [path for path, file in workspace.files.items() if file.is_unpacked]
             idle = [path for path in held if not self._is_worked_in(workspace, path)]

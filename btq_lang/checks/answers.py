@@ -69,6 +69,7 @@ class Answers:
         self.told: dict[Facts, tuple[Found, list[int], list[Diagnostic]]] = {}
         self.resolved: Memory | None = None
         self._workspace: Workspace | None = None
+        self._left: Workspace | None = None  # the one before the last edit
         self._path = ""
         self._files: dict[str, File] = {}
         self._answers: dict[Question, _Answer] = {}
@@ -102,6 +103,7 @@ class Answers:
             self._known_of = {}
             self.told, self.resolved = {}, None
         touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
+        self._left = old
         self._workspace, self._path, self._files = workspace, path, files
         self._before, self._outermost = self._outermost, set()
         self._asked = self._outermost
@@ -129,6 +131,12 @@ class Answers:
         for question in self._outermost - self._before:
             self._askers.setdefault(question, set()).add(EVERYTHING)
         self._leave(self._before - self._outermost, EVERYTHING)
+
+    def let_go(self) -> None:
+        """Nobody waits any more: let go of what was there before the last edit."""
+        self._left = None
+        if self.resolved is not None:
+            self.resolved.let_go()
 
     def look_up(self, question: Question, *, of_name: bool) -> Any:
         """The answer of a look-up.
