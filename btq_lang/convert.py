@@ -16,7 +16,7 @@ from urllib.parse import quote, unquote, urlsplit
 
 from lsprotocol import types
 
-from btq_lang.diagnostics import Diagnostic, Related, Tag
+from btq_lang.diagnostics import Diagnostic, Tag
 from btq_lang.protocol import Json, Plain
 from btq_lang.rules import RULES, Severity, page_path
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
@@ -62,13 +62,19 @@ class Converter:
 
     def changed(self, lines: LineIndex, changes: Sequence[types.TextDocumentContentChangeEvent]) -> str:
         """What a text says after changes, each of which counts in what the one before has made."""
-        for change in changes:
-            if isinstance(change, types.TextDocumentContentChangePartial):
-                start, end = (self._offset_in(lines, place) for place in (change.range.start, change.range.end))
-                lines = lines.replaced(Span(start, max(start, end)), change.text)
-            else:
-                lines = LineIndex(change.text)
+        for change in changes[:-1]:
+            lines = lines.replaced(self._span_in(lines, change), change.text)
+        for change in changes[-1:]:  # mostly the only one; the lines behind it are found with the rest of the file
+            start, end = self._span_in(lines, change)
+            return lines.text[:start] + change.text + lines.text[end:]
         return lines.text
+
+    def _span_in(self, lines: LineIndex, change: types.TextDocumentContentChangeEvent) -> Span:
+        """What a change replaces."""
+        if not isinstance(change, types.TextDocumentContentChangePartial):
+            return Span(0, len(lines.text))
+        start, end = (self._offset_in(lines, place) for place in (change.range.start, change.range.end))
+        return Span(start, max(start, end))
 
     def offset(self, workspace: Workspace, path: str, position: types.Position) -> int:
         return self._offset_in(workspace.files[path].lines, position)
@@ -132,33 +138,28 @@ class Converter:
         """Diagnostics, as JSON has a list of them; their spans count in the text on the disk already.
 
         At every key all of a file's are sent, and of most nothing has changed but the lines: what they say is written
-        once and kept as text.
+        once and kept as text, and all lines and columns are put into it at once.
         """
-        lines = workspace.files[path].source_lines
         written: list[str] = []
+        numbers: list[int] = []
+        encoding, files, uri = self.encoding, workspace.files, self.uri(path)
+        ends = files[path].source_lines.ends
         for one in found:
-            said = _said(one.rule, one.message, one.notes, one.severity, one.tags)
-            related = [self._information(workspace, path, each) for each in one.related] if one.related else ()
-            written.append(
-                f'{{"range": {self._range_as_json(lines, one.span)}, {said}, '
-                f'"relatedInformation": [{", ".join(related)}]}}'
-            )
-        return Json(f"[{', '.join(written)}]")
-
-    def _information(self, workspace: Workspace, path: str, related: Related) -> str:
-        target = related.place.path or path
-        range_ = self._range_as_json(workspace.files[target].source_lines, related.place.span)
-        return (
-            f'{{"location": {{"uri": {as_json(self.uri(target))}, "range": {range_}}}, '
-            f'"message": {as_json(related.message)}}}'
-        )
+            numbers += ends(one.span, encoding)
+            related: list[tuple[str, str]] = []
+            for each in one.related:
+                place = each.place
+                if place.path is None or place.path == path:
+                    numbers += ends(place.span, encoding)
+                    related.append((uri, each.message))
+                else:
+                    numbers += files[place.path].source_lines.ends(place.span, encoding)
+                    related.append((self.uri(place.path), each.message))
+            written.append(_said(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
+        return Json(f"[{', '.join(written)}]" % tuple(numbers))
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
-        line, column, end_line, end_column = lines.ends(span, self.encoding)
-        return (
-            f'{{"start": {{"line": {line}, "character": {column}}}, '
-            f'"end": {{"line": {end_line}, "character": {end_column}}}}}'
-        )
+        return _RANGE % lines.ends(span, self.encoding)
 
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
         mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
@@ -241,11 +242,19 @@ class Converter:
 
 
 @lru_cache(_MOST_KEPT)
-def _said(rule: str, message: str, notes: tuple[str, ...], severity: Severity | None, tags: tuple[Tag, ...]) -> str:
-    """What a diagnostic says, wherever it stands: members of a JSON object.
+def _said(
+    rule: str,
+    message: str,
+    notes: tuple[str, ...],
+    severity: Severity | None,
+    tags: tuple[Tag, ...],
+    related: tuple[tuple[str, str], ...],
+) -> str:
+    """What a diagnostic says, wherever it stands: a JSON object, with `%d` where its lines and columns belong.
 
     Args:
         severity: None: the rule's own.
+        related: the URI and the message of each.
     """
     members = {
         "message": "\n".join((message, *notes)),
@@ -255,7 +264,17 @@ def _said(rule: str, message: str, notes: tuple[str, ...], severity: Severity | 
         "source": "btq",
         "tags": [_TAGS[tag] for tag in tags],
     }
-    return json.dumps(members)[1:-1]
+    information = [
+        f'{{"location": {{"uri": {_literal(as_json(uri))}, "range": {_RANGE}}}, "message": {_literal(as_json(said))}}}'
+        for uri, said in related
+    ]
+    said = _literal(json.dumps(members)[1:-1])
+    return f'{{"range": {_RANGE}, {said}, "relatedInformation": [{", ".join(information)}]}}'
+
+
+def _literal(text: str) -> str:
+    """A text as it is to be written where numbers are put in."""
+    return text.replace("%", "%%")
 
 
 def _uri_of(path: str) -> str:
@@ -322,6 +341,7 @@ SYMBOL_KINDS = {
     "quality": types.SymbolKind.EnumMember,
     "apply": types.SymbolKind.Package,
 }
+_RANGE = '{"start": {"line": %d, "character": %d}, "end": {"line": %d, "character": %d}}'
 _SNIPPET = types.InsertTextFormat.Snippet.value
 _DEPRECATED = types.CompletionItemTag.Deprecated.value
 _COMPLETION_KINDS = {

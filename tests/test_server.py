@@ -16,7 +16,10 @@ import pytest
 from lsp_editor import SERVER, Editor, Message, part
 from lsprotocol import types
 
+from btq_lang.convert import Converter
+from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.editor import Server
+from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
@@ -168,6 +171,22 @@ def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
     assert page.read_text(encoding="utf-8").startswith("# unknown-node")
     assert found["old-quality-name"]["tags"] == [2]
     assert {each["source"] for each in found.values()} == {"btq"}
+
+
+def test_what_is_said_beside_lines_and_columns_may_hold_signs_of_formats() -> None:
+    workspace = Workspace.of({"/%d.btq": "ab\ncd\n", "/other.btq": "\n\nef\n"})
+    related = (Related(Place(Span(0, 2)), "50 %"), Related(Place(Span(2, 4), "/other.btq"), "%s"))
+    found = [Diagnostic("unknown-node", Span(3, 5), "%d %% of it", related, ("%(a)s",))]
+    (told,) = json.loads(Converter().diagnostics(workspace, "/%d.btq", found))
+    assert (told["message"], told["range"]) == ("%d %% of it\n%(a)s", range_of((1, 0), (1, 2)))
+    assert told["relatedInformation"] == [
+        {"location": {"uri": "file:///%25d.btq", "range": range_of((0, 0), (0, 2))}, "message": "50 %"},
+        {"location": {"uri": "file:///other.btq", "range": range_of((2, 0), (2, 2))}, "message": "%s"},
+    ]
+
+
+def range_of(start: tuple[int, int], end: tuple[int, int]) -> Message:
+    return {"start": {"line": start[0], "character": start[1]}, "end": {"line": end[0], "character": end[1]}}
 
 
 def test_folders_come_and_go(tmp_path: Path) -> None:
