@@ -40,6 +40,7 @@ Question: TypeAlias = "tuple[Any, ...]"
 
 EVERYTHING: Final[Question] = ()
 _OUTSIDE: Final = {EVERYTHING}  # who asks for what no conclusion does
+_NOT_DRAWN: Final = object()
 _PARTS: Final[Question] = (None,)  # who asks for tables, which are drawn again as soon as they are stale
 
 
@@ -86,6 +87,7 @@ class Answers:
         self._count = 0
         self._is_asking = False
         self._known_of: dict[object, Sequence[str]] = {}  # of which a conclusion was drawn of all
+        self._each: dict[object, tuple[dict[object, Any], set[Question]]] = {}  # with the answers and questions
 
     def begin(self, view: View, workspace: Workspace) -> None:
         """The workspace is another one: look again at what may have changed, and draw conclusions of it.
@@ -100,7 +102,7 @@ class Answers:
         if old is None or was_left or old.project is not workspace.project or list(files) != list(self._files):
             self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
             self._outermost, self._tables, self._restless = set(), set(), set()
-            self._known_of = {}
+            self._known_of, self._each = {}, {}
             self.told, self.resolved = {}, None
         touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
         self._left = old
@@ -180,21 +182,24 @@ class Answers:
         return [each for each in about if (what, each) not in answers or (stale and (what, each) in stale)]
 
     def conclude_each(self, view: View, what: object, about: Iterable[object]) -> list[Any]:
-        """The answers of one conclusion about many things."""
-        answers, stale = self._answers, self._stale
-        questions = [(what, each) for each in about]
-        asked = {*questions}
+        """The answers of one conclusion about many things, about which nobody else asks it.  After an edit nearly all
+        of these are those of before, and to put all questions together again would take longer than the few answers."""
+        before, asked = self._each.get(what, ({}, set()))
+        found = {each: before.get(each, _NOT_DRAWN) for each in about}
+        missing = {each for each, value in found.items() if value is _NOT_DRAWN}
+        asked = asked.difference([(what, each) for each in before.keys() - found.keys()])
+        asked.update([(what, each) for each in missing])
         self._asked |= asked
-        loose: dict[Question, Any] = {}  # what is not kept
-        while missing := asked.difference(answers, loose) | (asked & stale):
-            things = {each for _, each in missing}
-            for question in [each for each in questions if each[1] in things]:
-                value = self._draw(view, question)
-                if question not in answers:
-                    loose[question] = value
-        if loose:
-            return [loose[each] if each in loose else answers[each].value for each in questions]
-        return [known.value for known in map(answers.__getitem__, questions)]
+        loose: set[object] = set()  # of which the answer is not kept
+        while missing := missing | {each[1] for each in self._stale if each[0] is what and each in asked}:
+            for each in [each for each in found if each in missing]:
+                found[each] = self._draw(view, (what, each))
+                if (what, each) not in self._answers:
+                    loose.add(each)
+            missing = set()
+        kept = {each: value for each, value in found.items() if each not in loose} if loose else found
+        self._each[what] = kept, asked
+        return [*found.values()]
 
     def conclude_early(self, view: View, question: Question) -> Any:
         """The same, for whoever will ask."""

@@ -142,31 +142,45 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
         table = memory.table(f"context {symbol.name}", reader)
         reader.contexts[symbol.name], told = _one(table, reader, symbol, mistake, _read_context, file, symbol, mistake)
         problems += told
-    qualities = {key: quality for tree in nodes.trees if tree.qualities for key, quality in tree.qualities.items()}
-    defined = _counting(files, Kind.REQUIREMENT)
-    symbols = [symbol for _, symbol in defined]
-    enclosing = [qualities.get(id(symbol.target)) for symbol in symbols]
+    symbols, homes = memory.once(
+        "symbols", (*scope.paths, *[file.names.symbols[Kind.REQUIREMENT] for file in files]), lambda: _homes(files)
+    )
+    enclosing = memory.once(
+        "enclosing", (symbols, nodes.qualities), lambda: [nodes.qualities.get(id(symbol.target)) for symbol in symbols]
+    )
     table = memory.table("requirements", reader)
-    read = _all(table, reader, symbols, enclosing, lambda at: _read_requirement(reader, *defined[at], enclosing[at]))
-    reader.requirements.update(zip([symbol.name for symbol in symbols], [each for each, _ in read], strict=True))
-    attaching = [
-        (file.path, entry)
-        for file in files
-        for entry in file.parsed.entries
-        if type(entry.item) is Tree or type(entry.item) is Apply
-    ]
-    items = [entry.item for _, entry in attaching]
-    within = [nodes.within(item) if type(item) is Tree else None for item in items]
-    attached = _all(memory.table("uses", reader), reader, items, within, lambda at: uses_in(reader, *attaching[at]))
-    uses, mentioned = _by_requirement([each for each, _ in attached], memory)
-    wanted = [*reader.requirements.values()]
-    of_each = [uses.get(name, ()) for name in reader.requirements]
+    read = _all(
+        table,
+        reader,
+        symbols,
+        enclosing,
+        lambda at: _read_requirement(reader, workspace.files[homes[at]], symbols[at], enclosing[at]),
+    )
+    if table.is_as_before:
+        reader.steady = _REQUIREMENT
+    else:
+        names = [symbol.name for symbol in symbols]
+        memory.requirements = dict(zip(names, [each for each, _ in read], strict=True))
+    reader.requirements.update(memory.requirements)
+    problems += _told(memory, "requirements", table, read)
+    items: Sequence[Tree | Apply] = nodes.items
+    within: Sequence[TreeNodes | None] = nodes.trees
+    if any(file.of_type(Apply) for file in files):
+        entries = [entry.item for file in files for entry in file.parsed.entries]
+        items = [item for item in entries if type(item) is Tree or type(item) is Apply]
+        within = [nodes.within(item) if type(item) is Tree else None for item in items]
+    table = memory.table("uses", reader)
+    attached = _all(table, reader, items, within, lambda at: _uses_in(reader, files, items[at]))
+    uses, mentioned = _by_requirement(attached, table.others, memory)
+    problems += _told(memory, "uses", table, attached)
+    wanted = memory.once("wanted", (memory.requirements,), lambda: [*memory.requirements.values()])
+    of_each = memory.once("uses", (wanted, uses), lambda: [uses.get(name, ()) for name in memory.requirements])
     table = memory.table("held", reader)
     holding = _all(
         table, reader, wanted, of_each, lambda at: held_by(reader, wanted[at], of_each[at], table.before(at))
     )
-    problems += [problem for rows in (read, attached, holding) for _, told in rows if told for problem in told]
-    held = [each for each, _ in holding]
+    problems += _told(memory, "held", table, holding)
+    held = memory.held if table.is_as_before else [each for each, _ in holding]
     by_tree = _by_tree(held, table.others, memory)
     if before is not None:
         nodes.let_go(before)
@@ -233,12 +247,35 @@ def _read_requirement(reader: Reader, file: File, symbol: Symbol, quality: str |
     return with_constraints(reader, requirement, written.text)
 
 
-def _by_requirement(found: list[Uses], memory: Memory) -> tuple[dict[str, tuple[Use, ...]], frozenset[str]]:
+def _told(memory: Memory, name: str, table: Table, rows: list[tuple[Any, tuple[Problem, ...]]]) -> tuple[Problem, ...]:
+    """The problems of a table, by its name."""
+    if not table.is_as_before:
+        memory.problems[name] = tuple([problem for _, told in rows if told for problem in told])
+    return memory.problems[name]
+
+
+def _uses_in(reader: Reader, files: Sequence[File], item: Tree | Apply) -> Uses:
+    """What one of the items attaches."""
+    file = next(file for file in files if id(item) in file.facts)
+    return uses_in(reader, file.path, file.entry_of(item))
+
+
+def _by_requirement(
+    attached: list[tuple[Uses, tuple[Problem, ...]]], others_at: list[int] | None, memory: Memory
+) -> tuple[dict[str, tuple[Use, ...]], frozenset[str]]:
     """What entries attach, by the requirement, and which are mentioned: the same objects as before where they are of
-    the same."""
+    the same.
+
+    Args:
+        others_at: where other entries attach something than before; None: nobody knows.
+    """
     entries, uses, mentioned = memory.uses
-    is_as_long = len(found) == len(entries)
-    pairs = [pair for pair in zip(found, entries, strict=False) if pair[0] is not pair[1]] if is_as_long else []
+    is_as_long = others_at is not None and len(attached) == len(entries)
+    found = [*entries] if is_as_long else [each for each, _ in attached]
+    pairs: list[tuple[Uses, Uses]] = []
+    for at in others_at if others_at is not None and is_as_long else ():
+        found[at] = attached[at][0]
+        pairs.append((found[at], entries[at]))
     others = {name for pair in pairs for each in pair for name in each.mentioned}
     if others or not is_as_long:
         lists: dict[str, list[Use]] = {}
@@ -278,6 +315,7 @@ def _by_tree(held: list[Held], others: list[int] | None, memory: Memory) -> dict
     if others is not None:
         found = {tree: each for tree, each in known.items() if tree not in touched} | found if touched else known
     memory.held, memory.by_tree = held, found
+    memory.touched = frozenset(touched) if others is not None else None
     return found
 
 
@@ -290,6 +328,12 @@ def _counting(files: Sequence[File], kind: Kind) -> list[tuple[File, Symbol]]:
         for symbol in file.names.symbols[kind]:
             found.setdefault(symbol.name, (file, symbol))
     return [*found.values()]
+
+
+def _homes(files: Sequence[File]) -> tuple[list[Symbol], list[str]]:
+    """The requirements that count, and the files that each of them stands in."""
+    defined = _counting(files, Kind.REQUIREMENT)
+    return [symbol for _, symbol in defined], [file.path for file, _ in defined]
 
 
 def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:
@@ -329,4 +373,5 @@ def _names_in(context: Context) -> list[str]:
     return [word.text for word in operands if word.kind == NAME]
 
 
+_REQUIREMENT: Final = frozenset(("requirement",))
 _DEEPEST: Final = 50  # contexts in contexts: a condition is a tree, and every reader walks it

@@ -17,7 +17,7 @@ from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNo
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from typing import Final
 
     from btq_lang.requirements import Requirements
@@ -81,8 +81,8 @@ class Budgets:
         self._nodes = found.nodes
         self._trees: dict[int, _TreeBudgets] = {}
         if memory is not None:
-            self._take_over(memory.budgets)
-            memory.budgets = self._trees
+            self._take_over(memory)
+            memory.budgets = self._trees, memory.turn
 
     def of(self, node: SourceNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
@@ -137,16 +137,27 @@ class Budgets:
         """What all answers about the nodes of a tree are taken from: the same object as long as they stay the same."""
         return self._in(tree)
 
-    def _take_over(self, before: dict[int, _TreeBudgets]) -> None:
+    def _take_over(self, memory: Memory) -> None:
         """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
+        before, turn = memory.budgets
         if not before:
             return
         from heapq import heappop, heappush  # only an edit needs them
 
         nodes, by_tree = self._nodes, self._found.by_tree
         trees = nodes.in_order
+        places: Sequence[int] = range(len(trees))
+        if turn == memory.turn - 1 and memory.touched is not None and nodes.others is not None:
+            # Those of all other trees would come out the same, and of as many there are few others.
+            self._trees.update(before)
+            touched = {id(tree.item) for pair in nodes.others for tree in pair}.union(memory.touched)
+            for item in touched:
+                self._trees.pop(item, None)
+            found = [nodes.place(item) for item in touched]
+            places = sorted([at for at in found if at is not None])
         waiting: list[int] = []  # places in that order, of trees whose budgets may come out otherwise
-        for at, tree in enumerate(trees):
+        for at in places:
+            tree = trees[at]
             item = id(tree.item)
             known = before.get(item)
             if known is not None and known.tree is tree:

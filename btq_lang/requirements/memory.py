@@ -6,6 +6,8 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
+from itertools import compress, count
+
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
 from btq_lang.text import Span
@@ -17,7 +19,9 @@ if TYPE_CHECKING:
 
     from btq_lang.requirements.attach import Held, Uses
     from btq_lang.requirements.budgets import _TreeBudgets
+    from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.nodes import Nodes
+    from btq_lang.requirements.paths import Problem
 
     T = TypeVar("T")
     Question: TypeAlias = tuple[Any, Hashable]
@@ -28,9 +32,11 @@ class Asker:
 
     Attributes:
         noted: the questions since that was emptied, with their answers.
+        steady: what is asked first of those questions to which no answer is another one than the last time.
     """
 
     noted: dict[Question, object]
+    steady: frozenset[object]
 
     def answer(self, question: Question) -> object:
         """What the answer is now."""
@@ -42,10 +48,14 @@ class Memory:
 
     Attributes:
         nodes: the written nodes.
+        requirements: by name, in the order of their definitions.
+        problems: what was found wrong, by the table in which that is kept.
         uses: what each entry attaches, in their order; all of it by the requirement; and which are mentioned.
         held: what each requirement holds for, in their order.
         by_tree: what holds for nodes, by the tree that they stand in.
-        budgets: those of the nodes of each tree.
+        touched: the trees for whose nodes something else holds than before, by their `id`s; None: nobody knows.
+        turn: how often all was asked for.
+        budgets: those of the nodes of each tree; and in which turn they were made.
         ways_up: what was found out of how trees run each other, by their names; and what it rests on.
     """
 
@@ -54,19 +64,33 @@ class Memory:
         self.uses: tuple[list[Uses], dict[str, tuple[Use, ...]], frozenset[str]] = ([], {}, frozenset())
         self.held: list[Held] = []
         self.by_tree: dict[int, tuple[Applied, ...]] = {}
-        self.budgets: dict[int, _TreeBudgets] = {}
+        self.touched: frozenset[int] | None = None
+        self.turn = 0
+        self.budgets: tuple[dict[int, _TreeBudgets], int] = {}, 0
         self.ways_up: tuple[dict[str | None, Any], Any] = {}, None
+        self.requirements: dict[str, Requirement] = {}
+        self.problems: dict[str, tuple[Problem, ...]] = {}
+        self._made: dict[str, tuple[tuple[object, ...], Any]] = {}
         self._tables: dict[str, Table] = {}
         self._tables_before: dict[str, Table] = {}
 
     def begin(self) -> None:
         """All is asked for again; what nobody asks for until the next time is forgotten."""
         self._tables, self._tables_before = {}, self._tables
+        self.turn += 1
 
     def let_go(self) -> None:
         """All is asked that will be: let go of what is not asked for any more, with the workspace that it was found in.
         Of a large file that takes as long as a tenth of what an edit does."""
         self._tables_before = {}
+
+    def once(self, name: str, made_of: tuple[object, ...], make: Callable[[], T]) -> T:
+        """What was made before, if that was of these very objects."""
+        known = self._made.get(name)
+        if known is None or [*map(id, known[0])] != [*map(id, made_of)]:
+            known = self._made[name] = made_of, make()
+        made: T = known[1]
+        return made
 
     def table(self, name: str, asker: Asker) -> Table:
         """A table to be filled again, from what stands in the one of this name.
@@ -115,11 +139,11 @@ class Table:
         self._most: int = before._most if before is not None else 0
         if before is not None and before.answers:
             answers = before.answers
-            ask = asker.answer
+            ask, steady = asker.answer, asker.steady
             changed = [
                 each
                 for each, answer in answers.items()
-                if (now := ask(each)) is not answer and not is_same(now, answer)
+                if each[0] not in steady and (now := ask(each)) is not answer and not is_same(now, answer)
             ]
             self.answers = before._in_use() if len(answers) > self._most else answers
             self._most = max(self._most, 2 * len(self.answers))
@@ -164,6 +188,11 @@ class Table:
         self._before = None
         return self._made
 
+    @property
+    def is_as_before(self) -> bool:
+        """Whether the same stands here, and as much."""
+        return self.others is not None and not self.others
+
     def before(self, at: int) -> Any:
         """What was made for an owner before, of whatever; None if nothing was."""
         was = self._place_before(at)
@@ -182,11 +211,12 @@ class Table:
 
     def _not_as_before(self, before: Table) -> list[int]:
         """Where another owner stands than before, or one that is made of something else."""
-        from operator import is_  # only an edit asks
+        from operator import is_not  # only an edit asks
 
         found: set[int] = set()
         for now, then in ((self._owners, before._owners), (self._made_of, before._made_of)):
-            found.update([at for at, same in enumerate(map(is_, now, then)) if not same])
+            if now is not then:
+                found.update(compress(count(), map(is_not, now, then)))
         if changed := self._changed:
             found.update([at for at, asked in enumerate(before._asked) if asked and not changed.isdisjoint(asked)])
         return sorted(found)

@@ -6,7 +6,7 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 
 from __future__ import annotations
 
-from itertools import chain
+from itertools import chain, compress
 
 from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
@@ -17,8 +17,9 @@ from btq_lang.syntax import Model, Node, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
+    from btq_lang.file import File
     from btq_lang.workspace import Scope, Workspace
 
 
@@ -27,6 +28,10 @@ class Nodes:
 
     Attributes:
         trees: those they stand in, in the order of the files and of their text.
+        items: those as they are written.
+        others: the trees in whose place another one stands than before, each in front of that; None: there were more or
+            fewer.
+        qualities: the quality that encloses a requirement of a node, by the `id` of what is written.
         is_ordered_as_before: in the order of the trees each has the place of the one that stood where it stands.
         renamed: the names that trees had which stood where others stand now; nothing where they have the same ones.
     """
@@ -38,25 +43,37 @@ class Nodes:
         self._models = [file.names.symbols[Kind.MODEL] for file in files]
         has_same = before is not None and before._models == self._models
         self._categories = before._categories if before is not None and has_same else _categories(self._models)
+        self.items = tuple([item for file in files for item in file.of_type(Tree)])
+        self.trees: tuple[TreeNodes, ...]
         known = before._of_item if before is not None else {}
-        self._of_item: dict[int, TreeNodes] = {}
-        for file in files:
-            for item in file.of_type(Tree):
-                tree = known.get(id(item))
-                if tree is None or not (has_same or tree.fits(self._categories)):
-                    tree = TreeNodes(file.path, item, self._categories)
-                self._of_item[id(item)] = tree
-        self.trees = tuple(self._of_item.values())
-        counting: dict[str, TreeNodes] = {}  # of several trees of one name the first one
-        for tree in self.trees:
-            if tree.name is not None:
-                counting.setdefault(tree.name, tree)
-        self._roots = {name: tree.root for name, tree in counting.items() if tree.root is not None}
+        others: list[tuple[TreeNodes, TreeNodes]] | None = None
+        if before is not None and has_same and len(before.items) == len(self.items):
+            from operator import is_not  # only an edit asks
+
+            # After most edits one tree of all is another one.
+            trees = [*before.trees]
+            for at in compress(range(len(trees)), map(is_not, self.items, before.items)):
+                item = self.items[at]
+                trees[at] = known.get(id(item)) or TreeNodes(_path_of(files, at), item, self._categories)
+            self.trees = tuple(trees)
+            others = [(one, other) for one, other in zip(before.trees, trees, strict=True) if one is not other]
+        else:
+            self.trees = tuple(self._read(files, known, has_same))
+            others = _others(before.trees, self.trees) if before is not None else None
+        self.others = others
+        self._of_item: dict[int, TreeNodes] = dict(zip(map(id, self.items), self.trees, strict=True))
+        self._counting: dict[str, TreeNodes] = {}  # of several trees of one name the first one
+        self._roots: dict[str, SourceNode] = {}
+        self._name_trees(before, others)
+        self.qualities: dict[int, str]
+        if before is not None and others is not None and not any(tree.qualities for pair in others for tree in pair):
+            self.qualities = before.qualities
+        else:
+            self.qualities = {id_: each for tree in self.trees for id_, each in tree.qualities.items()}
         self._callers_before: dict[str, tuple[SourceNode, ...]] = {}
         self._called_by_others: frozenset[str] | None = None  # None: anything may be
         self.is_ordered_as_before = False
         self.renamed: frozenset[str | None] = frozenset()
-        others = _others(before.trees, self.trees) if before is not None else None
         if before is not None and "callers_by_tree" in before.__dict__:
             self._callers_before = before.callers_by_tree
             if others is not None:
@@ -66,6 +83,31 @@ class Nodes:
             self.is_ordered_as_before = self._keep_order(before, others)
         self._names_before: tuple[str, ...] = before.__dict__.get("names", ()) if before is not None else ()
         self._found: dict[tuple[str, ...], tuple[Target, ...]] = {}
+
+    def _read(self, files: Sequence[File], known: dict[int, TreeNodes], has_same: bool) -> Iterator[TreeNodes]:
+        """The trees; those that are known and would come out the same."""
+        for file in files:
+            for item in file.of_type(Tree):
+                tree = known.get(id(item))
+                if tree is None or not (has_same or tree.fits(self._categories)):
+                    tree = TreeNodes(file.path, item, self._categories)
+                yield tree
+
+    def _name_trees(self, before: Nodes | None, others: Sequence[tuple[TreeNodes, TreeNodes]] | None) -> None:
+        """Which tree a name means, and which root."""
+        if before is None or others is None or not all(map(_have_one_name, others)):
+            for tree in self.trees:
+                if tree.name is not None:
+                    self._counting.setdefault(tree.name, tree)
+            self._roots.update((name, tree.root) for name, tree in self._counting.items() if tree.root is not None)
+            return
+        self._counting |= before._counting
+        self._roots |= before._roots
+        for old, tree in others:
+            if tree.name is not None and self._counting[tree.name] is old:
+                self._counting[tree.name] = tree
+                if tree.root is not None:
+                    self._roots[tree.name] = tree.root
 
     def let_go(self, before: Nodes) -> None:
         """Let go of those trees of an earlier workspace that are not among these."""
@@ -151,6 +193,10 @@ class Nodes:
     def position(self, item: Tree) -> int:
         """Where a tree stands in that order."""
         return self._positions[id(item)]
+
+    def place(self, item: int) -> int | None:
+        """The same, of a tree by its `id`; None: it is none of these."""
+        return self._positions.get(item)
 
     @cached_property
     def _positions(self) -> dict[int, int]:
@@ -330,6 +376,22 @@ def _others(before: Sequence[TreeNodes], now: Sequence[TreeNodes]) -> list[tuple
     if len(before) != len(now):
         return None
     return [(one, other) for one, other in zip(before, now, strict=True) if one is not other]
+
+
+def _path_of(files: Sequence[File], at: int) -> str:
+    """The file in which a tree stands, counted through all of them."""
+    for file in files:
+        trees = file.of_type(Tree)
+        if at < len(trees):
+            return file.path
+        at -= len(trees)
+    raise IndexError("there are no more trees")
+
+
+def _have_one_name(pair: tuple[TreeNodes, TreeNodes]) -> bool:
+    """Whether two trees have one name, and a root if one of them has."""
+    one, other = pair
+    return one.name == other.name and (one.root is None) == (other.root is None)
 
 
 def _have_same_shape(pair: tuple[TreeNodes, TreeNodes]) -> bool:
