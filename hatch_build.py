@@ -104,6 +104,7 @@ COMPILED = (
     "checks/prose",
     "checks/qualities",
     "checks/reactive",
+    "checks/renewals",
     "checks/repeated",
     "checks/requirements",
     "checks/results",
@@ -114,9 +115,11 @@ COMPILED = (
     "checks/strings",
     "checks/swallowing",
     "checks/trees",
+    "checks/unenforced",
     "checks/unreachable",
     "checks/unused",
     "checks/view",
+    "checks/writers",
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
 REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import random
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,8 +12,10 @@ import pytest
 
 from btq_lang.checks import CHECKS, Check, check
 from btq_lang.checks.answers import Answers
+from btq_lang.checks.demanded import Demanded
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.syntax import Entry, Include, Tree
 from btq_lang.workspace import Workspace
 
@@ -242,3 +245,19 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
     asked = [each for each in asked if each[1] is not Include and each[0] != "forbidden_name"]
     assert {item for _, item in asked} <= {last}
     assert len(asked) == len(set(asked))
+
+
+def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
+    """What is found out of a workspace holds the whole of it: in a ring, all of the last thousand keys would stay."""
+    workspace, answers = Workspace.of(FILES), Answers()
+    gc.collect()
+    gc.disable()
+    try:
+        for letter in "abc":
+            workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
+            check(workspace, "/p/main.btq", answers)
+            answers.let_go()
+        kinds = [type(each) for each in gc.get_objects()]
+        assert (kinds.count(Demanded), kinds.count(Budgets)) == (1, 1)
+    finally:
+        gc.enable()

@@ -212,9 +212,9 @@ class _Planner:
         self._others: Final = others
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
-        has_start = is_shared or _begins(workspace, found, path, files)
+        begins = _begins(workspace, found, path, files)
         self._looks: Final = looks or first_looks(found)
-        self._judge: Final = Judge(found, self._looks, files=files, is_shared=is_shared, has_start=has_start)
+        self._judge: Final = Judge(self._looks, lambda: begins, lambda: found.mission, files=files, is_shared=is_shared)
 
     def held(self, applied: Applied, claim: Claim) -> Held:
         """What is done about a clause; what it needs is remembered."""

@@ -53,19 +53,26 @@ class Judge:
     """Whoever judges the clauses that some files see."""
 
     def __init__(
-        self, found: Requirements, looks: Looks, *, files: Container[str] | None, is_shared: bool, has_start: bool
+        self,
+        looks: Looks,
+        begins: Callable[[], bool],
+        mission: Callable[[], SourceNode | None],
+        *,
+        files: Container[str] | None,
+        is_shared: bool,
     ) -> None:
         """
         Args:
+            begins: whether the mission begins in the files; it is asked only where that matters, as `mission` is.
+            mission: its root.
             files: those that are written together; None: all.
             is_shared: they are a part of several missions.
-            has_start: the mission begins in them, or they are shared.
         """
-        self._found: Final = found
         self._looks: Final = looks
+        self._begins: Final = begins
+        self._mission: Final = mission
         self._files: Final = files
         self._is_shared: Final = is_shared
-        self._has_start: Final = has_start
 
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
         """Why the engine does not hold a clause that it is asked to; None: it does, or nobody can say where the mission
@@ -120,11 +127,13 @@ class Judge:
         first: dict[str, str] = {}
         for signal in made.signals:
             first |= _first_value(signal)
-        if (first or made.cells or made.stop) and not self._has_start:
-            raise NoBeginning("nobody can say which tree is the mission, and where it begins")
-        if made.stop is not None and not self._is_shared:
-            assert self._found.mission is not None, "there is a mission that begins"
-            _can_stand_around(self._found.mission, self._looks.is_skipped(self._found.mission))
+        if (first or made.cells or made.stop) and not self._is_shared:
+            if not self._begins():
+                raise NoBeginning("nobody can say which tree is the mission, and where it begins")
+            if made.stop is not None:
+                mission = self._mission()
+                assert mission is not None, "there is a mission that begins"
+                _can_stand_around(mission, self._looks.is_skipped(mission))
         return made, first
 
 

@@ -13,10 +13,9 @@ from btq_lang.syntax import Model, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from typing import Any, TypeAlias
 
-    from btq_lang.btcpp.judging import Judge
     from btq_lang.checks.swallowing import WaysUp
     from btq_lang.checks.view import View
     from btq_lang.checks.writers import Entries
@@ -76,7 +75,6 @@ class Demanded(Asker):
         self.renewing: dict[tuple[int, str], tuple[set[int], set[int]]] = {}
         self._ports: dict[str, tuple[Port, ...]] | None = None
         self._entries: list[Entries] | None = None
-        self._judge: Judge | None = None
         view.resolved.ways_up = self.ways_up, of_ways
 
     def look_at(self, tree: TreeNodes) -> None:
@@ -99,15 +97,6 @@ class Demanded(Asker):
             what, about = question
             self._answers[question] = what(self, about)
         return self._answers[question]
-
-    def why_not(self, applied: Applied, claim: Claim) -> str | None:
-        """Why the engine does not hold a claim that it is asked to; None: it does, if all files are written as one."""
-        if applied.requirement.method in ("review", "test", "analysis"):
-            return f"verified by {applied.requirement.method}"
-        if self._judge is None:
-            self._judge = _judge(self)
-        self.ask((_mission, self.view.path))
-        return self._judge.why_not(applied, claim)
 
     @property
     def entries(self) -> list[Entries]:
@@ -158,23 +147,27 @@ class Callers(Record):
 def _hard_claims(
     demanded: Demanded,
 ) -> Iterator[tuple[Applied, Claim, SourceNode, Place | None, str | None]]:
-    for applied in demanded.requirements.in_tree(demanded.tree):
-        if applied.requirement.action not in ("fail", "halt"):
-            continue
+    in_tree = demanded.requirements.in_tree(demanded.tree)
+    held = [applied for applied in in_tree if applied.requirement.action in ("fail", "halt")]
+    if not held:
+        return
+    why_not = judging(demanded)
+    for applied in held:
         for claim in applied.requirement.claims:
             node = _node(applied, claim, demanded.budgets) or applied.nodes[0]
             place = told_at(demanded.view, applied, claim)
             if place is None and node.path == demanded.view.path:
                 place = node.place
-            yield applied, claim, node, place, demanded.why_not(applied, claim)
+            yield applied, claim, node, place, why_not(applied, claim)
 
 
 def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:
     return demanded.requirements.nodes.run_by(node)
 
 
-def _judge(demanded: Demanded) -> Judge:
-    """Who judges what is written if all files are written as one."""
+def judging(demanded: Demanded) -> Callable[[Applied, Claim], str | None]:
+    """Who says why the engine does not hold a claim that it is asked to; None: it does, if all files are written as
+    one.  `demanded` must not hold it, for it is held by it: both would stay until Python looks for garbage."""
     from btq_lang.btcpp.judging import Judge, Looks  # few missions have a claim that is to be enforced
     from btq_lang.requirements.spans import node_of
 
@@ -182,12 +175,22 @@ def _judge(demanded: Demanded) -> Judge:
         ask = demanded.answer if node.item is demanded.tree.item else demanded.ask
         return bool(ask((_is_skipped, node)))
 
-    looks = Looks(
-        lambda node: demanded.budgets.composed(node).waits, is_skipped, lambda span: node_of(span, demanded.budgets)
+    judge = Judge(
+        Looks(
+            lambda node: demanded.budgets.composed(node).waits, is_skipped, lambda span: node_of(span, demanded.budgets)
+        ),
+        lambda: bool(demanded.ask((_begins, ""))),
+        lambda: demanded.ask((_mission, "")),
+        files=None,
+        is_shared=bool(demanded.ask((_is_included, demanded.view.path))),
     )
-    found, is_shared = demanded.requirements, demanded.view.path in demanded.view.workspace.included_files
-    has_start = is_shared or found.mission is not None
-    return Judge(found, looks, files=None, is_shared=is_shared, has_start=has_start)
+
+    def why_not(applied: Applied, claim: Claim) -> str | None:
+        if applied.requirement.method in ("review", "test", "analysis"):
+            return f"verified by {applied.requirement.method}"
+        return judge.why_not(applied, claim)
+
+    return why_not
 
 
 def _is_skipped(demanded: Demanded, node: SourceNode) -> bool | None:
@@ -196,9 +199,16 @@ def _is_skipped(demanded: Demanded, node: SourceNode) -> bool | None:
     return demanded.budgets.composed(node).skip is not None if nodes.has(node.item) else None
 
 
-def _mission(demanded: Demanded, path: str) -> tuple[SourceNode | None, int]:
-    """The mission's root, and whether others include the file."""
-    return demanded.requirements.mission, int(path in demanded.view.workspace.included_files)
+def _is_included(demanded: Demanded, path: str) -> int:
+    return int(path in demanded.view.workspace.included_files)
+
+
+def _begins(demanded: Demanded, _: str) -> int:
+    return int(demanded.requirements.mission is not None)
+
+
+def _mission(demanded: Demanded, _: str) -> SourceNode | None:
+    return demanded.requirements.mission
 
 
 def _claims(
