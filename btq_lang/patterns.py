@@ -287,9 +287,9 @@ def _blank(of: type) -> Any:
     calling that one costs, whose `__init__` a call of its own is; `object.__new__` costs a third more than this.
 
     For words, pairs and nodes alone, of which a file has thousands; the type is Any, for only `__init__` may set what
-    is final.  The compiled `plain` does without, and of a compiled class none can be made.
+    is final.
     """
-    if COMPILED:
+    if COMPILED:  # then nobody reads by patterns, and of a compiled class no such class can be made
         return of
 
     def __reduce__(self: object) -> tuple[object, ...]:  # a copy, or what is unpickled, is of the class itself

@@ -20,7 +20,7 @@ from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
 from btq_lang.btcpp.document import Comment, Document, Element
 from btq_lang.btcpp.export import Export, is_mission
 from btq_lang.btcpp.guards import NotEnforced
-from btq_lang.btcpp.judging import Elsewhere, Judge, Looks, first_looks, where_else
+from btq_lang.btcpp.judging import Elsewhere, Judge, where_else
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
@@ -28,7 +28,9 @@ from btq_lang.diagnostics import Place
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, replace
 from btq_lang.requirements import Requirements, requirements
-from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode
+from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode, Span
+from btq_lang.requirements.spans import node_of
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -198,7 +200,7 @@ class _Planner:
         path: str,
         files: frozenset[str],
         others: Sequence[_Plan],
-        looks: Looks | None = None,
+        budgets: Budgets | None = None,
     ) -> None:
         self.wrappers: Final[dict[int, list[Wrapper]]] = {}
         self.enforced: Final[dict[object, Held]] = {}
@@ -212,9 +214,9 @@ class _Planner:
         self._others: Final = others
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
-        begins = _begins(workspace, found, path, files)
-        self._looks: Final = looks or first_looks(found)
-        self._judge: Final = Judge(self._looks, lambda: begins, lambda: found.mission, files=files, is_shared=is_shared)
+        self._budgets: Final = budgets or Budgets(found)
+        looks = _Looks(found, self._budgets, _begins(workspace, found, path, files))
+        self._judge: Final = Judge(looks, files=files, is_shared=is_shared)
 
     def held(self, applied: Applied, claim: Claim) -> Held:
         """What is done about a clause; what it needs is remembered."""
@@ -247,7 +249,7 @@ class _Planner:
     def _bundled(self) -> _Planner:
         """The same for a bundle: what cannot be enforced there either has another reason than where its node stands."""
         files = _written(self._workspace, self._path, True)
-        return _Planner(self._workspace, self._found, self._path, files, (), self._looks)
+        return _Planner(self._workspace, self._found, self._path, files, (), self._budgets)
 
     def _guard(self, requirement: Requirement, claim: Claim, node: SourceNode) -> str:
         """Remember what a clause needs; what there is to say of it.
@@ -270,6 +272,30 @@ class _Planner:
         if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
             notes.append(f"{_are(aging)} read however old {'it is' if len(aging) == 1 else 'they are'}")
         return "; ".join(notes)
+
+
+class _Looks:
+    """As of a judge: at what nobody has looked at yet."""
+
+    def __init__(self, found: Requirements, budgets: Budgets, begins: bool) -> None:
+        self._found: Final = found
+        self._budgets: Final = budgets
+        self._begins: Final = begins
+
+    def waits(self, node: SourceNode) -> bool:
+        return self._budgets.composed(node).waits
+
+    def is_skipped(self, node: SourceNode) -> bool:
+        return self._budgets.composed(node).skip is not None
+
+    def of_span(self, span: Span) -> SourceNode | None:
+        return node_of(span, self._budgets)
+
+    def begins(self) -> bool:
+        return self._begins
+
+    def mission(self) -> SourceNode | None:
+        return self._found.mission
 
 
 def _are(names: Sequence[str]) -> str:

@@ -9,32 +9,32 @@ from __future__ import annotations
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
-from btq_lang.record import Record
-from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
-from btq_lang.requirements.spans import node_of
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container
-    from typing import Final
+    from collections.abc import Container
+    from typing import Final, Protocol
 
-    from btq_lang.requirements import Requirements
     from btq_lang.workspace import Workspace
 
+    class Looks(Protocol):
+        """How to look at nodes and at the mission; who keeps what was found has a way of their own."""
 
-class Looks(Record):
-    """How to look at nodes.
+        def waits(self, node: SourceNode) -> bool:
+            """Whether a node can be RUNNING."""
 
-    Attributes:
-        waits: whether a node can be RUNNING.
-        is_skipped: whether it may be skipped from within.
-        of_span: the node whose time a span is; None: there is none.
-    """
+        def is_skipped(self, node: SourceNode) -> bool:
+            """Whether it may be skipped from within."""
 
-    waits: Callable[[SourceNode], bool]
-    is_skipped: Callable[[SourceNode], bool]
-    of_span: Callable[[Span], SourceNode | None]
+        def of_span(self, span: Span) -> SourceNode | None:
+            """The node whose time a span is; None: there is none."""
+
+        def begins(self) -> bool:
+            """Whether the mission begins in the files that are judged."""
+
+        def mission(self) -> SourceNode | None:
+            """Its root."""
 
 
 class Elsewhere(NotEnforced):
@@ -52,31 +52,22 @@ class NoBeginning(NotEnforced):
 class Judge:
     """Whoever judges the clauses that some files see."""
 
-    def __init__(
-        self,
-        looks: Looks,
-        begins: Callable[[], bool],
-        mission: Callable[[], SourceNode | None],
-        *,
-        files: Container[str] | None,
-        is_shared: bool,
-    ) -> None:
+    def __init__(self, looks: Looks, *, files: Container[str] | None, is_shared: bool) -> None:
         """
         Args:
-            begins: whether the mission begins in the files; it is asked only where that matters, as `mission` is.
-            mission: its root.
+            looks: asked only for what matters.
             files: those that are written together; None: all.
             is_shared: they are a part of several missions.
         """
         self._looks: Final = looks
-        self._begins: Final = begins
-        self._mission: Final = mission
         self._files: Final = files
         self._is_shared: Final = is_shared
 
     def why_not(self, applied: Applied, claim: Claim) -> str | None:
         """Why the engine does not hold a clause that it is asked to; None: it does, or nobody can say where the mission
         begins, and that is told of the mission."""
+        if applied.requirement.method in ("review", "test", "analysis"):
+            return f"verified by {applied.requirement.method}"
         try:
             self.needs(applied.requirement, claim, self.node(applied, claim), "_", "@_")
         except NoBeginning:
@@ -128,23 +119,13 @@ class Judge:
         for signal in made.signals:
             first |= _first_value(signal)
         if (first or made.cells or made.stop) and not self._is_shared:
-            if not self._begins():
+            if not self._looks.begins():
                 raise NoBeginning("nobody can say which tree is the mission, and where it begins")
             if made.stop is not None:
-                mission = self._mission()
+                mission = self._looks.mission()
                 assert mission is not None, "there is a mission that begins"
                 _can_stand_around(mission, self._looks.is_skipped(mission))
         return made, first
-
-
-def first_looks(found: Requirements) -> Looks:
-    """Those of who has looked at nothing yet."""
-    budgets = Budgets(found)
-    return Looks(
-        lambda node: budgets.composed(node).waits,
-        lambda node: budgets.composed(node).skip is not None,
-        lambda span: node_of(span, budgets),
-    )
 
 
 def where_else(workspace: Workspace, node: SourceNode) -> str:

@@ -13,9 +13,10 @@ from btq_lang.syntax import Model, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from typing import Any, TypeAlias
+    from collections.abc import Iterable, Iterator
+    from typing import Any, Final, TypeAlias
 
+    from btq_lang.btcpp.judging import Judge
     from btq_lang.checks.swallowing import WaysUp
     from btq_lang.checks.view import View
     from btq_lang.checks.writers import Entries
@@ -151,46 +152,55 @@ def _hard_claims(
     held = [applied for applied in in_tree if applied.requirement.action in ("fail", "halt")]
     if not held:
         return
-    why_not = judging(demanded)
+    judge = judge_of(demanded)
     for applied in held:
         for claim in applied.requirement.claims:
             node = _node(applied, claim, demanded.budgets) or applied.nodes[0]
             place = told_at(demanded.view, applied, claim)
             if place is None and node.path == demanded.view.path:
                 place = node.place
-            yield applied, claim, node, place, why_not(applied, claim)
+            yield applied, claim, node, place, judge.why_not(applied, claim)
 
 
 def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:
     return demanded.requirements.nodes.run_by(node)
 
 
-def judging(demanded: Demanded) -> Callable[[Applied, Claim], str | None]:
-    """Who says why the engine does not hold a claim that it is asked to; None: it does, if all files are written as
-    one.  `demanded` must not hold it, for it is held by it: both would stay until Python looks for garbage."""
-    from btq_lang.btcpp.judging import Judge, Looks  # few missions have a claim that is to be enforced
-    from btq_lang.requirements.spans import node_of
+def judge_of(demanded: Demanded) -> Judge:
+    """Who judges what is written if all files are written as one.  `demanded` must not hold it, for it is held by it:
+    both would stay until Python looks for garbage."""
+    from btq_lang.btcpp.judging import Judge  # few missions have a claim that is to be enforced
 
-    def is_skipped(node: SourceNode) -> bool:
+    is_shared = bool(demanded.ask((_is_included, demanded.view.path)))
+    return Judge(_Looks(demanded), files=None, is_shared=is_shared)
+
+
+class _Looks:
+    """As of a judge; what is so in other trees is noted.  No functions within a function: compiled ones
+    hold each other."""
+
+    def __init__(self, demanded: Demanded) -> None:
+        self._demanded: Final = demanded
+
+    def waits(self, node: SourceNode) -> bool:
+        return self._demanded.budgets.composed(node).waits
+
+    def is_skipped(self, node: SourceNode) -> bool:
+        demanded = self._demanded
         ask = demanded.answer if node.item is demanded.tree.item else demanded.ask
         return bool(ask((_is_skipped, node)))
 
-    judge = Judge(
-        Looks(
-            lambda node: demanded.budgets.composed(node).waits, is_skipped, lambda span: node_of(span, demanded.budgets)
-        ),
-        lambda: bool(demanded.ask((_begins, ""))),
-        lambda: demanded.ask((_mission, "")),
-        files=None,
-        is_shared=bool(demanded.ask((_is_included, demanded.view.path))),
-    )
+    def of_span(self, span: Span) -> SourceNode | None:
+        from btq_lang.requirements.spans import node_of
 
-    def why_not(applied: Applied, claim: Claim) -> str | None:
-        if applied.requirement.method in ("review", "test", "analysis"):
-            return f"verified by {applied.requirement.method}"
-        return judge.why_not(applied, claim)
+        return node_of(span, self._demanded.budgets)
 
-    return why_not
+    def begins(self) -> bool:
+        return bool(self._demanded.ask((_begins, "")))
+
+    def mission(self) -> SourceNode | None:
+        mission: SourceNode | None = self._demanded.ask((_mission, ""))
+        return mission
 
 
 def _is_skipped(demanded: Demanded, node: SourceNode) -> bool | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.checks.demanded import Demanded, Found, highest, judging, told_at
+from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, told_at
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.model import Target
 from btq_lang.rules import Severity
@@ -35,11 +35,11 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
 def not_enforced_between(demanded: Demanded, held: Held) -> Iterator[Found]:
     """The same of claims about no node in particular."""
     placed = {id(applied) for _, applied in held.by_tree}
-    why_not = judging(demanded)
+    judge = judge_of(demanded)
     for applied in held.applied:
         for claim in applied.requirement.claims if id(applied) not in placed else ():
             place = told_at(demanded.view, applied, claim)
-            why = why_not(applied, claim) if place is not None else None
+            why = judge.why_not(applied, claim) if place is not None else None
             if place is not None and why is not None:
                 yield place, _found(applied, place, why, ())
 
