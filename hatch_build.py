@@ -43,6 +43,7 @@ COMPILED = (
     "plain",
     "blocks",
     "lexer",
+    "mentions",
     "token_list",
     "cursor",
     "conditions",
@@ -118,6 +119,8 @@ COMPILED = (
     "checks/unused",
     "checks/view",
     "checks/writers",
+    "features/looks",
+    "features/stretches",
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
 REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")

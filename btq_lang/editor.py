@@ -24,7 +24,7 @@ from pygls.lsp.server import LanguageServer
 from btq_lang import __version__, features
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.garbage import collect_in_pause
+from btq_lang.garbage import collect_in_pause, keep_what_is_there
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
 
@@ -83,6 +83,7 @@ class Server(LanguageServer):
         self._ready: set[str] = set()  # the files for whose first questions everything is there
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
+        self._is_settled = False  # what was read first will not be looked through for garbage again
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, but for how messages are read."""
@@ -163,6 +164,11 @@ class Server(LanguageServer):
     def takes_links(self) -> bool:
         document = self.client_capabilities.text_document
         return bool(document and document.definition and document.definition.link_support)
+
+    @property
+    def asks_for_tokens(self) -> bool:
+        document = self.client_capabilities.text_document
+        return document is not None and document.semantic_tokens is not None
 
     def versions_for_edits(self) -> dict[str, int] | None:
         """The versions of open files, for an editor that compares them."""
@@ -246,13 +252,23 @@ class Server(LanguageServer):
             await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)
+        self._await_pause()
+
+    def _await_pause(self) -> None:
         if self._pause is not None:
             self._pause.cancel()
         self._pause = asyncio.get_running_loop().call_later(A_PAUSE, self._use_pause)
 
     def _use_pause(self) -> None:
         """Do what would be in the way while somebody waits."""
-        collect_in_pause()
+        if self.answering:
+            self._await_pause()
+            return
+        if self.scanned.is_set() and not self._is_settled:
+            keep_what_is_there()
+            self._is_settled = True
+        else:
+            collect_in_pause()
         self._preparing = asyncio.ensure_future(self._prepare())
 
     async def _prepare(self) -> None:
@@ -261,7 +277,8 @@ class Server(LanguageServer):
         for path in [path for path in self.session.open if path not in self._ready]:
             place = self.at(types.TextDocumentIdentifier(self.convert.uri(path)))
             if place is not None:
-                for _ in chain(self.protocol.getting_ready(), features.getting_ready(*place)):
+                tokens = features.making(*place, self.convert.encoding) if self.asks_for_tokens else ()
+                for _ in chain(self.protocol.getting_ready(), tokens, features.getting_ready(*place)):
                     await asyncio.sleep(A_PAUSE if self.answering else 0)
             self._ready.add(path)
 

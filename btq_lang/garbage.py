@@ -40,8 +40,8 @@ def collecting_seldom(work: Callable[[], int]) -> int:
 
 
 def keep_what_is_there() -> None:
-    """What a server has read stays: looking through all of it again would halt every answer that comes meanwhile."""
-    gc.collect()
+    """What a server has read stays: looking through all of it would halt every answer that comes meanwhile, a quarter
+    of a second for 10 000 nodes.  With it stays what is garbage by then: some hundred objects."""
     gc.freeze()
     gc.set_threshold(*_IN_PAUSES)
 

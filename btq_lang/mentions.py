@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import Enum
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 
+from btq_lang.caches import cache_of
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
-from btq_lang.catalog.nodes import PLACEHOLDERS, NodeKind, lookup
+from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.record import Record
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
@@ -142,6 +143,7 @@ def tell(item: Item, to: Listener) -> None:
         to.word(What.SIGNAL, item.name, defines=True)
         to.word(What.UNIT, item.unit)
         if item.source is not None:
+            to.value(item.source)
             _keys_of(item.source, None, None, None, to, root=True)
         _quantities(item, to)
     elif isinstance(item, Context):
@@ -184,8 +186,15 @@ class Listener:
         raise NotImplementedError
 
     def part(self, mention: Mention) -> None:
-        """Some of a word, or several of them."""
+        """Some of a word."""
         raise NotImplementedError
+
+    def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
+        """Several words that are one name."""
+        raise NotImplementedError
+
+    def value(self, word: Word) -> None:
+        """The value of an attribute that as a whole names nothing; parts of it may follow, in the order of the text."""
 
 
 class _Mentions(Listener):
@@ -210,6 +219,10 @@ class _Mentions(Listener):
         if mention.span.start < mention.span.end:
             self.found.append(mention)
 
+    def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
+        name = ".".join([word.text for word in words])
+        self.part(Mention(what, name, span, words[-1], False, node))
+
 
 def _model(model: Model, to: Listener) -> None:
     to.word(What.NODE, model.name, defines=True)
@@ -230,20 +243,22 @@ def _ports(ports: Iterable[Port], owner: Model | Tree, to: Listener) -> None:
 
 
 def _node(node: Node, tree: Tree, to: Listener) -> None:
-    word, stands_for = node.id, placeholder(node)
-    run = called(node)
-    if word is not None and word is not run:
-        to.word(What.NODE, word, node=node)
-    if stands_for is not None:
-        to.word(What.NODE, stands_for, node=node)
-    if run is not None:
-        to.word(What.TREE, run, node=node)
-    if node.label is not None and stands_for is None:
-        to.word(What.INSTANCE, node.label, defines=True, node=node, owner=tree)
-    if node.attributes:
-        kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
-        for pair in node.attributes:
-            _pair(pair, node, tree, kind, stands_for, to)
+    kind, label = node.kind, node.label
+    stands_for: Word | None = None
+    if node.category is None and kind is not None and kind.raw not in _STANDING_FOR_OTHERS:  # nearly all
+        to.word(What.NODE, kind, node=node)
+    else:
+        word, stands_for, run = node.id, placeholder(node), called(node)
+        if word is not None and word is not run:
+            to.word(What.NODE, word, node=node)
+        if stands_for is not None:
+            to.word(What.NODE, stands_for, node=node)
+        if run is not None:
+            to.word(What.TREE, run, node=node)
+    if label is not None and stands_for is None:
+        to.word(What.INSTANCE, label, defines=True, node=node, owner=tree)
+    for pair in node.attributes:
+        _pair(pair, node, tree, stands_for, to)
     if node.clauses:
         _clauses(node.clauses, node, to)
 
@@ -270,30 +285,41 @@ def placeholder(node: Node) -> Word | None:
     return name
 
 
-def _pair(pair: Pair, node: Node, tree: Tree, kind: NodeKind | None, stands_for: Word | None, to: Listener) -> None:
-    key = pair.key.text
+def _pair(pair: Pair, node: Node, tree: Tree, stands_for: Word | None, to: Listener) -> None:
+    key, value = pair.key.text, pair.value
     if key == "name":
         to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
         if stands_for is None:
-            to.word(What.INSTANCE, pair.value, defines=True, node=node, owner=tree)
+            to.word(What.INSTANCE, value, defines=True, node=node, owner=tree)
         return
     if key == "ID" or key.startswith("_"):
         to.word(What.ATTRIBUTE, pair.key, node=node, pair=pair)
     else:
         to.word(What.PORT, pair.key, node=node, pair=pair, owner=tree)
-    value = pair.value
     if value is None:
         return
-    port = kind.port(key) if kind is not None else None
-    attribute = RESERVED_ATTRIBUTES.get(key)
     if value.kind == BRACED or (value.kind == STRING and value.raw[1:2] == "{" and value.text.endswith("}")):
+        to.value(value)
         _keys_of(value, node, tree, pair, to)
-    elif (attribute is not None and attribute.is_script) or (port is not None and port.content == "script"):
+    elif (content := _content(key, node)) == "script":
+        to.value(value)
         _script(value, node, tree, pair, to)
-    elif port is not None and port.content == "key" and value.kind in (NAME, STRING):
+    elif content == "key" and value.kind in (NAME, STRING):
         to.word(What.KEY, value, node=node, owner=tree, pair=pair)
     elif value.kind == QUANTITY:
         to.word(What.QUANTITY, value, node=node, pair=pair)
+    elif key != "ID":  # which may name what the node is
+        to.value(value)
+
+
+def _content(key: str, node: Node) -> str | None:
+    """What the value of an attribute is: of a port of a built-in node, or of what every node may have."""
+    attribute = RESERVED_ATTRIBUTES.get(key)
+    if attribute is not None:
+        return "script" if attribute.is_script else None
+    kind = None if node.kind is None else lookup(node.kind.text, node.kind.quoted, len(node.nodes))
+    port = kind.port(key) if kind is not None else None
+    return None if port is None else port.content
 
 
 def _keys_of(
@@ -314,26 +340,35 @@ def _keys_of(
 
 def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> None:
     """The entries that a script reads and writes; one with escapes in it is left alone, for its offsets are others."""
-    from btq_lang.script import Assign, Name, parse_script  # most files have no script, and it is large
-    from btq_lang.script import children as parts
-
     text = word.text
     if len(text) != len(word.raw) - (2 if word.quoted else 0):
         return
     offset = word.start + (1 if word.quoted else 0)
+    for end, name, operator in _names_in_script(text):
+        root = name.startswith("@")
+        name = name[1:] if root else name
+        span = Span(offset + end - len(name), offset + end)
+        is_update = operator not in (None, ":=", "=")
+        writes = operator is not None
+        to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, writes, root, is_update))
+
+
+@cache_of(1_000)  # many nodes have the same one
+def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
+    """Where each name in a script ends, in the order of the text; the name; the operator that assigns to it."""
+    from btq_lang.script import Assign, Name, parse_script  # most files have no script, and it is large
+    from btq_lang.script import children as parts
+
+    found: list[tuple[int, str, str | None]] = []
     stack = list(parse_script(text).statements)
     written = {id(part.target): part.operator for part in stack if isinstance(part, Assign)}
     while stack:
         part = stack.pop()
         if isinstance(part, Name):
-            root = part.name.startswith("@")
-            name = part.name[1:] if root else part.name
-            span = Span(offset + part.end - len(name), offset + part.end)
-            operator = written.get(id(part))
-            is_update = operator not in (None, ":=", "=")
-            to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, operator is not None, root, is_update))
+            found.append((part.end, part.name, written.get(id(part))))
         else:
             stack += parts(part)
+    return sorted(found, key=itemgetter(0))
 
 
 def _clauses(clauses: Iterable[NodeClause], node: Node | None, to: Listener) -> None:
@@ -376,14 +411,13 @@ def _requirement(requirement: Requirement, node: Node | None, attached: bool, to
 
 def _quality(path: QualityPath | None, node: Node | None, to: Listener) -> None:
     if path is not None:
-        name = ".".join(word.text for word in path.names)
-        to.part(Mention(What.QUALITY, name, path.span, path.names[-1], False, node))
+        to.words(What.QUALITY, path.names, path.span, node)
 
 
 def _values(part: Clause | Parameter | Argument | object, owner: Requirement | None, to: Listener) -> None:
     """The names and quantities in clauses, conditions and bounds."""
     for found in walk(part):
-        if isinstance(found, _VALUES):
+        if isinstance(found, (Operand, Amount)):
             if found.word.kind == NAME and found.word.raw not in ("true", "false"):
                 to.word(What.VALUE, found.word, owner=owner)
         elif isinstance(found, Call):
@@ -409,4 +443,4 @@ def _path(path: Path | None, to: Listener) -> None:
         to.word(What.PLACE, name)
 
 
-_VALUES = (Operand, Amount)
+_STANDING_FOR_OTHERS = frozenset((*PLACEHOLDERS, "SubTreePlus"))

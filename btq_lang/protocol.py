@@ -12,7 +12,9 @@ from collections.abc import Iterator
 from concurrent.futures import Future
 from typing import Any, BinaryIO
 
+from cattrs import ClassValidationError, transform_error
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 Plain = dict[str, Any]  # what json writes as it is
@@ -44,6 +46,18 @@ class Protocol(LanguageServerProtocol):
             self._write(f'{{"jsonrpc": "2.0", "id": {json.dumps(msg_id)}, "result": {result}}}')
         else:  # what is of lsprotocol in it is made plain by `_serialize_message`
             self._send_data({"jsonrpc": self.VERSION, "id": msg_id, "result": result})
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """As in pygls, which does not answer a request that it cannot read: who asked would wait for ever."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "id" in data and "method" in data:
+                problem = error.__cause__
+                why = "; ".join(transform_error(problem)) if isinstance(problem, ClassValidationError) else str(problem)
+                told = types.ResponseError(error.code, f"{data['method']} cannot be read: {why}")
+                self._send_response(data["id"], error=told)
+            raise
 
     def getting_ready(self) -> Iterator[None]:
         """Read a question of each usual kind: pygls has a reader compiled for the first one."""

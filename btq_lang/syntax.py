@@ -551,20 +551,21 @@ def shape(part: object, of_quantity: Callable[[Word], object] | None = None) -> 
 _OFFSETS = ("start", "end")
 
 
-def walk(part: object) -> Iterator[object]:
+def walk(part: object) -> list[object]:
     """A part of the tree and all that is in it, in document order."""
+    found: list[object] = []
     stack = [part]
     while stack:
         part = stack.pop()
-        if isinstance(part, tuple):
+        if isinstance(part, Word):
+            found.append(part)
+        elif isinstance(part, tuple):
             stack += reversed(part)
-        elif not isinstance(part, _LEAVES):
-            yield part
-            if not isinstance(part, Word):
-                stack += [getattr(part, field) for field in reversed(fields_of(part))]
-
-
-_LEAVES = (int, str, type(None))
+        elif part is not None and not isinstance(part, (int, str)):
+            found.append(part)
+            values = getattr(part, "_values", None)  # as records have them, together
+            stack += reversed(values or [getattr(part, field) for field in fields_of(part)])
+    return found
 
 
 def _in_order(top: Node) -> Iterator[Node | Verbatim]:

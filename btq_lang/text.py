@@ -204,7 +204,7 @@ class LineIndex:
         start = self._start(line)
         if self._text.isascii():  # Python knows that of a text without looking at it
             return Position(line, offset - start)
-        return Position(line, _width(self._text[start:offset], encoding))
+        return Position(line, width_of(self._text[start:offset], encoding))
 
     def ends(self, span: Span, encoding: Encoding = "code-points") -> tuple[int, int, int, int]:
         """Line and column of both ends of a span; nearly all begin and end in one line."""
@@ -242,7 +242,7 @@ def _line_starts(text: str) -> Iterator[int]:
     return accumulate([len(line) + 1 for line in lines])
 
 
-def _width(text: str, encoding: Encoding) -> int:
+def width_of(text: str, encoding: Encoding) -> int:
     if encoding == "code-points" or text.isascii():
         return len(text)
     if encoding == "utf-8":
@@ -255,5 +255,5 @@ def _index(text: str, column: int, encoding: Encoding) -> int:
     for index, character in enumerate(text):
         if width >= column:
             return index
-        width += _width(character, encoding)
+        width += width_of(character, encoding)
     return len(text)

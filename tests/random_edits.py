@@ -20,9 +20,9 @@ from statistics import median
 from lsp_editor import Editor, Message, part
 
 from btq_lang.checks import check
+from btq_lang.features.colours import colours
 from btq_lang.features.completion import complete
 from btq_lang.features.outline import Outline, document_symbols
-from btq_lang.features.semantic_tokens import encode, semantic_tokens
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import Workspace
 
@@ -139,7 +139,7 @@ class Drift:
         outline = self.editor.request("textDocument/documentSymbol", **document)
         assert list(flat(outline, lines)) == list(named(document_symbols(workspace, path)))
         tokens = self.editor.request("textDocument/semanticTokens/full", **document)
-        assert tokens["data"] == encode(semantic_tokens(workspace, path), text, "utf-16")
+        assert tokens["data"] == colours(workspace, path, "utf-16").data
         line, column = lines.position(offset, "utf-16")
         completed = self.editor.request("textDocument/completion", **self.editor.at(name, line, column))
         here = lines.offset(lines.position(offset, "utf-16"), "utf-16")

@@ -15,6 +15,7 @@ from lsp_editor import Editor, Message
 from typist import Typist
 
 from btq_lang.features.calls import prepare_calls
+from btq_lang.features.colours import colours
 from btq_lang.features.completion import complete
 from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.features.hover import hover
@@ -22,7 +23,6 @@ from btq_lang.features.navigation import find_references, goto_definition, highl
 from btq_lang.features.on_type import linked_ranges
 from btq_lang.features.outline import document_symbols, workspace_symbols
 from btq_lang.features.rename import prepare_rename
-from btq_lang.features.semantic_tokens import encode, semantic_tokens
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.session import Session
@@ -67,7 +67,7 @@ def answers(session: Session, typist: Typist) -> Mapping[str, object]:
     return {
         **{feature.__name__: feature(*at) for feature in (*asked, selection_range, prepare_rename, prepare_calls)},
         "symbols": document_symbols(workspace, path),
-        "tokens": encode(semantic_tokens(workspace, path), typist.texts[path], "utf-16"),
+        "tokens": colours(workspace, path, "utf-16").data,
         "folds": folding_ranges(workspace, path),
         "links": document_links(workspace, path),
         "hints": inlay_hints(workspace, path, whole),

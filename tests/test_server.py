@@ -529,8 +529,12 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
         server.protocol.client_capabilities = types.ClientCapabilities()
         server.answering = 1
         server.check_soon(server.session.edit(str(tmp_path / "main.btq"), RIGHT))
+        await asyncio.sleep(0.2)
+        assert not steps
+        server.answering = 0
         while not steps:
             await asyncio.sleep(0)
+        server.answering = 1
         for _ in range(50):
             await asyncio.sleep(0)
         assert len(steps) < 10
@@ -879,6 +883,18 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     assert unknown["error"]["code"] == -32602
     assert editor.diagnostics("main.btq") != []
     assert "ZeroDivisionError: broken" in editor.close()
+
+
+def test_a_request_that_cannot_be_read_is_answered(tmp_path: Path) -> None:
+    editor = Editor(tmp_path)
+    answer = editor.ask("textDocument/hover", **editor.document("main.btq"))
+    assert answer["error"] == {
+        "code": -32602,
+        "message": "textDocument/hover cannot be read: required field missing @ $.params.position",
+    }
+    editor.open("main.btq", WRONG)
+    assert editor.diagnostics("main.btq") != []
+    assert "While structuring HoverParams" in editor.close()
 
 
 def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 """The semantic tokens of a file as an editor takes them, made of parts that are kept with its items.
 
-One invariant: `data` is `encode` of the file's semantic tokens, whatever was kept.  An edit makes anew the parts
-that it touches; of the others nothing changes but the number of lines before them.
+One invariant: `data` is the same whatever was kept.  An edit makes anew the parts that it touches; of the others
+nothing changes but the number of lines before them.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from itertools import compress, count
 from operator import is_, is_not, ne
 from typing import TypeVar
 
-from btq_lang.features.semantic_tokens import Known, Stretch, encode, groups, stretch_of, tokens_of_stretch
+from btq_lang.features.semantic_tokens import groups, known_of, stretch_of
+from btq_lang.features.stretches import Known, Stretch, encoded
 from btq_lang.record import Record
 from btq_lang.syntax import Entry
 from btq_lang.text import LINE_END, Encoding
@@ -125,7 +126,7 @@ def making(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[None
 def _parts(workspace: Workspace, path: str, encoding: Encoding) -> Iterator[Part]:
     """The parts of a file's stretches, made anew where what is kept does not hold."""
     file = workspace.files[path]
-    known = Known(workspace, path)
+    known = known_of(workspace, path)
     facts = file.facts
     entries = file.parsed.entries
     for begin, end in groups(file.parsed):
@@ -145,11 +146,11 @@ def _made(whole: str, stretch: Stretch, known: Known, encoding: Encoding) -> Par
     known.asked = set()
     text = whole[stretch.start : stretch.end]
     lines = len(LINE_END.findall(text)) if "\r" in text else text.count("\n")
-    data = encode(tokens_of_stretch(text, stretch, known), text, encoding)
-    if not data:
+    made = encoded(text, stretch, known, encoding)
+    if not made.tokens:
         return Part(0, 0, "", lines)
-    shown = str(data)[len(str(data[0])) + 1 : -1].replace(" ", "")
-    return Part(len(data), data[0], shown, lines - sum(data[::5]))
+    first = made.tokens[0].partition(",")[0]
+    return Part(5 * len(made.tokens), int(first), ",".join(made.tokens)[len(first) :], lines - made.line)
 
 
 def delta(before: Colours, after: Colours) -> list[Change]:
@@ -213,4 +214,4 @@ def _as_json(colours: Colours, start: int, end: int) -> str:
     return f"[{','.join([f'{first}{part.shown}' for first, part in parts])}]"
 
 
-_A_STEP = 10  # stretches, of some 20 nodes each: some milliseconds
+_A_STEP = 20  # stretches, of some 20 nodes each: a few milliseconds

@@ -6,7 +6,7 @@ import asyncio
 
 from lsprotocol import types
 
-from btq_lang.editor import A_PAUSE, Server
+from btq_lang.editor import Server
 from btq_lang.garbage import keep_what_is_there
 from btq_lang.handlers.progress import checking
 from btq_lang.session import Session
@@ -35,11 +35,6 @@ def register(server: Server) -> None:
             await _first_check(server)
         finally:
             server.scanned.set()
-        if server.task is not None:
-            await asyncio.wait((server.task,))
-        while server.answering:
-            await asyncio.sleep(A_PAUSE)
-        keep_what_is_there()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     async def did_change_configuration(params: types.DidChangeConfigurationParams) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from textwrap import dedent
 
@@ -21,6 +21,7 @@ from btq_lang.features.completion import Completion, complete
 from btq_lang.features.documentation import documentation, include_edits
 from btq_lang.features.hints import code_lenses, inlay_hints
 from btq_lang.features.hover import hover
+from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.features.moves import moved_files
 from btq_lang.features.navigation import find_references, goto_definition, highlights
 from btq_lang.features.node_path import node_path
@@ -30,19 +31,12 @@ from btq_lang.features.proposals import Proposal
 from btq_lang.features.readiness import getting_ready
 from btq_lang.features.relations import goto_implementation, goto_type
 from btq_lang.features.rename import Refusal, prepare_rename, rename
-from btq_lang.features.semantic_tokens import (
-    TYPES,
-    encode,
-    encoded_within,
-    groups,
-    semantic_tokens,
-    stretch_of,
-)
+from btq_lang.features.semantic_tokens import encoded_within, groups, stretch_of
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.parser import parse
 from btq_lang.project import Project
-from btq_lang.text import LineIndex, Span, apply_edits
+from btq_lang.text import Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.token_list import tokens as tokens_of
 from btq_lang.workspace import Workspace
 
@@ -223,34 +217,34 @@ def check_links(text: str, *targets: str | None) -> None:
 
 
 def check_tokens(text: str, *expected: str) -> None:
-    """The coloured words of the first file: `type.modifier word`; a part of the file has the same, and so has the
-    encoded form in every encoding."""
+    """The coloured words of the first file: `type.modifier word`; in every encoding they are the same, and a part of
+    the file has those of its lines."""
     fixture = Fixture(text, cursor=False)
-    path = next(iter(fixture.files))
+    workspace, path = fixture.workspace, next(iter(fixture.files))
     content = fixture.files[path]
-    tokens = semantic_tokens(fixture.workspace, path)
-    shown = [f"{'.'.join((one.type, *one.modifiers))} {content[slice(*one.span)]}" for one in tokens]
-    assert shown == list(expected)
-    end = 0
-    for one in tokens:
-        assert end <= one.span.start < one.span.end
-        end = one.span.end
-        assert one in semantic_tokens(fixture.workspace, path, one.span)
     lines = LineIndex(content)
     for encoding in ("utf-8", "utf-16", "code-points"):
-        line = column = 0
-        data = encode(tokens, content, encoding)
-        for one, at in zip(tokens, range(0, len(data), 5), strict=True):
-            down, right, length, kind, _ = data[at : at + 5]
-            line, column = line + down, right if down else column + right
-            assert (line, column) == lines.position(one.span.start, encoding)
-            assert (line, column + length) == lines.position(one.span.end, encoding)
-            assert TYPES[kind] == one.type
-        for one in tokens:
-            part = semantic_tokens(fixture.workspace, path, one.span)
-            assert encoded_within(fixture.workspace, path, one.span, encoding) == encode(part, content, encoding)
-        made = colours(fixture.workspace, path, encoding)
-        assert made.data == json.loads(made.as_json) == data
+        made = colours(workspace, path, encoding)
+        assert made.data == json.loads(made.as_json)
+        tokens = list(decoded(made.data, lines, encoding))
+        assert [f"{look} {content[slice(*span)]}" for span, look in tokens] == list(expected)
+        assert all(one.end <= other.start for (one, _), (other, _) in pairwise(tokens))
+        for span, _ in tokens:
+            line = lines.position(span.start).line
+            part = [*decoded(encoded_within(workspace, path, span, encoding), lines, encoding)]
+            assert part == [one for one in tokens if lines.position(one[0].start).line == line]
+
+
+def decoded(data: list[int], lines: LineIndex, encoding: Encoding) -> Iterator[tuple[Span, str]]:
+    """Of each semantic token where it stands, and `type.modifier`."""
+    line = column = 0
+    for down, right, length, type_, bits in zip(*[iter(data)] * 5, strict=True):
+        line, column = line + down, right if down else column + right
+        start, end = (lines.offset(Position(line, at), encoding) for at in (column, column + length))
+        assert start < end
+        assert lines.position(end, encoding) == (line, column + length)
+        modifiers = [name for bit, name in enumerate(MODIFIERS) if bits & 1 << bit]
+        yield Span(start, end), ".".join((TYPES[type_], *modifiers))
 
 
 def check_delta(before: list[int], after: list[int], expected: tuple[int, int, list[int]] | None) -> None:
@@ -478,10 +472,11 @@ def answer_everything(text: str, offset: int) -> None:
     parts = [text[part.start : part.end] for part in stretches]
     assert "".join(parts) == text
     assert [word for part in parts for word in words_of(part)] == words_of(text)
-    part = semantic_tokens(workspace, "main.btq", Span(offset, offset))
-    assert encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16") == encode(part, text, "utf-16")
-    tokens = encode(semantic_tokens(workspace, "main.btq"), text, "utf-16")
-    assert tokens == colours(workspace, "main.btq", "utf-16").data
+    lines = LineIndex(text)
+    tokens = list(decoded(colours(workspace, "main.btq", "utf-16").data, lines, "utf-16"))
+    assert all(one.end <= other.start for (one, _), (other, _) in pairwise(tokens))
+    part = encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16")
+    assert set(decoded(part, lines, "utf-16")) <= set(tokens)
     for action in code_actions(workspace, "main.btq", Span(offset, offset)):
         for changed in action.edits.values():
             apply_edits(text, changed)

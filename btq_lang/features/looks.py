@@ -1,0 +1,122 @@
+"""How each word looks, by what it names, or else by its token.
+
+One invariant: a look is the end of a semantic token as JSON has it: the number of its type and a bit for each modifier,
+each behind a comma.  What they mean the legend says, which editors are told first.
+"""
+
+from __future__ import annotations
+
+from btq_lang.catalog.nodes import lookup
+from btq_lang.claims import HAPPENINGS, VERBS
+from btq_lang.clauses import ACTIONS as ON_VIOLATION
+from btq_lang.clauses import EXPERIMENTS, METHODS
+from btq_lang.conditions import FUNCTIONS, HEADS
+from btq_lang.features.legend import MODIFIERS, TYPES
+from btq_lang.mentions import What
+from btq_lang.tokens import (
+    BRACED,
+    CATEGORIES,
+    COMMENT,
+    DIRECTIONS,
+    NAME,
+    NODE_CLAUSES,
+    NUMBER,
+    QUANTITY,
+    STRING,
+    SYMBOL,
+)
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+def look_of_node(name: str, kind: int) -> str:
+    """How what a node is looks, by its name and the kind of its token."""
+    if kind == SYMBOL:
+        return _SIGN
+    looks = _of_quoted if kind == STRING else _of_names
+    look = looks.get(name)
+    if look is None:
+        builtin = lookup(name, kind == STRING)
+        if len(looks) >= _ENOUGH:
+            looks.clear()
+        of_engine = _ACTION if builtin is not None and builtin.category in ("Action", "Condition") else _BUILTIN
+        look = looks[name] = OWN_NODE if builtin is None else of_engine
+    return look
+
+
+def plain_look(kind: int, raw: str, before: str) -> str | None:
+    """How a token looks that names nothing, behind another one; None: it has no colour."""
+    if kind != NAME:
+        return PLAIN.get(kind)
+    if before == "=":
+        return TEXT
+    if raw in KEYWORDS:
+        return _KEYWORD
+    return _TYPE if before == ":" else None
+
+
+def _look(type_: str, modifier: str | None = None) -> str:
+    return f",{TYPES.index(type_)},{1 << MODIFIERS.index(modifier) if modifier is not None else 0}"
+
+
+_KEYWORD: Final = _look("keyword")
+_TYPE: Final = _look("type")
+TEXT: Final = _look("string")
+PLAIN: Final = {
+    COMMENT: _look("comment"),
+    STRING: TEXT,
+    NUMBER: _look("number"),
+    QUANTITY: _look("number"),
+    SYMBOL: _look("operator"),
+    BRACED: _look("variable"),
+}
+_SIGN: Final = _look("operator", "defaultLibrary")
+_ACTION: Final = _look("function", "defaultLibrary")
+_BUILTIN: Final = _look("type", "defaultLibrary")
+OWN_NODE: Final = _look("function")
+NEW_NODE: Final = _look("function", "definition")
+STANDARD_QUALITY: Final = _look("enumMember", "defaultLibrary")
+OWN_QUALITY: Final = _look("enumMember")
+NEW_QUALITY: Final = _look("enumMember", "definition")
+VALUE: Final = _look("variable", "readonly")
+WRITTEN: Final = _look("variable", "modification")
+_TYPES: Final = {
+    What.TREE: "class",
+    What.REQUIREMENT: "interface",
+    What.SIGNAL: "variable",
+    What.CONTEXT: "variable",
+    What.PARAMETER: "parameter",
+    What.PORT: "property",
+    What.ATTRIBUTE: "property",
+    What.KEY: "variable",
+    What.INSTANCE: "label",
+    What.TAG: "decorator",
+    What.INCLUDE: "string",
+    What.QUANTITY: "number",
+    What.UNIT: "type",
+    What.EDITION: "enumMember",
+}
+USED: Final = {what: _look(type_) for what, type_ in _TYPES.items()}
+DEFINED: Final = {what: _look(type_, "definition") for what, type_ in _TYPES.items()}
+# Every word that the grammar knows by its place; a name that looks like one is told as what it names.
+KEYWORDS: Final = frozenset(
+    {"BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq"}
+    | {"TreeNodesModel", "xml", "parameters", "metadata", "Quality", "ID", "description", "true", "false"}
+    | {"and", "or", "not", "if", "else", "node", "at", "to", "except", "of", "per", "under", "tagged", "within"}
+    | {"most", "least", "less", "more", "than", "between", "after", "violation", "probability", "last", "by", "fresh"}
+    | {"from", "level", "counter", "gauge", "initially", *ON_VIOLATION, *METHODS}
+    | CATEGORIES
+    | NODE_CLAUSES
+    | DIRECTIONS
+    | HEADS
+    | VERBS
+    | HAPPENINGS
+    | EXPERIMENTS
+    | FUNCTIONS
+)
+# What `look_of_node` has answered: most kinds stand in a file many times.
+_of_names: Final[dict[str, str]] = {}
+_of_quoted: Final[dict[str, str]] = {}
+_ENOUGH: Final = 2_000

@@ -1,0 +1,267 @@
+"""The semantic tokens of a stretch of a file, an item mostly: the words that its tree tells of, and what is between.
+
+One invariant: tokens are in the order of the text, none overlaps another, none goes over a line end.  Between two words
+of the tree there stands nearly always what stands between most: of each such text the tokens are made once.
+"""
+
+from __future__ import annotations
+
+from btq_lang.features.looks import (
+    DEFINED,
+    NEW_NODE,
+    NEW_QUALITY,
+    OWN_NODE,
+    OWN_QUALITY,
+    PLAIN,
+    STANDARD_QUALITY,
+    TEXT,
+    USED,
+    VALUE,
+    WRITTEN,
+    look_of_node,
+    plain_look,
+)
+from btq_lang.features.meaning import match_of
+from btq_lang.mentions import Listener, What, tell
+from btq_lang.record import Record
+from btq_lang.syntax import Entry, Requirement
+from btq_lang.text import LINE_END, Span, width_of
+from btq_lang.token_list import pieces
+from btq_lang.tokens import OPERATOR, SYMBOL
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+    from btq_lang.mentions import Mention, Owner
+    from btq_lang.syntax import Node, Pair, Word
+    from btq_lang.text import Encoding
+
+    Token: TypeAlias = tuple[int, int, str]  # where it starts and ends, and its look
+    World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]
+
+
+class Known:
+    """What is asked of the rest of the workspace to colour a file.
+
+    Attributes:
+        world: all that there is to know: the edition of the quality model, the names of trees, and one's own qualities.
+        asked: the names that were asked for.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.asked: set[str] = set()
+        self._edition = world[0]
+        self._trees, self._qualities = frozenset(world[1]), frozenset(world[2])
+
+    def is_tree(self, name: str) -> bool:
+        self.asked.add(name)
+        return name in self._trees
+
+    def is_standard(self, name: str) -> bool:
+        """Whether a quality is one of the standard, and not one's own."""
+        self.asked.add(name)
+        return name not in self._qualities and match_of(name, self._edition).quality is not None
+
+    def answers(self, names: frozenset[str]) -> tuple[str, frozenset[str], frozenset[str]]:
+        """What changes when an answer about one of these names does."""
+        return self._edition, names & self._trees, names & self._qualities
+
+
+class Stretch(Record):
+    """A part of a file that can be cut into tokens by itself: an item, seldom more, and what stands behind it."""
+
+    start: int
+    end: int
+    entries: tuple[Entry, ...]
+
+
+class Encoded(Record):
+    """The tokens of a stretch.
+
+    Attributes:
+        tokens: of each, as JSON has them, five integers: lines and columns from the token before or from the start of
+            the stretch, length, type, and modifiers as bits.
+        line: that of the last one, counted from the start of the stretch.
+    """
+
+    tokens: list[str]
+    line: int
+
+
+def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> Encoded:
+    """The tokens of a stretch with this text."""
+    words = _Words(known)
+    for entry in stretch.entries:
+        words.by = entry.start - stretch.start
+        tell(entry.item, words)
+    words.found.sort()
+    made = _Encoder(text, encoding)
+    at = 0
+    for start, end, look in words.found:
+        if start < at:
+            continue
+        for begin, stop, of_between in _between(text[at:start]):
+            made.add(begin + at, stop + at, of_between)
+        made.add(start, end, look)
+        at = end
+    for begin, stop, of_between in _between(text[at:]):
+        made.add(begin + at, stop + at, of_between)
+    return Encoded(made.tokens, made.line)
+
+
+class _Words(Listener):
+    """The words of a tree as tokens.
+
+    Attributes:
+        by: where the item begins whose words are told.
+    """
+
+    def __init__(self, known: Known) -> None:
+        self.by = 0
+        self.found: list[Token] = []
+        self._known = known
+
+    def word(
+        self,
+        what: What,
+        word: Word | None,
+        defines: bool = False,
+        node: Node | None = None,
+        owner: Owner = None,
+        pair: Pair | None = None,
+    ) -> None:
+        if word is not None and word.raw:
+            look = (DEFINED if defines else USED).get(what)
+            self._add(word, look or self._look(what, word, word.text, defines, owner))
+
+    def words(self, what: What, words: tuple[Word, ...], span: Span, node: Node | None = None) -> None:
+        look = self._look(what, words[-1], ".".join([word.text for word in words]), False, None)
+        for word in words:
+            self._add(word, look)
+
+    def value(self, word: Word) -> None:
+        self._add(word, PLAIN.get(word.kind, TEXT))
+
+    def part(self, mention: Mention) -> None:
+        """Cut the word that it is in, if that was told just before."""
+        begin, end = mention.span.start + self.by, mention.span.end + self.by
+        if begin == end:
+            return
+        look = WRITTEN if mention.writes else (DEFINED if mention.defines else USED).get(mention.what)
+        if look is None:
+            look = self._look(mention.what, mention.word, mention.name, mention.defines, mention.owner)
+        found = self.found
+        if found and found[-1][0] <= begin and end <= found[-1][1]:
+            start, stop, around = found.pop()
+            if start < begin:
+                found.append((start, begin, around))
+            found.append((begin, end, look))
+            if end < stop:
+                found.append((end, stop, around))
+        else:
+            found.append((begin, end, look))
+
+    def _add(self, word: Word, look: str) -> None:
+        start = word.start + self.by
+        self.found.append((start, start + len(word.raw), look))
+
+    def _look(self, what: What, word: Word, name: str, defines: bool, owner: Owner) -> str:
+        """Of what can be several things."""
+        if what is What.NODE:
+            return NEW_NODE if defines and word.kind != SYMBOL else look_of_node(name, word.kind)
+        if what is What.QUALITY:
+            if defines:
+                return NEW_QUALITY
+            return STANDARD_QUALITY if self._known.is_standard(name) else OWN_QUALITY
+        if what is What.VALUE:
+            is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
+            return USED[What.PARAMETER] if is_own else VALUE
+        assert what is What.PLACE, "rules stand in no item, and of all others it is known how they look"
+        return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
+
+
+def _between(text: str) -> list[Token]:
+    """The tokens between two words of a tree, before the first or behind the last."""
+    known = _known.get(text)
+    if known is not None:
+        return known
+    if len(_known) >= _ENOUGH:
+        _known.clear()
+    found: list[Token] = []
+    _known[text] = found
+    before = ""
+    for kind, start, raw in pieces(text):
+        look = plain_look(kind, raw, before)
+        if look is not None:
+            found.append((start, start + len(raw), look))
+        if kind <= OPERATOR:
+            before = raw
+    return found
+
+
+class _Encoder:
+    """Who encodes tokens, in the order of the text: one over a line end as one on each of its lines.
+
+    Attributes:
+        line: that of the last one.
+    """
+
+    def __init__(self, text: str, encoding: Encoding) -> None:
+        self.tokens: list[str] = []
+        self.line = 0
+        self._text = text
+        self._encoding = encoding
+        self._is_plain = encoding == "code-points" or text.isascii()
+        self._has_returns = "\r" in text
+        self._column = 0
+        # The line where the next one is looked for: which it is, where it begins, and where the next one does.
+        self._at = self._begin = 0
+        self._end = self._next_line(0)
+
+    def add(self, start: int, end: int, look: str) -> None:
+        while self._end <= start:
+            self._begin = self._end
+            self._end = self._next_line(self._end)
+            self._at += 1
+        if end >= self._end:
+            for begin, stop in _lines(self._text[start:end]):
+                self.add(start + begin, start + stop, look)
+            return
+        column, length = start - self._begin, end - start
+        if not self._is_plain:
+            column = width_of(self._text[self._begin : start], self._encoding)
+            length = width_of(self._text[start:end], self._encoding)
+        if self._at == self.line:
+            self.tokens.append(f"0,{column - self._column},{length}{look}")
+        else:
+            self.tokens.append(f"{self._at - self.line},{column},{length}{look}")
+            self.line = self._at
+        self._column = column
+
+    def _next_line(self, at: int) -> int:
+        """Where the next line begins; behind the last one, what is behind all of the text."""
+        if self._has_returns:
+            found = LINE_END.search(self._text, at)
+            end = found.end() if found else 0
+        else:
+            end = self._text.find("\n", at) + 1
+        return end or len(self._text) + 1
+
+
+def _lines(raw: str) -> list[tuple[int, int]]:
+    """Where the lines of a token start and end that have something in them."""
+    found: list[tuple[int, int]] = []
+    start = 0
+    for line in LINE_END.finditer(raw):
+        if line.start() > start:
+            found.append((start, line.start()))
+        start = line.end()
+    if start < len(raw):
+        found.append((start, len(raw)))
+    return found
+
+
+_known: Final[dict[str, list[Token]]] = {}  # what `_between` has found; a dictionary is asked for each word of a file
+_ENOUGH: Final = 2_000
