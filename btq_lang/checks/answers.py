@@ -99,7 +99,7 @@ class Answers:
         old = self._workspace
         was_left = self._is_asking  # by an exception
         self._is_asking = True
-        if old is None or was_left or old.project is not workspace.project or list(files) != list(self._files):
+        if old is None or was_left or old.project != workspace.project or list(files) != list(self._files):
             self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
             self._outermost, self._tables, self._restless = set(), set(), set()
             self._known_of, self._each = {}, {}

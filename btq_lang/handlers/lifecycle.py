@@ -93,7 +93,7 @@ def _settle(session: Session, settings: object) -> None:
 async def _first_check(server: Server) -> None:
     """All files of the folders, after those that are open; with progress, where there are many."""
     server.check_soon(server.session.paths())
-    await asyncio.sleep(0)
+    await asyncio.sleep(_TO_OPEN)
     paths = server.session.reload()
     server.scanned.set()
     if server.pulls:
@@ -115,3 +115,6 @@ def _endings() -> tuple[str, ...]:
     from btq_lang.file import SUFFIXES  # the parser comes with it, and an editor waits for the server to start
 
     return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
+
+
+_TO_OPEN = 0.02  # seconds, in which an editor tells what it shows: that is checked before any other file
