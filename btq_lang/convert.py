@@ -223,8 +223,11 @@ class Converter:
         range_, of_path = self._range_as_json(file.lines, found.span), as_json(path)
         items = []
         for number, one in enumerate(found.proposals):
+            label = as_json(one.label)
             snippet = one.snippet if snippets else None
-            text = as_json(one.insert if snippet is None else snippet)
+            text = one.insert if snippet is None else snippet
+            written = label if text == one.label else as_json(text)
+            name = label if one.name == one.label else as_json(one.name)
             more = f', "detail": {as_json(one.detail)}' if one.detail else ""
             if one.filter:
                 more += f', "filterText": {as_json(one.filter)}'
@@ -233,9 +236,9 @@ class Converter:
             if one.old:
                 more += f', "tags": [{_DEPRECATED}]'
             items.append(
-                f'{{"label": {as_json(one.label)}, "kind": {_COMPLETION_KINDS[one.kind].value}, '
-                f'"sortText": "{number:05}", "textEdit": {{"range": {range_}, "newText": {text}}}, '
-                f'"data": {{"path": {of_path}, "kind": "{one.kind}", "name": {as_json(one.name)}, '
+                f'{{"label": {label}, "kind": {_COMPLETION_KINDS[one.kind]}, '
+                f'"sortText": "{number:05}", "textEdit": {{"range": {range_}, "newText": {written}}}, '
+                f'"data": {{"path": {of_path}, "kind": "{one.kind}", "name": {name}, '
                 f'"include": {as_json(one.include)}}}{more}}}'
             )
         return Json(f'{{"isIncomplete": false, "items": [{", ".join(items)}]}}')
@@ -345,21 +348,21 @@ _RANGE = '{"start": {"line": %d, "character": %d}, "end": {"line": %d, "characte
 _SNIPPET = types.InsertTextFormat.Snippet.value
 _DEPRECATED = types.CompletionItemTag.Deprecated.value
 _COMPLETION_KINDS = {
-    "keyword": types.CompletionItemKind.Keyword,
-    "node": types.CompletionItemKind.Function,
-    "tree": types.CompletionItemKind.Class,
-    "requirement": types.CompletionItemKind.Interface,
-    "quality": types.CompletionItemKind.EnumMember,
-    "signal": types.CompletionItemKind.Variable,
-    "context": types.CompletionItemKind.Constant,
-    "parameter": types.CompletionItemKind.TypeParameter,
-    "port": types.CompletionItemKind.Field,
-    "attribute": types.CompletionItemKind.Property,
-    "key": types.CompletionItemKind.Variable,
-    "unit": types.CompletionItemKind.Unit,
-    "file": types.CompletionItemKind.File,
-    "rule": types.CompletionItemKind.Reference,
-    "tag": types.CompletionItemKind.Color,
-    "instance": types.CompletionItemKind.Module,
-    "enum": types.CompletionItemKind.Value,
+    "keyword": types.CompletionItemKind.Keyword.value,
+    "node": types.CompletionItemKind.Function.value,
+    "tree": types.CompletionItemKind.Class.value,
+    "requirement": types.CompletionItemKind.Interface.value,
+    "quality": types.CompletionItemKind.EnumMember.value,
+    "signal": types.CompletionItemKind.Variable.value,
+    "context": types.CompletionItemKind.Constant.value,
+    "parameter": types.CompletionItemKind.TypeParameter.value,
+    "port": types.CompletionItemKind.Field.value,
+    "attribute": types.CompletionItemKind.Property.value,
+    "key": types.CompletionItemKind.Variable.value,
+    "unit": types.CompletionItemKind.Unit.value,
+    "file": types.CompletionItemKind.File.value,
+    "rule": types.CompletionItemKind.Reference.value,
+    "tag": types.CompletionItemKind.Color.value,
+    "instance": types.CompletionItemKind.Module.value,
+    "enum": types.CompletionItemKind.Value.value,
 }

@@ -68,11 +68,17 @@ def ports_of_kind(
 
 def ports_of_tree(workspace: Workspace, path: str, name: str) -> tuple[NodePort, ...]:
     """The ports that a tree declares, in its block or in a model of its own."""
+    scope = workspace.scope(path)
     for kind in (Kind.TREE, Kind.MODEL):
-        found = workspace.scope(path).find(kind, name)
-        if found is not None and isinstance(target := found.symbol.target, Tree | Model) and target.ports:
-            return tuple(_declared(port) for port in target.ports)
+        found = scope.find(kind, name)
+        if found is not None and (ports := declared_ports(found.symbol.target)):
+            return ports
     return ()
+
+
+def declared_ports(target: object) -> tuple[NodePort, ...]:
+    """The ports that a tree or a model itself declares."""
+    return tuple([_declared(port) for port in target.ports]) if isinstance(target, (Tree, Model)) else ()
 
 
 def _declared(port: Port) -> NodePort:

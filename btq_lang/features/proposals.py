@@ -16,7 +16,7 @@ from btq_lang.features.meaning import edition, is_main
 from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place
-from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
 from btq_lang.name_kinds import Kind
@@ -139,9 +139,11 @@ def requirements(workspace: Workspace, path: str) -> Iterator[Proposal]:
 def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
     for found, include in _defined(workspace, path, Kind.TREE):
         name = found.symbol.name
-        ports = ports_of_tree(workspace, found.path, name)
+        ports = declared_ports(found.symbol.target)
+        if not ports and workspace.scope(found.path).defines(Kind.MODEL, name):
+            ports = ports_of_tree(workspace, found.path, name)
         head = written(name)
-        snippet = _with_ports(head, [port for port in ports if port.required])
+        snippet = _with_ports(head, [port for port in ports if port.required]) if ports else None
         yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
 
 
