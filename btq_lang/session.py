@@ -38,6 +38,7 @@ class Session:
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
         self._files: Files | None = None
+        self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []
         self._home: dict[str, int] = {}
         self._answers: dict[str, Answers] = {}  # of open files, for only these are edited
@@ -82,6 +83,7 @@ class Session:
         """Read folders and projects again; all files that there are."""
         from btq_lang.commands.files import Files
 
+        self._read_for = self.folders, {**self.settings}
         if self._files is None:
             self._files = Files()
             self._files.overlay = self.open
@@ -100,6 +102,11 @@ class Session:
                 if path in group.given or path not in self._home:
                     self._home[path] = index
         return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
+
+    @property
+    def has_read(self) -> bool:
+        """Whether its folders were read, with the settings that it has."""
+        return self._read_for == (self.folders, self.settings)
 
     def _severities(self) -> tuple[tuple[str, Severity | None], ...]:
         """The severities that the editor's user has set, over those of the project."""

@@ -185,3 +185,28 @@ def test_a_file_that_no_folder_has(tmp_path: Path) -> None:
     assert session.close(path) == ()
     assert session.workspace_of(path) is None
     assert session.diagnostics(path) == ()
+
+
+def test_the_folders_are_read_once_for_their_settings(folder: Path) -> None:
+    session = Session()
+    session.folders = (str(folder),)
+    assert not session.has_read
+    session.edit(str(folder / "main.btq"), MAIN)
+    assert session.has_read
+    session.settings = {"rules": {"unused-tree": "off"}}
+    assert not session.has_read
+    session.reload()
+    assert session.has_read
+
+
+def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> None:
+    session = Session()
+    session.folders = (str(folder),)
+    path = str(folder / "main.btq")
+    session.edit(path, MAIN)
+    found = session.diagnostics(path)
+    kept = [id(found) for found, _, _ in session._answers[path].told.values()]
+    session.reload()
+    assert found != ()
+    assert session.diagnostics(path) is found
+    assert [id(found) for found, _, _ in session._answers[path].told.values()] == kept

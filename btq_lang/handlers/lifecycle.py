@@ -94,7 +94,7 @@ async def _first_check(server: Server) -> None:
     """All files of the folders, after those that are open; with progress, where there are many."""
     server.check_soon(server.session.paths())
     await asyncio.sleep(_TO_OPEN)
-    paths = server.session.reload()
+    paths = server.session.paths() if server.session.has_read else server.session.reload()
     server.scanned.set()
     if server.pulls:
         server.check_soon(paths)
