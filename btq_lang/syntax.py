@@ -563,8 +563,7 @@ def walk(part: object) -> list[object]:
             stack += reversed(part)
         elif part is not None and not isinstance(part, (int, str)):
             found.append(part)
-            values = getattr(part, "_values", None)  # as records have them, together
-            stack += reversed(values or [getattr(part, field) for field in fields_of(part)])
+            stack += [getattr(part, field) for field in reversed(fields_of(part))]
     return found
 
 
