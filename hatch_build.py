@@ -1,13 +1,14 @@
-"""Compile the parser, most checks and what requirements mean when a wheel is built with `BTQ_COMPILE=1`; without it the
-wheel is pure Python.
+"""Compile the parser, most checks, what requirements mean and what colours a text when a wheel is built with
+`BTQ_COMPILE=1`; without it the wheel is pure Python.
 
 One invariant: nothing compiled ever lies in the checkout.  The package is copied, compiled in a folder that is removed
 when the wheel is made, and only the compiled modules are taken from there; the sources stay beside them in the wheel,
 for tracebacks, and Python prefers the compiled ones.
 
-Which modules: those where a check of many files spends its time.  Their records are written out as plain classes
-(tools/native_records.py), of which mypyc makes structures of C; a class with a `cached_property` must not be there, for
-mypyc makes one of it that is worked out every time.
+Which modules: those where a check of many files spends its time, or a server while an editor waits for the first
+colours of a large one.  Their records are written out as plain classes (tools/native_records.py), of which mypyc makes
+structures of C; a class with a `cached_property` must not be there, for mypyc makes one of it that is worked out every
+time.
 
 What mypyc 2.4 makes wrong, and how to tell: of a class that is said to be `acyclic`, though most are, Python lets go in
 a way that writes before the object, where 50 objects are let go of inside each other.  It took a `sum` of floats,

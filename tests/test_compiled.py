@@ -1,4 +1,4 @@
-"""What is compiled (hatch_build.py) reads and checks as the pure form does: the same tree, offsets and diagnostics.
+"""What is compiled (hatch_build.py) says the same as the pure form: tree, offsets, diagnostics and semantic tokens.
 
 It is compiled into a temporary folder, without optimisation, and runs in a process of its own, since one process
 imports a package only once.  Skipped, saying so, where the tools to compile it are missing.
@@ -27,6 +27,8 @@ TELL = """
 import json, sys
 from btq_lang import checks, parser
 from btq_lang.checks import ports
+from btq_lang.features import stretches
+from btq_lang.features.colours import colours
 from btq_lang.workspace import Workspace
 
 def told(part):
@@ -36,17 +38,19 @@ def told(part):
         return [type(part).__name__, *(told(getattr(part, field)) for field in type(part).__match_args__)]
     return repr(part)
 
-print(json.dumps([parser.__file__, ports.__file__]))
+print(json.dumps([parser.__file__, ports.__file__, stretches.__file__]))
 for line in sys.stdin:
     text = json.loads(line)
     parsed = parser.parse(text)
-    found = checks.check(Workspace.of({"main.btq": text}), "main.btq")
-    print(json.dumps(told([parsed.entries, parsed.diagnostics, parsed.tokens, found])))
+    workspace = Workspace.of({"main.btq": text})
+    found = checks.check(workspace, "main.btq")
+    data = colours(workspace, "main.btq", "utf-16").data
+    print(json.dumps(told([parsed.entries, parsed.diagnostics, parsed.tokens, found, data])))
 """
 
 
 def answers(package: Path, texts: list[str]) -> tuple[list[Path], list[str]]:
-    """What the parser and the checks of a package say of each text, and where a module of either lies."""
+    """What the parser, the checks and the colours of a package say of each text, and where a module of each lies."""
     said = subprocess.run(
         [sys.executable, "-c", TELL],
         input="".join(json.dumps(text) + "\n" for text in texts),
@@ -99,8 +103,9 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts)
-    assert pure_files == [ROOT / "btq_lang" / "parser.py", ROOT / "btq_lang" / "checks" / "ports.py"]
-    assert [file.parent for file in compiled_files] == [compiled / "btq_lang", compiled / "btq_lang" / "checks"]
+    names = ("parser.py", "checks/ports.py", "features/stretches.py")
+    assert pure_files == [ROOT / "btq_lang" / name for name in names]
+    assert [file.parent for file in compiled_files] == [(compiled / "btq_lang" / name).parent for name in names]
     assert {file.suffix for file in compiled_files}.isdisjoint({".py"})
     assert len(pure) == len(by_compiled) == len(texts)
     for text, expected, found in zip(texts, pure, by_compiled, strict=True):
