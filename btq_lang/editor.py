@@ -43,6 +43,7 @@ class Refused(JsonRpcException):
 
 
 NOTHING = Json('{"kind": "full", "items": []}')
+TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
 MOST_DETAILS = 500  # a parameter may hold a whole text
 
@@ -235,7 +236,8 @@ class Server(LanguageServer):
             self.task = asyncio.ensure_future(self._check())
 
     async def _check(self) -> None:
-        """Check file by file, and listen between two: an edit that comes meanwhile is checked first."""
+        """Check file by file, and listen between two: an edit that comes meanwhile is checked first, and what is asked
+        meanwhile is answered before any file that is not open."""
         await asyncio.sleep(0)
         if self.pulls:
             self.waiting.clear()
@@ -243,13 +245,16 @@ class Server(LanguageServer):
                 self.workspace_diagnostic_refresh(None)
         while self.waiting:
             path = next(iter(self.waiting))
+            if self.answering and path not in self.session.open:
+                await asyncio.sleep(0)
+                continue
             del self.waiting[path]
             try:
                 self.publish(path)
             except Exception:  # one file that cannot be checked must not silence the others, nor end the server
                 logging.getLogger(__name__).exception("checking %s", path)
             self.session.let_go()
-            await asyncio.sleep(0)
+            await asyncio.sleep(TO_ASK if path in self.session.open and self.waiting else 0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)
         self._await_pause()

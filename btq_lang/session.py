@@ -126,15 +126,17 @@ class Session:
     def let_go(self) -> None:
         """Let go of what edits have replaced, while nobody waits for it.  Pack the files that nobody works in, where
         what was made of them has become much: it is most of what a large folder takes of the memory, and nobody asks
-        for most of it again."""
+        for most of it again.  After a large folder is read there are many: of these a few each time, for somebody may
+        ask for something."""
         for answers in self._answers.values():
             answers.let_go()
         for workspace in self._workspaces:
             held = [path for path, file in workspace.files.items() if file.is_unpacked]
             idle = [path for path in held if not self._is_worked_in(workspace, path)]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
-                workspace.pack(idle)
-                gc.collect()  # much of it refers to itself, and Python would wait until there is far more
+                workspace.pack(idle[:_AT_ONCE])
+                if len(idle) <= _AT_ONCE:
+                    gc.collect()  # much of it refers to itself, and Python would wait until there is far more
 
     def _is_worked_in(self, workspace: Workspace, path: str) -> bool:
         """Whether a file is open, or linked with one that is."""
@@ -208,4 +210,5 @@ def _names_in_scope(workspace: Workspace, path: str) -> frozenset[Name]:
 
 
 _MOST_IDLE = 30_000  # characters, of which each costs some 40 bytes when it is parsed
+_AT_ONCE = 5  # files
 _SEVERITIES: dict[object, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
