@@ -93,11 +93,9 @@ def starts(rounds: int) -> tuple[list[Series], list[Goal]]:
 def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
     """What an author does in one file of a folder: type, and ask."""
     size = f"{nodes:,} nodes".replace(",", " ")
+    asked = ("completion", "hover", "definition", "first tokens", "all tokens", "token delta")
     edits, completion, hover, definition, first, full, delta = (
-        Series(f"{what}, {size}")
-        for what in (
-            *("edit to diagnostics", "completion", "hover", "definition", "first tokens", "all tokens", "token delta"),
-        )
+        Series(f"{what}, {size}") for what in ("edit to diagnostics", *asked)
     )
     draw = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as name:

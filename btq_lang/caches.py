@@ -1,4 +1,4 @@
-"""`cache` and `cached_property`, as `functools` has them, and a cache that does not grow without end.
+"""`cache` and `cached_property`, as `functools` has them, and caches that do not grow without end.
 
 Why not `functools`: with what it imports it takes a twentieth of a small check, of which most others need nothing.
 Deliberately left out: arguments by keyword and locks.
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     P = ParamSpec("P")
     T = TypeVar("T")
+    K = TypeVar("K")
+    V = TypeVar("V")
 else:
 
     class cached_property:
@@ -44,7 +46,8 @@ def cache_of(limit: int | None) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """The same for so many different arguments; when there are more, it begins anew."""
 
     def caching(function: Callable[P, T]) -> Callable[P, T]:
-        known = _Known(function, limit)
+        with_all: Callable[..., T] = function
+        known: Answered[tuple[Any, ...], T] = Answered(lambda arguments: with_all(*arguments), limit)
 
         def ask(*arguments: Any) -> Any:
             return known[arguments]
@@ -55,16 +58,16 @@ def cache_of(limit: int | None) -> Callable[[Callable[P, T]], Callable[P, T]]:
     return caching
 
 
-class _Known(dict["tuple[Any, ...]", "Any"]):
-    """What a function has answered, by its arguments."""
+class Answered(dict["K", "V"]):
+    """What a function of one argument has answered; `known[argument]` costs no call, where each word of a file asks."""
 
-    def __init__(self, function: Callable[..., Any], limit: int | None) -> None:
+    def __init__(self, function: Callable[[K], V], limit: int | None) -> None:
         self.function = function
         self.limit = limit
 
-    def __missing__(self, arguments: tuple[Any, ...]) -> Any:
-        value = self.function(*arguments)
+    def __missing__(self, argument: K) -> V:
+        value = self.function(argument)
         if self.limit is not None and len(self) >= self.limit:
             self.clear()
-        self[arguments] = value
+        self[argument] = value
         return value

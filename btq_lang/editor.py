@@ -243,10 +243,13 @@ class Server(LanguageServer):
             self.waiting.clear()
             if self.can_refresh("diagnostics"):
                 self.workspace_diagnostic_refresh(None)
+        loop = asyncio.get_running_loop()
+        told = -TO_ASK
         while self.waiting:
             path = next(iter(self.waiting))
-            if self.answering and path not in self.session.open:
-                await asyncio.sleep(0)
+            is_open = path in self.session.open
+            if not is_open and (self.answering or loop.time() < told + TO_ASK):
+                await asyncio.sleep(TO_ASK / 10)
                 continue
             del self.waiting[path]
             try:
@@ -254,7 +257,8 @@ class Server(LanguageServer):
             except Exception:  # one file that cannot be checked must not silence the others, nor end the server
                 logging.getLogger(__name__).exception("checking %s", path)
             self.session.let_go()
-            await asyncio.sleep(TO_ASK if path in self.session.open and self.waiting else 0)
+            told = loop.time() if is_open else told
+            await asyncio.sleep(0)
         for path in [path for path in self.published if self.session.workspace_of(path) is None]:
             self.publish(path)
         self._await_pause()

@@ -243,6 +243,7 @@ def _line_starts(text: str) -> Iterator[int]:
 
 
 def width_of(text: str, encoding: Encoding) -> int:
+    """How many columns a text takes: characters, or the units that it has in UTF-8 or UTF-16."""
     if encoding == "code-points" or text.isascii():
         return len(text)
     if encoding == "utf-8":

@@ -6,7 +6,8 @@ each behind a comma.  What they mean the legend says, which editors are told fir
 
 from __future__ import annotations
 
-from btq_lang.catalog.nodes import lookup
+from btq_lang.caches import Answered
+from btq_lang.catalog.nodes import NodeKind, lookup
 from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.clauses import EXPERIMENTS, METHODS
@@ -35,15 +36,13 @@ def look_of_node(name: str, kind: int) -> str:
     """How what a node is looks, by its name and the kind of its token."""
     if kind == SYMBOL:
         return _SIGN
-    looks = _of_quoted if kind == STRING else _of_names
-    look = looks.get(name)
-    if look is None:
-        builtin = lookup(name, kind == STRING)
-        if len(looks) >= _ENOUGH:
-            looks.clear()
-        of_engine = _ACTION if builtin is not None and builtin.category in ("Action", "Condition") else _BUILTIN
-        look = looks[name] = OWN_NODE if builtin is None else of_engine
-    return look
+    return _of_quoted[name] if kind == STRING else _of_names[name]
+
+
+def _look_of(builtin: NodeKind | None) -> str:
+    if builtin is None:
+        return OWN_NODE
+    return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
 
 
 def plain_look(kind: int, raw: str, before: str) -> str | None:
@@ -116,7 +115,6 @@ KEYWORDS: Final = frozenset(
     | EXPERIMENTS
     | FUNCTIONS
 )
-# What `look_of_node` has answered: most kinds stand in a file many times.
-_of_names: Final[dict[str, str]] = {}
-_of_quoted: Final[dict[str, str]] = {}
-_ENOUGH: Final = 2_000
+# Most kinds stand in a file many times.
+_of_names: Final[Answered[str, str]] = Answered(lambda name: _look_of(lookup(name)), 2_000)
+_of_quoted: Final[Answered[str, str]] = Answered(lambda name: _look_of(lookup(name, True)), 2_000)

@@ -6,6 +6,7 @@ of the tree there stands nearly always what stands between most: of each such te
 
 from __future__ import annotations
 
+from btq_lang.caches import Answered
 from btq_lang.features.looks import (
     DEFINED,
     NEW_NODE,
@@ -102,11 +103,11 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
     for start, end, look in words.found:
         if start < at:
             continue
-        for begin, stop, of_between in _between(text[at:start]):
+        for begin, stop, of_between in _between[text[at:start]]:
             made.add(begin + at, stop + at, of_between)
         made.add(start, end, look)
         at = end
-    for begin, stop, of_between in _between(text[at:]):
+    for begin, stop, of_between in _between[text[at:]]:
         made.add(begin + at, stop + at, of_between)
     return Encoded(made.tokens, made.line)
 
@@ -182,15 +183,9 @@ class _Words(Listener):
         return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
 
 
-def _between(text: str) -> list[Token]:
+def _tokens_between(text: str) -> list[Token]:
     """The tokens between two words of a tree, before the first or behind the last."""
-    known = _known.get(text)
-    if known is not None:
-        return known
-    if len(_known) >= _ENOUGH:
-        _known.clear()
     found: list[Token] = []
-    _known[text] = found
     before = ""
     for kind, start, raw in pieces(text):
         look = plain_look(kind, raw, before)
@@ -263,5 +258,4 @@ def _lines(raw: str) -> list[tuple[int, int]]:
     return found
 
 
-_known: Final[dict[str, list[Token]]] = {}  # what `_between` has found; a dictionary is asked for each word of a file
-_ENOUGH: Final = 2_000
+_between: Final = Answered(_tokens_between, 2_000)

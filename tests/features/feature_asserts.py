@@ -475,8 +475,9 @@ def answer_everything(text: str, offset: int) -> None:
     lines = LineIndex(text)
     tokens = list(decoded(colours(workspace, "main.btq", "utf-16").data, lines, "utf-16"))
     assert all(one.end <= other.start for (one, _), (other, _) in pairwise(tokens))
-    part = encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16")
-    assert set(decoded(part, lines, "utf-16")) <= set(tokens)
+    part = list(decoded(encoded_within(workspace, "main.btq", Span(offset, offset), "utf-16"), lines, "utf-16"))
+    line = lines.position(offset).line
+    assert part == [one for one in tokens if lines.position(one[0].start).line == line]
     for action in code_actions(workspace, "main.btq", Span(offset, offset)):
         for changed in action.edits.values():
             apply_edits(text, changed)
