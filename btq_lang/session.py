@@ -126,22 +126,19 @@ class Session:
     def let_go(self) -> None:
         """Let go of what edits have replaced, while nobody waits for it.  Pack the files that nobody works in, where
         what was made of them has become much: it is most of what a large folder takes of the memory, and nobody asks
-        for most of it again.  After a large folder is read there are many: of these a few each time, for somebody may
-        ask for something."""
+        for most of it again.  After a question about all files there are many: of these a few each time, for somebody
+        may ask for something else."""
         for answers in self._answers.values():
             answers.let_go()
         for workspace in self._workspaces:
+            missions = workspace.missions
+            worked_in = {missions.get(path) for path in self.open}
             held = [path for path, file in workspace.files.items() if file.is_unpacked]
-            idle = [path for path in held if not self._is_worked_in(workspace, path)]
+            idle = [path for path in held if missions[path] not in worked_in]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
                 workspace.pack(idle[:_AT_ONCE])
                 if len(idle) <= _AT_ONCE:
                     gc.collect()  # much of it refers to itself, and Python would wait until there is far more
-
-    def _is_worked_in(self, workspace: Workspace, path: str) -> bool:
-        """Whether a file is open, or linked with one that is."""
-        missions = workspace.missions
-        return any(missions[path] == missions[other] for other in self.open if other in missions)
 
     # ---- what is asked ----
 

@@ -69,7 +69,6 @@ class Workspace:
         self._everywhere.clear()
         self._main_trees.clear()
         self._referred.clear()
-        self._main_trees.clear()
 
     def _take_over(self, before: Workspace, edited: str) -> None:
         """What is known of which file includes which, and of the names in files that do not see the one edited."""

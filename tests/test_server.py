@@ -546,6 +546,31 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
     asyncio.run(ask_meanwhile())
 
 
+@pytest.mark.parametrize("asks", [False, True])
+def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
+    asks: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0)
+    path = str(tmp_path / "main.btq")
+    made: list[str] = []
+
+    async def pause() -> None:
+        server = Server()
+        tokens = types.SemanticTokensClientCapabilities({}, [], [], []) if asks else None
+        document = types.TextDocumentClientCapabilities(semantic_tokens=tokens)
+        server.protocol.client_capabilities = types.ClientCapabilities(text_document=document)
+        server.check_soon(server.session.edit(path, RIGHT))
+        while "the rest" not in made:
+            await asyncio.sleep(0)
+
+    monkeypatch.setattr("btq_lang.features.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
+    monkeypatch.setattr(
+        "btq_lang.features.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False
+    )
+    asyncio.run(pause())
+    assert made == [*["tokens"] * asks, "the rest"]
+
+
 def test_what_the_server_does_not_know_is_nothing(editor: Editor) -> None:
     for method in ("hover", "completion", "prepareRename"):
         assert editor.request(f"textDocument/{method}", **editor.at("nowhere.btq", 0, 0)) is None
@@ -995,6 +1020,59 @@ def test_what_is_outdated_is_not_checked() -> None:
     told: list[str] = []
     asyncio.run(edit())
     assert told == ["first", "edited", "linked", "other"]
+
+
+def test_what_is_asked_is_answered_before_files_that_are_not_open_are_checked() -> None:
+    class Telling(Server):
+        pulls = False
+
+        def publish(self, path: str) -> None:
+            told.append(path)
+
+    async def ask() -> None:
+        server = Telling()
+        server.session.open["open"] = ""
+        server.answering = 1
+        server.check_soon(("open", "closed"))
+        await asyncio.sleep(0.05)
+        assert told == ["open"]
+        server.check_soon(("open",))  # a key meanwhile does not wait
+        await asyncio.sleep(0.05)
+        assert told == ["open", "open"]
+        server.answering = 0
+        assert server.task is not None
+        await server.task
+
+    told: list[str] = []
+    asyncio.run(ask())
+    assert told == ["open", "open", "closed"]
+
+
+def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Telling(Server):
+        pulls = False
+
+        def publish(self, path: str) -> None:
+            told.append(path)
+
+    async def press() -> None:
+        server = Telling()
+        server.session.open["open"] = ""
+        server.check_soon(("open", "closed"))
+        for keys in range(1, 4):
+            while len(told) < keys:
+                await asyncio.sleep(0)
+            server.check_soon(("open",))
+        while len(told) < 4:
+            await asyncio.sleep(0)
+        assert server.task is not None
+        assert not server.task.done()
+        server.task.cancel()
+
+    monkeypatch.setattr("btq_lang.editor.TO_ASK", 2)
+    told: list[str] = []
+    asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
+    assert told == ["open"] * 4
 
 
 def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:

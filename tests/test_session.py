@@ -142,6 +142,24 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
     assert held() == set(FILES)  # all of one mission
 
 
+def test_many_files_are_let_go_of_in_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def held() -> int:
+        (workspace,) = session.workspaces()
+        return sum(file.is_unpacked for file in workspace.files.values())
+
+    for number in range(12):
+        (tmp_path / f"tree{number}.btq").write_text(OTHER, encoding="utf-8")
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    session = session_of(tmp_path, {})
+    for path in session.paths():
+        session.diagnostics(path)
+    parts = [held()]
+    while held():
+        session.let_go()
+        parts.append(held())
+    assert parts == [12, 7, 2, 0]
+
+
 def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
