@@ -75,6 +75,8 @@ COMPILED = (
     "requirements/reader",
     "requirements/spans",
     "requirements/trees",
+    "checks/__init__",
+    "checks/answers",
     "checks/bounds",
     "checks/budgets",
     "checks/children",

@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # all these import the checks, and an editor waits for the se
     from btq_lang.features.outline import Match, Outline
     from btq_lang.features.signature import Signature
     from btq_lang.features.structure import Fold
+    from btq_lang.findings import Findings
     from btq_lang.workspace import Workspace
 
 
@@ -39,12 +40,12 @@ class Converter:
 
     Attributes:
         encoding: what the editor counts columns in.
-        uris: the URIs of files as the editor writes them, by path.
     """
 
     def __init__(self) -> None:
         self.encoding: Encoding = "utf-16"
-        self.uris: dict[str, str] = {}
+        self._uris: dict[str, str] = {}  # as the editor writes them, by path
+        self._spellings = 0  # how many of these it has told so far
 
     def agree(self, encoding: str | types.PositionEncodingKind | None) -> None:
         """Count columns as the editor does."""
@@ -96,7 +97,13 @@ class Converter:
     # ---- to the editor ----
 
     def uri(self, path: str) -> str:
-        return self.uris.get(path) or _uri_of(path)
+        return self._uris.get(path) or _uri_of(path)
+
+    def name(self, path: str, uri: str) -> None:
+        """The editor writes the URI of a file so."""
+        if self.uri(path) != uri:
+            self._uris[path] = uri
+            self._spellings += 1
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
         """A span of a file's text, where it stands on the disk."""
@@ -134,11 +141,28 @@ class Converter:
         ]
         return types.WorkspaceEdit(document_changes=[*documents])
 
-    def diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> Json:
-        """Diagnostics, as JSON has a list of them; their spans count in the text on the disk already.
+    def findings(self, workspace: Workspace, path: str, found: Findings) -> Json:
+        """All that is told of a file, as JSON has a list of diagnostics.
 
-        At every key all of a file's are sent, and of most nothing has changed but the lines: what they say is written
-        once and kept as text, and all lines and columns are put into it at once.
+        At every key all of it is sent, and of most items nothing has changed, or but the lines: what was written of an
+        item is kept with it for as long as it stands where it stood, and so does all that it refers to.
+        """
+        files, encoding = workspace.files, self.encoding
+        written: list[str] = []
+        for told, starts in found.of_items:
+            begins = [files[at].item_places[id(item)] for at, item in told.items]
+            fixed = [files[at].source_lines.ends(span, encoding) for at, span in told.fixed]
+            where = self._spellings, begins, fixed
+            if told.shown is None or told.shown[0] != where:
+                told.shown = where, self._diagnostics(workspace, path, told.placed(starts))
+            written.append(told.shown[1])
+        return Json(f"[{', '.join(written)}]")
+
+    def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:
+        """Diagnostics as JSON; their spans count in the text on the disk already.
+
+        When a line comes or goes, what is behind it is written again, and of that again only the lines are others: what
+        each says is kept as text, and all lines and columns are put into it at once.
         """
         written: list[str] = []
         numbers: list[int] = []
@@ -156,14 +180,14 @@ class Converter:
                     numbers += files[place.path].source_lines.ends(place.span, encoding)
                     related.append((self.uri(place.path), each.message))
             written.append(_said(one.rule, one.message, one.notes, one.severity, one.tags, tuple(related)))
-        return Json(f"[{', '.join(written)}]" % tuple(numbers))
+        return ", ".join(written) % tuple(numbers)
 
     def _range_as_json(self, lines: LineIndex, span: Span) -> str:
         return _RANGE % lines.ends(span, self.encoding)
 
     def action(self, workspace: Workspace, path: str, action: Action, versions: Mapping[str, int] | None) -> Plain:
         mends, preferred = action.diagnostic, {"isPreferred": True} if action.preferred else {}
-        found = {"diagnostics": json.loads(self.diagnostics(workspace, path, [mends]))} if mends is not None else {}
+        found = {"diagnostics": [json.loads(self._diagnostics(workspace, path, [mends]))]} if mends is not None else {}
         edit = self.workspace_edit(workspace, action.edits, versions)
         return {"title": action.title, "kind": action.kind, **preferred, **found, "edit": edit}
 

@@ -23,7 +23,7 @@ from pygls.lsp.server import LanguageServer
 
 from btq_lang import __version__, features
 from btq_lang.convert import Converter
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.findings import Findings
 from btq_lang.garbage import collect_in_pause, keep_what_is_there
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
@@ -73,7 +73,7 @@ class Server(LanguageServer):
         self.session = Session()
         self.convert = Converter()
         self.versions: dict[str, int] = {}
-        self.published: dict[str, tuple[tuple[Diagnostic, ...], int | None]] = {}
+        self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was told, if any, and versions
         self.shown: set[str] = set()  # the files of which an editor that asks may still show something
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
@@ -220,12 +220,14 @@ class Server(LanguageServer):
 
     # ---- telling diagnostics ----
 
-    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
+    def findings(self, path: str) -> Findings:
         """What is wrong with a file; nothing is said of XML that is nobody's tree: an editor may send all it has."""
-        found = self.session.diagnostics(path)
+        found = self.session.findings(path)
         workspace = self.session.workspace_of(path)
-        is_strange = any(one.rule == "xml-root" for one in found)
-        return () if is_strange and workspace is not None and path not in workspace.included_files else found
+        if workspace is None or workspace.files[path].origin is None or path in workspace.included_files:
+            return found
+        is_strange = any(one.rule == "xml-root" for one in found.diagnostics)
+        return Findings([]) if is_strange else found
 
     def check_soon(self, paths: Iterable[str]) -> None:
         """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
@@ -296,34 +298,32 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         version = self.versions.get(path)
         if workspace is None or not (path in self.session.open or self.session.setting("checkClosedFiles", True)):
-            if self.published.pop(path, ((), None))[0]:
+            if self.published.pop(path, (None, None))[0] is not None:
                 gone = {"uri": self.convert.uri(path), "diagnostics": []}
                 self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
             self.session.forget(path)
             return
-        found = self.diagnostics(path)
+        found = self.findings(path)
+        told = self.convert.findings(workspace, path, found)
         known = self.published.get(path)
-        if known is not None and known[0] is found and known[1] == version:
-            return
-        self.published[path] = found, version
-        if found or known is not None or path in self.session.open:
+        now = self.published[path] = hash(told) if found.of_items else None, version
+        if now != known and (found.of_items or known is not None or path in self.session.open):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
-            told = self.convert.diagnostics(workspace, path, found)
             params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
 
     def report(self, path: str, previous: str | None) -> Json:
         """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
         workspace = self.session.workspace_of(path)
-        found = self.diagnostics(path)
-        result = f"{path in self.session.open}:{hash(found):x}"
-        if found:
-            self.shown.add(path)
         if workspace is None:
             return NOTHING
+        found = self.findings(path)
+        if found.of_items:
+            self.shown.add(path)
+        items = self.convert.findings(workspace, path, found)
+        result = f"{path in self.session.open}:{hash(items):x}"
         if previous == result:
             return Json(f'{{"kind": "unchanged", "resultId": "{result}"}}')
-        items = self.convert.diagnostics(workspace, path, found)
         return Json(f'{{"kind": "full", "resultId": "{result}", "items": {items}}}')
 
     def reload(self) -> None:

@@ -7,7 +7,7 @@ they bring.
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 
 from btq_lang.caches import cached_property
 from btq_lang.facts import Facts, Names, Tally
@@ -78,6 +78,14 @@ class File:
                     after.names = names
             if "lines" in self.__dict__:
                 after.lines = self.lines.edited(text, change)
+            if "item_places" in self.__dict__ and change is not None:
+                replacing = text[change.start : change.end + len(text) - len(self.text)]
+                if _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing)):
+                    places = after.item_places = self.item_places.copy()
+                    for each in gone:
+                        del places[id(each.item)]
+                    places.update((id(each.item), after.lines.place(after.start_of(each.item))) for each in come)
+                    places.update(after._places_on_line(change.start))
         return after
 
     @property
@@ -258,6 +266,24 @@ class File:
     def source_lines(self) -> LineIndex:
         return LineIndex(self.source) if self.origin else self.lines
 
+    @cached_property
+    def item_places(self) -> dict[int, tuple[int, str]]:
+        """Where each item begins, by its `id`: in which line, and behind what."""
+        place = self.lines.place
+        return {id(entry.item): place(entry.start) for entry in self.parsed.entries}
+
+    def _places_on_line(self, offset: int) -> dict[int, tuple[int, str]]:
+        """The same of the items that begin in the line of an offset."""
+        place, entries = self.lines.place, self.parsed.entries
+        line, behind = place(offset)
+        found: dict[int, tuple[int, str]] = {}
+        for at in range(bisect_left(entries, offset - len(behind), key=_start_of), len(entries)):
+            begins = place(entries[at].start)
+            if begins[0] != line:
+                break
+            found[id(entries[at].item)] = begins
+        return found
+
     def start_of(self, item: object) -> int:
         """Where one of the file's items begins.
 
@@ -342,6 +368,7 @@ _KEPT = ("path", "origin", "included_paths")  # when it is packed: what holds no
 _KEPT_NAMES = ("defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
 _DIRECTIVE = "btq:"
+_LINE_ENDS = frozenset("\r\n")
 _SWALLOWING = frozenset(("unclosed-string", "string-over-items"))
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Set
 from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.findings import Findings
 from btq_lang.record import replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.text import LineIndex
@@ -20,6 +20,7 @@ from btq_lang.text import LineIndex
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks.answers import Answers
     from btq_lang.commands.files import Files
+    from btq_lang.diagnostics import Diagnostic
     from btq_lang.facts import Name
     from btq_lang.workspace import Workspace
 
@@ -43,7 +44,7 @@ class Session:
         self._home: dict[str, int] = {}
         self._answers: dict[str, Answers] = {}  # of open files, for only these are edited
         # Weak, for what the others said when a file was checked is not to stay until it is checked again.
-        self._checked: dict[str, tuple[ReferenceType[Workspace], tuple[Diagnostic, ...]]] = {}
+        self._checked: dict[str, tuple[ReferenceType[Workspace], Findings]] = {}
 
     # ---- what changes ----
 
@@ -168,23 +169,27 @@ class Session:
                 place = place.rpartition("/")[0]
         return found
 
-    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
+    def findings(self, path: str) -> Findings:
         """All that is wrong with a file now."""
+        from btq_lang.checks import check, check_again
+        from btq_lang.checks.answers import Answers
+
         workspace = self.workspace_of(path)
         if workspace is None:
-            return ()
+            return Findings([])
         known = self._checked.get(path)
         if known is not None and known[0]() is workspace:
             return known[1]
-        from btq_lang.checks import check
-        from btq_lang.checks.answers import Answers
-
-        answers = self._answers.setdefault(path, Answers()) if path in self.open else None
-        found = check(workspace, path, answers)
-        if known is not None and known[1] == found:
-            found = known[1]  # the same object: nothing new to tell
+        if path in self.open:
+            found = check_again(workspace, path, self._answers.setdefault(path, Answers()))
+        else:  # placed, for what counts from items would hold them
+            found = Findings.placed(check(workspace, path))
         self._checked[path] = ref(workspace), found
         return found
+
+    def diagnostics(self, path: str) -> tuple[Diagnostic, ...]:
+        """The same, counted from the start of the file."""
+        return self.findings(path).diagnostics
 
     def forget(self, path: str) -> None:
         """A file is gone."""

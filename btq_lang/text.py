@@ -221,6 +221,11 @@ class LineIndex:
                 return line - 1, start - begin, line - 1, end - begin
         return *self.position(start, encoding), *self.position(end, encoding)
 
+    def place(self, offset: int) -> tuple[int, str]:
+        """The line that an offset is in, and what stands before it there."""
+        line = self._line_of(offset)
+        return line, self._text[self._start(line) : offset]
+
     def offset(self, position: Position, encoding: Encoding = "code-points") -> int:
         """The offset of a position; what lies beyond a line or the text is clamped to its end, as LSP asks."""
         if position.line < 0:

@@ -52,8 +52,19 @@ ROWS: tuple[frozenset[str], ...] = (
     ),
     frozenset({"catalog"}),
     frozenset(
-        {"toml_places", "project", "name_kinds", "symbols", "constraints", "mentions", "facts", "file", "workspace"}
-        | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph"}
+        {
+            "toml_places",
+            "project",
+            "name_kinds",
+            "symbols",
+            "constraints",
+            "mentions",
+            "facts",
+            "file",
+            "workspace",
+            "findings",
+        }
+        | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph", "findings"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace"}),
     frozenset(

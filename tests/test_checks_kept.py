@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import gc
 import random
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
 import missions
 import pytest
 
-from btq_lang.checks import CHECKS, Check, check
+from btq_lang.checks import CHECKS, Check, check, check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.checks.demanded import Demanded
 from btq_lang.checks.view import View
@@ -165,7 +166,7 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
         texts = {each: file.text for each, file in workspace.files.items()}
         fresh = Workspace.of(texts)
         for each in files:
-            assert check(workspace, each, kept[each]) == check(fresh, each), (step, each, texts)
+            assert check_again(workspace, each, kept[each]).diagnostics == check(fresh, each), (step, each, texts)
 
 
 @pytest.mark.parametrize("spelling", ["classic", "short"])
@@ -186,7 +187,7 @@ def test_trees_and_requirements_change_names_and_places(spelling: missions.Spell
         text = "\n".join(lines)
         workspace = workspace.with_file("/p/main.btq", text)
         fresh = Workspace.of({"/p/main.btq": text})
-        assert check(workspace, "/p/main.btq", kept) == check(fresh, "/p/main.btq"), (step, text)
+        assert check_again(workspace, "/p/main.btq", kept).diagnostics == check(fresh, "/p/main.btq"), (step, text)
 
 
 def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
@@ -201,11 +202,11 @@ def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: 
     monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
     workspace = Workspace.of(before)
     answers = Answers()
-    check(workspace, path, answers)
+    check_again(workspace, path, answers)
     asked.clear()
     for other, text in after.items():
         workspace = workspace.with_file(other, text)
-    assert check(workspace, path, answers) == check(Workspace.of({**before, **after}), path)
+    assert check_again(workspace, path, answers).diagnostics == check(Workspace.of({**before, **after}), path)
     return asked[: len(asked) - len(workspace.files[path].parsed.trees)]  # without the check of the texts alone
 
 
@@ -224,7 +225,7 @@ def test_a_model_that_changes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch
 )
 def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     """Else it would be asked again of every item after every edit, as those of an include are, which look at the other
-    files, and what renames a tree wherever it is named."""
+    files, and what renames a tree wherever it is named; with these all of an item are asked twice."""
     asked: list[tuple[str, type]] = []
 
     def watched(check: Check) -> Check:
@@ -238,13 +239,13 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
         monkeypatch.setitem(CHECKS, item, tuple(map(watched, checks)))
     answers = Answers()
     workspace = Workspace.of({"/p/main.btq": text})
-    check(workspace, "/p/main.btq", answers)
+    check_again(workspace, "/p/main.btq", answers)
     asked.clear()
-    check(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq", answers)
+    check_again(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq", answers)
     last = type(workspace.files["/p/main.btq"].parsed.entries[-1].item)
     asked = [each for each in asked if each[1] is not Include and each[0] != "forbidden_name"]
     assert {item for _, item in asked} <= {last}
-    assert len(asked) == len(set(asked))
+    assert set(Counter(asked).values()) <= {1, 2}
 
 
 def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
@@ -255,7 +256,7 @@ def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
     try:
         for letter in "abc":
             workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
-            check(workspace, "/p/main.btq", answers)
+            check_again(workspace, "/p/main.btq", answers)
             answers.let_go()
         kinds = [type(each) for each in gc.get_objects()]
         assert (kinds.count(Demanded), kinds.count(Budgets)) == (1, 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
-from btq_lang.checks import check
+from btq_lang.checks import check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.workspace import Workspace
 
@@ -100,11 +100,11 @@ def test_a_comment_counts_as_soon_as_it_is_typed() -> None:
     workspace, answers = Workspace.of({"main.btq": text}), Answers()
     told: list[str] = []
     for letter in "  # btq: ignore":
-        told.append(", ".join(each.rule for each in check(workspace, "main.btq", answers)))
+        told.append(", ".join(each.rule for each in check_again(workspace, "main.btq", answers).diagnostics))
         text = text[:at] + letter + text[at:]
         at += 1
         workspace = workspace.with_file("main.btq", text)
     assert told == ["unknown-node"] * len(told)
-    assert check(workspace, "main.btq", answers) == ()
+    assert check_again(workspace, "main.btq", answers).diagnostics == ()
     workspace = workspace.with_file("main.btq", text.replace("btq:", "btq"))
-    assert [each.rule for each in check(workspace, "main.btq", answers)] == ["unknown-node"]
+    assert [each.rule for each in check_again(workspace, "main.btq", answers).diagnostics] == ["unknown-node"]

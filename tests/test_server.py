@@ -19,6 +19,7 @@ from lsprotocol import types
 from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.editor import Server
+from btq_lang.findings import Findings
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
@@ -176,8 +177,8 @@ def test_a_diagnostic_says_where_its_rule_is_explained(editor: Editor) -> None:
 def test_what_is_said_beside_lines_and_columns_may_hold_signs_of_formats() -> None:
     workspace = Workspace.of({"/%d.btq": "ab\ncd\n", "/other.btq": "\n\nef\n"})
     related = (Related(Place(Span(0, 2)), "50 %"), Related(Place(Span(2, 4), "/other.btq"), "%s"))
-    found = [Diagnostic("unknown-node", Span(3, 5), "%d %% of it", related, ("%(a)s",))]
-    (told,) = json.loads(Converter().diagnostics(workspace, "/%d.btq", found))
+    found = Findings.placed([Diagnostic("unknown-node", Span(3, 5), "%d %% of it", related, ("%(a)s",))])
+    (told,) = json.loads(Converter().findings(workspace, "/%d.btq", found))
     assert (told["message"], told["range"]) == ("%d %% of it\n%(a)s", range_of((1, 0), (1, 2)))
     assert told["relatedInformation"] == [
         {"location": {"uri": "file:///%25d.btq", "range": range_of((0, 0), (0, 2))}, "message": "50 %"},

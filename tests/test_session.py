@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from btq_lang.convert import Converter
 from btq_lang.features.colours import Change, Colours, colours, delta
 from btq_lang.features.completion import complete
 from btq_lang.features.navigation import find_references
@@ -77,6 +78,7 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
     told = {path: session.diagnostics(path) for path in session.paths()}
     texts: dict[str, str] = {}
     known: dict[str, Colours] = {}
+    kept = Converter()
     for step in range(60):
         name = chance.choice(sorted(FILES))
         path = f"{folder}/{name}"
@@ -93,6 +95,8 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
         session.let_go()
         new = session_of(folder, texts)
         assert told == {each: new.diagnostics(each) for each in new.paths()}, (seed, step, texts)
+        for each in new.paths():
+            assert shown_by(session, each, kept) == shown_by(new, each, Converter()), (seed, step, texts)
         if path in texts:
             workspaces = session.workspace_of(path), new.workspace_of(path)
             assert workspaces[0] == workspaces[1]
@@ -107,6 +111,13 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
             assert patched(known.get(path, coloured).data, delta(known.get(path, coloured), coloured)) == coloured.data
             if chance.random() < 0.5:  # an editor asks for what several edits have changed, in several places
                 known[path] = coloured
+
+
+def shown_by(session: Session, path: str, convert: Converter) -> str:
+    """What an editor is told of a file."""
+    workspace = session.workspace_of(path)
+    assert workspace is not None
+    return convert.findings(workspace, path, session.findings(path))
 
 
 def patched(data: list[int], changes: list[Change]) -> list[int]:
@@ -223,8 +234,8 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
     path = str(folder / "main.btq")
     session.edit(path, MAIN)
     found = session.diagnostics(path)
-    kept = [id(found) for found, _, _ in session._answers[path].told.values()]
+    kept = [id(found) for found, _ in session._answers[path].told.values()]
     session.reload()
     assert found != ()
-    assert session.diagnostics(path) is found
-    assert [id(found) for found, _, _ in session._answers[path].told.values()] == kept
+    assert session.diagnostics(path) == found
+    assert [id(found) for found, _ in session._answers[path].told.values()] == kept

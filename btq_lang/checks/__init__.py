@@ -6,8 +6,6 @@ count from that entry; it never raises, whatever the file.  A module holds the r
 
 from __future__ import annotations
 
-from itertools import chain
-
 from btq_lang.checks import (
     bounds,
     children,
@@ -39,7 +37,8 @@ from btq_lang.checks import (
     unused,
 )
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.findings import Findings, Told
 from btq_lang.project import configured
 from btq_lang.record import Record
 from btq_lang.rules import Severity
@@ -231,22 +230,17 @@ class Found(Record):
 
     Attributes:
         restless: the checks that must be asked again after every edit, for they look at the whole workspace.
-        elsewhere: the places that count from other items, and so move with these.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     restless: tuple[Check, ...]
-    elsewhere: tuple[Place, ...]
 
 
-def check(
-    workspace: Workspace, path: str, answers: Answers | None = None, *, is_alone: bool = False
-) -> tuple[Diagnostic, ...]:
+def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
     Args:
         path: one of the workspace's files.
-        answers: what earlier checks of the file have left here, to ask no more than an edit asks for.
         is_alone: say nothing of what is wrong in the files that it includes.
 
     Returns:
@@ -256,76 +250,85 @@ def check(
     Raises:
         KeyError: there is no such file.
     """
+    view = View(workspace, path)
+    told: list[tuple[Told, list[int]]] = []
+    for entry in workspace.files[path].parsed.entries:
+        checks = checks_of(entry)
+        if is_alone:
+            checks = tuple(each for each in checks if each is not includes.include_with_errors)
+        found = [diagnostic for each in checks for diagnostic in each(view, entry)]
+        if found or entry.diagnostics:
+            of_item = _told(view, entry, found)
+            told.append((of_item, of_item.starts(workspace)))
+    return _wanted(workspace, path, Findings(told)).diagnostics
+
+
+def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
+    """The same, asking no more than an edit asks for.
+
+    Args:
+        answers: what earlier checks of the file have left here.
+    """
     view = View(workspace, path, answers)
     file = workspace.files[path]
-    if answers is not None:
-        answers.begin(view, workspace)
-    if answers is None:
-        found = []
-        for entry in file.parsed.entries:
-            checks = checks_of(entry)
-            if is_alone:
-                checks = tuple(each for each in checks if each is not includes.include_with_errors)
-            of_entry = [diagnostic for each in checks for diagnostic in each(view, entry)]
-            if of_entry or entry.diagnostics:
-                found += _told(view, entry, of_entry, workspace)
-    else:
-        found = _known(view, workspace, answers)
-        answers.end()
-    if file.has_directives:
-        from btq_lang.checks.suppressions import Suppressions  # few files have any
-
-        suppressions = Suppressions(file)
-        found = [each for each in (*found, *suppressions.useless) if not suppressions.silence(each)]
-    if workspace.origins:
-        from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
-
-        found = shown_on_origins(workspace, path, found)
-    found = list(configured(workspace.project, found))
-    return tuple(sorted(found, key=lambda diagnostic: (diagnostic.span, diagnostic.rule)))
-
-
-def _told(view: View, entry: Entry, found: Iterable[Diagnostic], workspace: Workspace) -> list[Diagnostic]:
-    """All that is to be told of an entry, as it counts in the file."""
-    if entry.diagnostics:
-        found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
-    return [_placed(diagnostic, entry.start, workspace) for diagnostic in found]
-
-
-def _known(view: View, workspace: Workspace, answers: Answers) -> list[Diagnostic]:
-    """All that is to be told of the file's entries, from what is kept of each; most have nothing."""
-    file = workspace.files[view.path]
-    told: list[Diagnostic] = []
+    answers.begin(view, workspace)
+    told: list[tuple[Told, list[int]]] = []
     before, answers.told = answers.told, {}
     found = answers.conclude_each(view, _kept, file.facts.values())
     for entry, facts, known in zip(file.parsed.entries, file.facts.values(), found, strict=True):
         if not (known.diagnostics or known.restless or entry.diagnostics):
             continue
         same = before.get(facts)
-        starts = [entry.start, *[_start(place, workspace) for place in known.elsewhere]]
-        if same is None or same[0] is not known or same[1] != starts or known.restless:
+        if same is None or same[0] is not known or known.restless:
             restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
-            same = known, starts, _told(view, entry, (*known.diagnostics, *restless), workspace)
+            same = known, _told(view, entry, (*known.diagnostics, *restless))
         answers.told[facts] = same
-        told += same[2]
-    return told
+        if same[1].diagnostics:
+            told.append((same[1], same[1].starts(workspace)))
+    answers.end()
+    return _wanted(workspace, path, Findings(told))
+
+
+def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
+    """What is to be told of all that was found, as whoever has written the files and their project wants it."""
+    file = workspace.files[path]
+    if not (file.has_directives or workspace.origins or workspace.project.chooses_rules):
+        return found
+    diagnostics: Iterable[Diagnostic] = found.diagnostics
+    if file.has_directives:
+        from btq_lang.checks.suppressions import Suppressions  # few files have any
+
+        suppressions = Suppressions(file)
+        diagnostics = [each for each in (*diagnostics, *suppressions.useless) if not suppressions.silence(each)]
+    if workspace.origins:
+        from btq_lang.checks.origins import shown_on_origins  # few workspaces have any
+
+        diagnostics = shown_on_origins(workspace, path, diagnostics)
+    return Findings.placed(configured(workspace.project, diagnostics))
+
+
+def _told(view: View, entry: Entry, found: Iterable[Diagnostic]) -> Told:
+    """All that is to be told of an entry."""
+    if entry.diagnostics:
+        found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
+    return Told(found, (view.path, entry.item))
 
 
 def _kept(view: View, facts: Facts) -> Found:
     """What the checks find in an item, as far as they say what they ask for."""
     entry = view.entry(facts)
-    found: list[Diagnostic] = []
+    checks = checks_of(entry)
     restless: list[Check] = []
-    for each in checks_of(entry):
-        diagnostics = view.watched(each, entry)
-        if diagnostics is None:
-            restless.append(each)
-        else:
-            found += diagnostics
-    places = (each.place for diagnostic in found for each in diagnostic.related)
-    changed = (change.place for diagnostic in found for fix in diagnostic.fixes for change in fix.changes)
-    elsewhere = {id(place.anchor): place for place in chain(places, changed) if place.anchor is not None}
-    return Found(tuple(found), tuple(restless), tuple(elsewhere.values()))
+    found = view.watched(checks, entry)
+    if found is None:  # one of them does, in few items: to watch each by itself takes longer
+        found = []
+        for each in checks:
+            diagnostics = view.watched((each,), entry)
+            if diagnostics is None:
+                restless.append(each)
+            else:
+                found += diagnostics
+    return Found(tuple(found), tuple(restless))
 
 
 def checks_of(entry: Entry) -> tuple[Check, ...]:
@@ -349,39 +352,3 @@ def _on_sound_lines(found: Iterable[Diagnostic], entry: Entry, text: str) -> Ite
 
 def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
     return line_start(text, entry.start, entry.start + diagnostic.span.start)
-
-
-def _placed(one: Diagnostic, by: int, workspace: Workspace) -> Diagnostic:
-    """A diagnostic of an entry that begins at `by`, with every place counted from the start of its file.
-
-    After an edit this is asked of all that stands behind it, so it is made in one go.
-    """
-    related: tuple[Related, ...] = ()
-    fixes: tuple[Fix, ...] = ()
-    if one.related:
-        related = tuple([Related(_absolute(each.place, by, workspace), each.message) for each in one.related])
-    if one.fixes:
-        fixes = tuple(
-            [
-                Fix(
-                    fix.title,
-                    tuple([Change(_absolute(each.place, by, workspace), each.text) for each in fix.changes]),
-                    fix.safe,
-                )
-                for fix in one.fixes
-            ]
-        )
-    return Diagnostic(one.rule, one.span.shifted(by), one.message, related, one.notes, fixes, one.tags, one.severity)
-
-
-def _absolute(place: Place, by: int, workspace: Workspace) -> Place:
-    if place.anchor is None:
-        return place if place.path is not None else Place(place.span.shifted(by))
-    if place.path is None:
-        return place
-    return Place(place.span.shifted(_start(place, workspace)), place.path)
-
-
-def _start(place: Place, workspace: Workspace) -> int:
-    """Where the item begins that a place counts from."""
-    return workspace.files[place.path].start_of(place.anchor) if place.path is not None else 0

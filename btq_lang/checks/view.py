@@ -31,7 +31,7 @@ from btq_lang.workspace import Scope, Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from typing import Any, Final, TypeVar
 
     from btq_lang.checks.answers import Answers
@@ -153,11 +153,17 @@ class View:
         """The file's entry whose item these are the facts of."""
         return self._file.entry_of(facts.item)
 
-    def watched(self, check: Callable[[View, Entry], Iterator[Diagnostic]], entry: Entry) -> list[Diagnostic] | None:
-        """What a check finds; None where it looks at more than it says, which is no part of what is asked now."""
+    def watched(
+        self, checks: Iterable[Callable[[View, Entry], Iterator[Diagnostic]]], entry: Entry
+    ) -> list[Diagnostic] | None:
+        """What checks find; None where one looks at more than it says, which is no part of what is asked now."""
+
+        def find() -> list[Diagnostic]:
+            return [diagnostic for check in checks for diagnostic in check(self, entry)]
+
         if self._answers is None:
-            return list(check(self, entry))
-        found, looks_around = self._answers.watch(lambda: list(check(self, entry)))
+            return find()
+        found, looks_around = self._answers.watch(find)
         return None if looks_around else found
 
     def summary(self, entry: Entry) -> Summary:

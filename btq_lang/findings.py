@@ -1,0 +1,97 @@
+"""What was found in a file: of each item, counted from where it begins, and where that is.
+
+One invariant: what is told of an item is one object for as long as it says the same, however far the item moves.  So
+after an edit nothing is counted anew that only stands elsewhere, until somebody asks where it stands.
+"""
+
+from __future__ import annotations
+
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from btq_lang.workspace import Workspace
+
+
+class Told:
+    """What is told of an item.
+
+    Attributes:
+        diagnostics: in the order of the text, counted from where the item begins.
+        items: the item and the others that places in them count from, behind their files; none where all of it counts
+            from the start of a file.
+        fixed: the related places that do, behind their files.
+        shown: for who shows it: what he made of it, with all that it rests on besides.
+    """
+
+    __slots__ = ("diagnostics", "fixed", "items", "shown")
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], *item: tuple[str, object]) -> None:
+        """item: its file and itself."""
+        self.diagnostics = in_order(diagnostics)
+        related = [each.place for one in self.diagnostics for each in one.related]
+        changed = [change.place for one in self.diagnostics for fix in one.fixes for change in fix.changes]
+        anchors = {id(place.anchor): place for place in (*related, *changed)}.values()
+        others = [(at.path, at.anchor) for at in anchors if at.path is not None and at.anchor is not None]
+        self.items = (*item, *others)
+        self.fixed = tuple([(at.path, at.span) for at in related if at.path is not None and at.anchor is None])
+        self.shown: tuple[object, str] | None = None
+
+    def starts(self, workspace: Workspace) -> list[int]:
+        """Where the items begin."""
+        files = workspace.files
+        return [files[path].start_of(item) for path, item in self.items]
+
+    def placed(self, starts: Sequence[int]) -> list[Diagnostic]:
+        """The diagnostics, with every place counted from the start of its file; `starts`: where the items begin."""
+        of_item = dict(zip([id(item) for _, item in self.items], starts, strict=True))
+        return [_placed(each, starts[0] if starts else 0, of_item) for each in self.diagnostics]
+
+
+class Findings:
+    """What is told of a file.
+
+    Attributes:
+        of_items: what is told of each item of which anything is, in the order of the text, and where the items begin
+            that it counts from.
+    """
+
+    def __init__(self, of_items: list[tuple[Told, list[int]]]) -> None:
+        self.of_items = of_items
+        self._diagnostics: tuple[Diagnostic, ...] | None = None
+
+    @classmethod
+    def placed(cls, diagnostics: Iterable[Diagnostic]) -> Findings:
+        """What is told of a file, where it is known already where all of it stands."""
+        told = Told(diagnostics)
+        return cls([(told, [])] if told.diagnostics else [])
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """All of it in the order of the text, counted from the start of the file."""
+        if self._diagnostics is None:
+            placed = (each for told, starts in self.of_items for each in told.placed(starts))
+            self._diagnostics = in_order(placed)
+        return self._diagnostics
+
+
+def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """In the order of the text, and where several stand at one place, of their rules."""
+    return tuple(sorted(diagnostics, key=lambda each: (each.span, each.rule)))
+
+
+def _placed(one: Diagnostic, by: int, starts: dict[int, int]) -> Diagnostic:
+    def moved(change: Change) -> Change:
+        return Change(_absolute(change.place, by, starts), change.text)
+
+    related = tuple([Related(_absolute(each.place, by, starts), each.message) for each in one.related])
+    fixes = tuple([Fix(fix.title, tuple(map(moved, fix.changes)), fix.safe) for fix in one.fixes])
+    return Diagnostic(one.rule, one.span.shifted(by), one.message, related, one.notes, fixes, one.tags, one.severity)
+
+
+def _absolute(place: Place, by: int, starts: dict[int, int]) -> Place:
+    if place.path is None:
+        return Place(place.span.shifted(by)) if place.anchor is None else place
+    return Place(place.span.shifted(starts[id(place.anchor)]), place.path) if place.anchor is not None else place
