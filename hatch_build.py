@@ -63,6 +63,7 @@ COMPILED = (
     "catalog/literals",
     "catalog/names",
     "catalog/nodes",
+    "requirements/__init__",
     "requirements/attach",
     "requirements/budgets",
     "requirements/clauses",

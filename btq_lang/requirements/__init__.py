@@ -10,6 +10,7 @@ the engine can enforce, nor what a run of the robot was like.
     nodes.py     which written nodes a path, a kind or a tag means
     memory.py    what is kept from one edit to the next
     paths.py     the one node that a path names
+    resolved.py  what comes out of it for a file
     reader.py    values and conditions: names, units, what compares with what
     clauses.py   what each verb asks for
     classic.py   SuccessIf and FailureIf in classic descriptions
@@ -20,7 +21,6 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
-from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
@@ -28,6 +28,7 @@ from btq_lang.requirements.memory import Memory, Table
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax import Requirement as WrittenRequirement
@@ -40,81 +41,11 @@ if TYPE_CHECKING:
     from typing import Any, Final
 
     from btq_lang.file import File
-    from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace, Use
+    from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, Use
     from btq_lang.requirements.trees import TreeNodes
     from btq_lang.workspace import Workspace
 
 __all__ = ["Memory", "Problem", "Requirements", "requirements"]
-
-
-class Requirements:
-    """All requirements that a file sees.
-
-    Attributes:
-        signals: by name.
-        contexts: by name; None: it could not be understood.
-        all: every requirement by name, in the order of their definitions, parameters in it.
-        held: what each of these holds for, in the same order.
-        attached: names of requirements that a node or an `apply` refers to.
-        problems: everything that was not understood.
-        nodes: the written nodes.
-        mission: the main tree's root; None where nobody can say which tree runs.
-        by_tree: what is applied to nodes, by the tree that they stand in; a span, too, by the node that it begins at.
-    """
-
-    def __init__(
-        self,
-        signals: dict[str, Signal],
-        contexts: dict[str, Condition | None],
-        of_name: dict[str, Requirement],
-        held: list[Held],
-        attached: frozenset[str],
-        problems: tuple[Problem, ...],
-        nodes: Nodes,
-        mission: SourceNode | None,
-        by_tree: dict[int, tuple[Applied, ...]],
-    ) -> None:
-        self.signals = signals
-        self.contexts = contexts
-        self.all = of_name
-        self.held = held
-        self.attached = attached
-        self.problems = problems
-        self.nodes = nodes
-        self.mission = mission
-        self.by_tree = by_tree
-
-    @cached_property
-    def applied(self) -> tuple[Applied, ...]:
-        """What holds for what, with arguments."""
-        return tuple([each for held in self.held for each in held.applied])
-
-    @cached_property
-    def traces(self) -> tuple[Trace, ...]:
-        """`satisfies` at a node of a requirement whose claims name their subjects themselves."""
-        return tuple([each for held in self.held for each in held.traces])
-
-    def in_tree(self, tree: TreeNodes) -> tuple[Applied, ...]:
-        """What holds for nodes of a tree, in the order of the requirements."""
-        return self.by_tree.get(id(tree.item), ())
-
-    def of(self, node: SourceNode) -> tuple[Applied, ...]:
-        """What holds for a node."""
-        return tuple(each for each in self.applied if each.node is node)
-
-    def about_no_node(self) -> tuple[tuple[Requirement, Claim], ...]:
-        """The claims that hold for nothing, of requirements that hold for something by their other claims; a
-        requirement that holds for nothing at all is not used, which is another matter."""
-        used = {each.requirement.name for each in self.applied}
-        # Claims of one text have one subject, or none.
-        held = {(each.requirement.name, claim.text) for each in self.applied for claim in each.requirement.claims}
-        return tuple(
-            (requirement, claim)
-            for requirement in self.all.values()
-            if requirement.name in used
-            for claim in requirement.claims
-            if (requirement.name, claim.text) not in held
-        )
 
 
 def requirements(workspace: Workspace, path: str, memory: Memory | None = None) -> Requirements:
@@ -332,6 +263,9 @@ def _counting(files: Sequence[File], kind: Kind) -> list[tuple[File, Symbol]]:
 
 def _homes(files: Sequence[File]) -> tuple[list[Symbol], list[str]]:
     """The requirements that count, and the files that each of them stands in."""
+    if len(files) == 1:
+        symbols = files[0].names.symbols[Kind.REQUIREMENT]
+        return [*symbols], [files[0].path] * len(symbols)
     defined = _counting(files, Kind.REQUIREMENT)
     return [symbol for _, symbol in defined], [file.path for file, _ in defined]
 
