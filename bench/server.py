@@ -31,6 +31,10 @@ from report import ENVIRONMENT, Goal
 FILES, NODES_A_FILE, LARGE = 100, 500, 10_000
 MANY, NODES_OF_MANY = 1_000, 50
 
+# Seconds that pygls alone took to start where the goals in milliseconds were set; how quick another machine is, at the
+# moment, the same program tells.
+PYGLS_THERE = 0.428
+
 BTQ = (sys.executable, "-c", "from btq_lang.server import main; main(['--stdio'])")
 BARE = (
     sys.executable,
@@ -91,7 +95,8 @@ def starts(rounds: int) -> tuple[list[Series], list[Goal]]:
 
 
 def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
-    """What an author does in one file of a folder: type, and ask."""
+    """What an author does in one file of a folder: type, and ask.  The goals in milliseconds are those of the machine
+    that they were set on: what is taken here counts in times of what pygls alone takes to start."""
     size = f"{nodes:,} nodes".replace(",", " ")
     asked = ("completion", "hover", "definition", "first tokens", "all tokens", "token delta")
     edits, completion, hover, definition, first, full, delta = (
@@ -103,6 +108,7 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
         for number in range(files):
             text = missions.mission(nodes, number + 1, options.spelling)
             (folder / f"mission{number:03}.btq").write_text(text, encoding="utf-8")
+        paces = [_start_of_bare(folder) for _ in range(options.starts // 2)]
         server = Server(BTQ, folder)
         document = server.open(folder / "mission000.btq")
         server.wait_for(is_about(folder / "mission000.btq"))
@@ -135,17 +141,16 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
             full_id = server.request("textDocument/semanticTokens/full", textDocument=document.name)["resultId"]
         in_the_end = server.memory() - bare
         server.end()
+        paces += [_start_of_bare(folder) for _ in range(options.starts // 2)]
     allowed = {edits: 5 if nodes < LARGE else 16, completion: 10, hover: 10, definition: 10}
     if nodes >= LARGE:
         allowed |= {first: 40, full: 40, delta: 10}
-    goals = [
-        Goal(
-            f"{series.name}: p99 ms of processor <= {limit}",
-            1000 * percentile(series.cpu, 99),
-            percentile(series.cpu, 99) <= limit / 1000,
-        )
-        for series, limit in allowed.items()
-    ]
+    pace = statistics.median(paces) / PYGLS_THERE
+    goals = []
+    for series, limit in allowed.items():
+        here = 1000 * percentile(series.cpu, 99)
+        text = f"{series.name}: p99 ms of processor, {here:.2f} here, <= {limit} where pygls alone starts in 428 ms"
+        goals.append(Goal(text, here / pace, here / pace <= limit))
     if nodes < LARGE:
         for when, taken in (("when all is checked", memory), ("in the end", in_the_end)):
             text = f"memory above pygls alone, {files} files of {nodes} nodes, {when}: MB <= 25"
@@ -377,6 +382,14 @@ def is_progress(message: Message) -> bool:
 
 def is_end_of_progress(message: Message) -> bool:
     return is_progress(message) and message["params"]["value"]["kind"] == "end"
+
+
+def _start_of_bare(folder: Path) -> float:
+    """Seconds of processor that pygls alone takes to start."""
+    server = Server(BARE, folder)
+    taken = server.processor_time()
+    server.end()
+    return taken
 
 
 def _memory_of_bare(folder: Path) -> float:

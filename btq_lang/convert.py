@@ -151,11 +151,13 @@ class Converter:
         written: list[str] = []
         for told, starts in found.of_items:
             begins = [files[at].item_places[id(item)] for at, item in told.items]
-            fixed = [files[at].source_lines.ends(span, encoding) for at, span in told.fixed]
-            where = self._spellings, begins, fixed
-            if told.shown is None or told.shown[0] != where:
-                told.shown = where, self._diagnostics(workspace, path, told.placed(starts))
-            written.append(told.shown[1])
+            where = self._spellings, begins, [files[at].source_lines.ends(span, encoding) for at, span in told.fixed]
+            if told.shown is not None and told.shown[0] == where:
+                written.append(told.shown[1])
+                continue
+            written.append(self._diagnostics(workspace, path, told.placed(starts)))
+            if told.items:  # of a file that nobody edits it would only take room
+                told.shown = where, written[-1]
         return Json(f"[{', '.join(written)}]")
 
     def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:

@@ -17,8 +17,9 @@ again after every edit.  It knows no rules.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
+from itertools import repeat
 
 from btq_lang.facts import Facts, Name
 from btq_lang.file import File
@@ -40,7 +41,6 @@ Question: TypeAlias = "tuple[Any, ...]"
 
 EVERYTHING: Final[Question] = ()
 _OUTSIDE: Final = {EVERYTHING}  # who asks for what no conclusion does
-_NOT_DRAWN: Final = object()
 _PARTS: Final[Question] = (None,)  # who asks for tables, which are drawn again as soon as they are stale
 
 
@@ -86,7 +86,7 @@ class Answers:
         self._count = 0
         self._is_asking = False
         self._known_of: dict[object, Sequence[str]] = {}  # of which a conclusion was drawn of all
-        self._each: dict[object, tuple[dict[object, Any], set[Question]]] = {}  # with the answers and questions
+        self._each: dict[object, tuple[dict[object, Any], set[object]]] = {}  # the answers, and which are not kept
 
     def begin(self, view: View, workspace: Workspace) -> None:
         """The workspace is another one: look again at what may have changed, and draw conclusions of it.
@@ -180,24 +180,23 @@ class Answers:
         self._known_of[what] = about
         return [each for each in about if (what, each) not in answers or (stale and (what, each) in stale)]
 
-    def conclude_each(self, view: View, what: object, about: Iterable[object]) -> list[Any]:
+    def conclude_each(self, view: View, what: object, about: Collection[object]) -> list[Any]:
         """The answers of one conclusion about many things, about which nobody else asks it.  After an edit nearly all
         of these are those of before, and to put all questions together again would take longer than the few answers."""
-        before, asked = self._each.get(what, ({}, set()))
-        found = {each: before.get(each, _NOT_DRAWN) for each in about}
-        missing = {each for each, value in found.items() if value is _NOT_DRAWN}
-        asked = asked.difference([(what, each) for each in before.keys() - found.keys()])
-        asked.update([(what, each) for each in missing])
-        self._asked |= asked
-        loose: set[object] = set()  # of which the answer is not kept
-        while missing := missing | {each[1] for each in self._stale if each[0] is what and each in asked}:
+        before, loose = self._each.get(what, ({}, set()))
+        found = dict(zip(about, map(before.get, about, repeat(None)), strict=True))
+        missing = (found.keys() - before.keys()) | (found.keys() & loose)
+        for each in missing:
+            self._askers.setdefault((what, each), set()).add(EVERYTHING)
+        loose = set()  # of which the answer is not kept
+        while missing := missing | {each[1] for each in self._stale if each[0] is what and each[1] in found}:
             for each in [each for each in found if each in missing]:
                 found[each] = self._draw(view, (what, each))
                 if (what, each) not in self._answers:
                     loose.add(each)
             missing = set()
-        kept = {each: value for each, value in found.items() if each not in loose} if loose else found
-        self._each[what] = kept, asked
+        self._each[what] = found, loose
+        self._leave([(what, each) for each in before.keys() - found.keys()], EVERYTHING)
         return [*found.values()]
 
     def conclude_early(self, view: View, question: Question) -> Any:

@@ -65,7 +65,7 @@ class Demanded(Asker):
         self.requirements: Requirements = view.requirements
         self.budgets: Budgets = view.budgets
         self.noted: dict[Question, object] = {}
-        self.steady: frozenset[object] = frozenset()
+        self.news: dict[object, frozenset[object]] = {}
         self._answers: dict[Question, object] = {}
         self.ways_up: dict[str | None, WaysUp] = {}
         mission = self.requirements.mission

@@ -87,9 +87,10 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
         enclosing,
         lambda at: _read_requirement(reader, workspace.files[homes[at]], symbols[at], enclosing[at]),
     )
-    if table.is_as_before:
-        reader.steady = _REQUIREMENT
-    else:
+    if table.others is not None:
+        gone = [*memory.requirements]
+        reader.news["requirement"] = frozenset([name for at in table.others for name in (gone[at], symbols[at].name)])
+    if not table.is_as_before:
         names = [symbol.name for symbol in symbols]
         memory.requirements = dict(zip(names, [each for each, _ in read], strict=True))
     reader.requirements.update(memory.requirements)
@@ -307,5 +308,4 @@ def _names_in(context: Context) -> list[str]:
     return [word.text for word in operands if word.kind == NAME]
 
 
-_REQUIREMENT: Final = frozenset(("requirement",))
 _DEEPEST: Final = 50  # contexts in contexts: a condition is a tree, and every reader walks it

@@ -32,11 +32,12 @@ class Asker:
 
     Attributes:
         noted: the questions since that was emptied, with their answers.
-        steady: what is asked first of those questions to which no answer is another one than the last time.
+        news: of questions that begin with one of these the only ones to which the answer may be another one than the
+            last time, by what is asked behind it.
     """
 
     noted: dict[Question, object]
-    steady: frozenset[object]
+    news: dict[object, frozenset[object]]
 
     def answer(self, question: Question) -> object:
         """What the answer is now."""
@@ -139,11 +140,13 @@ class Table:
         self._most: int = before._most if before is not None else 0
         if before is not None and before.answers:
             answers = before.answers
-            ask, steady = asker.answer, asker.steady
+            ask, news = asker.answer, asker.news
             changed = [
                 each
                 for each, answer in answers.items()
-                if each[0] not in steady and (now := ask(each)) is not answer and not is_same(now, answer)
+                if (each[0] not in news or each[1] in news[each[0]])
+                and (now := ask(each)) is not answer
+                and not is_same(now, answer)
             ]
             self.answers = before._in_use() if len(answers) > self._most else answers
             self._most = max(self._most, 2 * len(self.answers))

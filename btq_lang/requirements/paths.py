@@ -52,7 +52,7 @@ class PathReader(Asker):
         self.parameters: dict[str, Parameter] = {}
         self.problems: dict[tuple[str, Span, str], Problem] = {}
         self.noted: dict[Question, object] = {}
-        self.steady: frozenset[object] = frozenset()
+        self.news: dict[object, frozenset[object]] = {}
         main = workspace.main_tree(path)
         mission = nodes.within(main.entry.item).root if main is not None and isinstance(main.entry.item, Tree) else None
         # A library's nodes may be in the files that include it, and a robot's in XML that nobody has read.
