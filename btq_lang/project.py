@@ -66,11 +66,6 @@ class Project(Record):
         return self.engines != VERSIONS
 
     @property
-    def chooses_rules(self) -> bool:
-        """Whether not all that is found is to be told as its rule says."""
-        return bool(self.severities or self.select or self.ignore)
-
-    @property
     def target(self) -> str:
         """The version that files are written for: the newest they must hold for."""
         return self.engines[-1]

@@ -234,8 +234,8 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
     path = str(folder / "main.btq")
     session.edit(path, MAIN)
     found = session.diagnostics(path)
-    kept = [id(found) for found, _ in session._answers[path].told.values()]
+    kept = [id(found) for found, *_ in session._answers[path].told.values()]
     session.reload()
     assert found != ()
     assert session.diagnostics(path) == found
-    assert [id(found) for found, _ in session._answers[path].told.values()] == kept
+    assert [id(found) for found, *_ in session._answers[path].told.values()] == kept

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.answers import Answers
     from btq_lang.facts import Facts
+    from btq_lang.project import Project
     from btq_lang.workspace import Workspace
 
 Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
@@ -251,6 +252,7 @@ def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[D
         KeyError: there is no such file.
     """
     view = View(workspace, path)
+    project = None if _looks_beyond(workspace, path) else workspace.project
     told: list[tuple[Told, list[int]]] = []
     for entry in workspace.files[path].parsed.entries:
         checks = checks_of(entry)
@@ -258,7 +260,7 @@ def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[D
             checks = tuple(each for each in checks if each is not includes.include_with_errors)
         found = [diagnostic for each in checks for diagnostic in each(view, entry)]
         if found or entry.diagnostics:
-            of_item = _told(view, entry, found)
+            of_item = _told(view, entry, found, project)
             told.append((of_item, of_item.starts(workspace)))
     return _wanted(workspace, path, Findings(told)).diagnostics
 
@@ -272,6 +274,7 @@ def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
     view = View(workspace, path, answers)
     file = workspace.files[path]
     answers.begin(view, workspace)
+    project = None if _looks_beyond(workspace, path) else workspace.project
     told: list[tuple[Told, list[int]]] = []
     before, answers.told = answers.told, {}
     found = answers.conclude_each(view, _kept, file.facts.values())
@@ -279,21 +282,26 @@ def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
         if not (known.diagnostics or known.restless or entry.diagnostics):
             continue
         same = before.get(facts)
-        if same is None or same[0] is not known or known.restless:
+        if same is None or same[0] is not known or same[1] is not project or known.restless:
             restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
-            same = known, _told(view, entry, (*known.diagnostics, *restless))
+            same = known, project, _told(view, entry, (*known.diagnostics, *restless), project)
         answers.told[facts] = same
-        if same[1].diagnostics:
-            told.append((same[1], same[1].starts(workspace)))
+        if same[2].diagnostics:
+            told.append((same[2], same[2].starts(workspace)))
     answers.end()
     return _wanted(workspace, path, Findings(told))
 
 
+def _looks_beyond(workspace: Workspace, path: str) -> bool:
+    """Whether what is to be told of an item is more than that and the project say."""
+    return workspace.files[path].has_directives or bool(workspace.origins)
+
+
 def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
-    """What is to be told of all that was found, as whoever has written the files and their project wants it."""
-    file = workspace.files[path]
-    if not (file.has_directives or workspace.origins or workspace.project.chooses_rules):
+    """What is to be told of all that was found, where more is to be looked at than each item."""
+    if not _looks_beyond(workspace, path):
         return found
+    file = workspace.files[path]
     diagnostics: Iterable[Diagnostic] = found.diagnostics
     if file.has_directives:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
@@ -307,11 +315,11 @@ def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
     return Findings.placed(configured(workspace.project, diagnostics))
 
 
-def _told(view: View, entry: Entry, found: Iterable[Diagnostic]) -> Told:
-    """All that is to be told of an entry."""
+def _told(view: View, entry: Entry, found: Iterable[Diagnostic], project: Project | None) -> Told:
+    """All that is to be told of an entry, as the project wants it; None: that is not to be asked yet."""
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
-    return Told(found, (view.path, entry.item))
+    return Told(found if project is None else configured(project, found), (view.path, entry.item))
 
 
 def _kept(view: View, facts: Facts) -> Found:

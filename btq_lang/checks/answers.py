@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from btq_lang.checks import Found
     from btq_lang.checks.view import View
     from btq_lang.findings import Told
+    from btq_lang.project import Project
     from btq_lang.requirements import Memory
 
     T = TypeVar("T")
@@ -61,12 +62,12 @@ class Answers:
     """The answers about one file, and who asked for them.
 
     Attributes:
-        told: of the items of which something was told: what was found, and what that came to.
+        told: of the items of which something was told: what was found, for which project, and what that came to.
         resolved: the requirements in scope, as they were resolved last; they are kept by a mechanism of their own.
     """
 
     def __init__(self) -> None:
-        self.told: dict[Facts, tuple[Found, Told]] = {}
+        self.told: dict[Facts, tuple[Found, Project | None, Told]] = {}
         self.resolved: Memory | None = None
         self._workspace: Workspace | None = None
         self._left: Workspace | None = None  # the one before the last edit
