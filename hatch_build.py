@@ -172,7 +172,8 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     modules = [f"{PACKAGE}/{module}.py" for module in COMPILED]
     modules.append(_write_records_out(root, folder, modules))
     shutil.copy(root / "tools" / COLD, folder)  # where the C compiler runs
-    flags = " ".join((*_flags(), os.environ.get("CFLAGS", ""))).strip()
+    # What is in the environment stands for what Python was built with, which it is to add to.
+    flags = " ".join((sysconfig.get_config_var("CFLAGS") or "", *_flags(), os.environ.get("CFLAGS", ""))).strip()
     environment = DEFAULTS | os.environ | {"MYPYPATH": str(folder), "CFLAGS": flags}
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     options = ("--config-file", str(root / "pyproject.toml"), "--python-version", version)

@@ -6,9 +6,12 @@ what the candidates are; a caller that wants only names of one kind passes only 
 
 from __future__ import annotations
 
+from btq_lang.caches import Answered
+
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from typing import Final
 
 
 def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:
@@ -17,24 +20,19 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     One edit is allowed for every three letters of the word, three in all, and one more than the best candidate needs.
     A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
-    folded = word.casefold()
-    letters = frozenset(folded)
+    folded, letters = word.casefold(), _letters[word]
     cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
-        other = candidate.casefold()
-        if candidate == word:
+        # Most candidates fall here, at a tenth of the price: every edit mends one letter that only one of the two has.
+        others = _letters[candidate]
+        if (letters & ~others).bit_count() > cutoff or (others & ~letters).bit_count() > cutoff or candidate == word:
             continue
+        other = candidate.casefold()
         if other == folded:
             same_letters.append((distance(word, candidate), candidate))
-        # Most candidates fall here, at a tenth of the price: every edit mends one letter that only one of the two has.
-        elif (
-            abs(len(other) - len(folded)) <= cutoff
-            and len(letters.difference(other)) <= cutoff
-            and len(frozenset(other) - letters) <= cutoff
-            and (edits := distance(folded, other, cutoff)) <= cutoff
-        ):
+        elif abs(len(other) - len(folded)) <= cutoff and (edits := distance(folded, other, cutoff)) <= cutoff:
             found.append((edits, distance(word, candidate), candidate))
     if same_letters:
         return tuple(name for _, name in sorted(same_letters))[:limit]
@@ -61,17 +59,32 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
         end_a -= 1
         end_b -= 1
     a, b = a[start:end_a], b[start:end_b]
+    band = max(len(a), len(b)) if enough is None else enough  # what is further off the diagonal needs more edits
     before: list[int] = []
     last = list(range(len(b) + 1))
     for i, left in enumerate(a, 1):
-        row = [i]
-        for j, right in enumerate(b, 1):
+        row = [band + 1] * (len(b) + 1)
+        row[0] = i
+        for j in range(max(1, i - band), min(len(b), i + band) + 1):
+            right = b[j - 1]
             edits = min(last[j] + 1, row[j - 1] + 1, last[j - 1] + (left != right))
             if i > 1 and j > 1 and left == b[j - 2] and a[i - 2] == right:
                 edits = min(edits, before[j - 2] + 1)
-            row.append(edits)
+            row[j] = edits
         # A swap reaches back two rows, so only two rows in a row that are too far away decide.
         if enough is not None and min(row) > enough and min(last) > enough:
             return enough + 1
         before, last = last, row
     return last[-1]
+
+
+def _letters_of(word: str) -> int:
+    """A bit for each letter in a word, whatever its case; some letters share one."""
+    found = 0
+    for letter in set(word.casefold()):
+        found |= 1 << ord(letter) % _BITS
+    return found
+
+
+_BITS: Final = 39  # with so many no letter of ASCII shares one with a digit
+_letters: Final[Answered[str, int]] = Answered(_letters_of, 2_000)
