@@ -31,10 +31,6 @@ from report import ENVIRONMENT, Goal
 FILES, NODES_A_FILE, LARGE = 100, 500, 10_000
 MANY, NODES_OF_MANY = 1_000, 50
 
-# Seconds that pygls alone took to start where the goals in milliseconds were set; how quick another machine is, at the
-# moment, the same program tells.
-PYGLS_THERE = 0.428
-
 BTQ = (sys.executable, "-c", "from btq_lang.server import main; main(['--stdio'])")
 BARE = (
     sys.executable,
@@ -95,8 +91,34 @@ def starts(rounds: int) -> tuple[list[Series], list[Goal]]:
 
 
 def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
-    """What an author does in one file of a folder: type, and ask.  The goals in milliseconds are those of the machine
-    that they were set on: what is taken here counts in times of what pygls alone takes to start."""
+    """What an author does in one file of a folder: type, and ask.  It is done several times, each with a server of its
+    own, and of each message the least counts: what the machine does besides comes at another one the next time."""
+    runs = [_typed(files, nodes, options) for _ in range(options.repeats)]
+    measured = [_least([series[at] for series, _, _ in runs]) for at in range(len(runs[0][0]))]
+    edits, completion, hover, definition, first, full, delta = measured
+    allowed = {edits: 5 if nodes < LARGE else 16, completion: 10, hover: 10, definition: 10}
+    if nodes >= LARGE:
+        allowed |= {first: 40, full: 40, delta: 10}
+    goals = []
+    for one, limit in allowed.items():
+        taken = 1000 * percentile(one.cpu, 99)
+        goals.append(Goal(f"{one.name}: p99 ms of processor <= {limit}", taken, taken <= limit))
+    if nodes < LARGE:
+        for when, at in (("when all is checked", 1), ("in the end", 2)):
+            most = max(run[at] for run in runs)
+            text = f"memory above pygls alone, {files} files of {nodes} nodes, {when}: MB <= 25"
+            goals.append(Goal(text, most, most <= 25))
+    return measured, goals
+
+
+def _least(runs: Sequence[Series]) -> Series:
+    """Of the same messages in several runs, what each took at least."""
+    wall = [min(times) for times in zip(*(one.wall for one in runs), strict=True)]
+    return Series(runs[0].name, wall, [min(times) for times in zip(*(one.cpu for one in runs), strict=True)])
+
+
+def _typed(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Series], float, float]:
+    """One run of it; the megabytes above pygls alone when all is checked, and in the end."""
     size = f"{nodes:,} nodes".replace(",", " ")
     asked = ("completion", "hover", "definition", "first tokens", "all tokens", "token delta")
     edits, completion, hover, definition, first, full, delta = (
@@ -108,7 +130,6 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
         for number in range(files):
             text = missions.mission(nodes, number + 1, options.spelling)
             (folder / f"mission{number:03}.btq").write_text(text, encoding="utf-8")
-        paces = [_start_of_bare(folder) for _ in range(options.starts // 2)]
         server = Server(BTQ, folder)
         document = server.open(folder / "mission000.btq")
         server.wait_for(is_about(folder / "mission000.btq"))
@@ -141,21 +162,7 @@ def typing(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
             full_id = server.request("textDocument/semanticTokens/full", textDocument=document.name)["resultId"]
         in_the_end = server.memory() - bare
         server.end()
-        paces += [_start_of_bare(folder) for _ in range(options.starts // 2)]
-    allowed = {edits: 5 if nodes < LARGE else 16, completion: 10, hover: 10, definition: 10}
-    if nodes >= LARGE:
-        allowed |= {first: 40, full: 40, delta: 10}
-    pace = statistics.median(paces) / PYGLS_THERE
-    goals = []
-    for series, limit in allowed.items():
-        here = 1000 * percentile(series.cpu, 99)
-        text = f"{series.name}: p99 ms of processor, {here:.2f} here, <= {limit} where pygls alone starts in 428 ms"
-        goals.append(Goal(text, here / pace, here / pace <= limit))
-    if nodes < LARGE:
-        for when, taken in (("when all is checked", memory), ("in the end", in_the_end)):
-            text = f"memory above pygls alone, {files} files of {nodes} nodes, {when}: MB <= 25"
-            goals.append(Goal(text, taken, taken <= 25))
-    return [edits, completion, hover, definition, first, full, delta], goals
+    return [edits, completion, hover, definition, first, full, delta], memory, in_the_end
 
 
 def many_files(spelling: missions.Spelling) -> tuple[list[Series], list[Goal]]:
@@ -384,14 +391,6 @@ def is_end_of_progress(message: Message) -> bool:
     return is_progress(message) and message["params"]["value"]["kind"] == "end"
 
 
-def _start_of_bare(folder: Path) -> float:
-    """Seconds of processor that pygls alone takes to start."""
-    server = Server(BARE, folder)
-    taken = server.processor_time()
-    server.end()
-    return taken
-
-
 def _memory_of_bare(folder: Path) -> float:
     server = Server(BARE, folder)
     memory = server.memory()
@@ -432,6 +431,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"
     )
+    parser.add_argument("--repeats", type=int, default=5, help="how often all of that is done (default 5)")
     parser.add_argument("--starts", type=int, default=10, help="how often a server is started (default 10)")
     parser.add_argument("--seed", type=int, default=1, help="another number, other typing")
     return parser.parse_args(arguments)
