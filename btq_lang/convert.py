@@ -99,7 +99,7 @@ class Converter:
     def uri(self, path: str) -> str:
         return self._uris.get(path) or _uri_of(path)
 
-    def name(self, path: str, uri: str) -> None:
+    def learn_uri(self, path: str, uri: str) -> None:
         """The editor writes the URI of a file so."""
         if self.uri(path) != uri:
             self._uris[path] = uri

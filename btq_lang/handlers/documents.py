@@ -19,7 +19,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
-        convert.name(path, params.text_document.uri)
+        convert.learn_uri(path, params.text_document.uri)
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, params.text_document.text))
 
