@@ -101,9 +101,8 @@ class Converter:
 
     def learn_uri(self, path: str, uri: str) -> None:
         """The editor writes the URI of a file so."""
-        if self.uri(path) != uri:
-            self._uris[path] = uri
-            self._spellings += 1
+        self._uris[path] = uri
+        self._spellings += 1
 
     def range(self, workspace: Workspace, path: str, span: Span) -> types.Range:
         """A span of a file's text, where it stands on the disk."""
@@ -152,12 +151,12 @@ class Converter:
         for told, starts in found.of_items:
             begins = [files[at].item_places[id(item)] for at, item in told.items]
             where = self._spellings, begins, [files[at].source_lines.ends(span, encoding) for at, span in told.fixed]
-            if told.shown is not None and told.shown[0] == where:
-                written.append(told.shown[1])
+            if told.written is not None and told.written[0] == where:
+                written.append(told.written[1])
                 continue
             written.append(self._diagnostics(workspace, path, told.placed(starts)))
             if told.items:  # of a file that nobody edits it would only take room
-                told.shown = where, written[-1]
+                told.written = where, written[-1]
         return Json(f"[{', '.join(written)}]")
 
     def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:

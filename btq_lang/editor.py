@@ -298,9 +298,7 @@ class Server(LanguageServer):
         workspace = self.session.workspace_of(path)
         version = self.versions.get(path)
         if workspace is None or not (path in self.session.open or self.session.setting("checkClosedFiles", True)):
-            if self.published.pop(path, (None, None))[0] is not None:
-                gone = {"uri": self.convert.uri(path), "diagnostics": []}
-                self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
+            self.withdraw(path)
             self.session.forget(path)
             return
         found = self.findings(path)
@@ -311,6 +309,12 @@ class Server(LanguageServer):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
             params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
+
+    def withdraw(self, path: str) -> None:
+        """Tell that nothing is wrong with a file, if something was told by the URI that it has."""
+        if self.published.pop(path, (None, None))[0] is not None:
+            gone = {"uri": self.convert.uri(path), "diagnostics": []}
+            self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, gone)
 
     def report(self, path: str, previous: str | None) -> Json:
         """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""

@@ -80,7 +80,8 @@ class File:
                 after.lines = self.lines.edited(text, change)
             if "item_places" in self.__dict__ and change is not None:
                 replacing = text[change.start : change.end + len(text) - len(self.text)]
-                if _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing)):
+                is_in_line = _LINE_ENDS.isdisjoint((*self.text[change.start : change.end], *replacing))
+                if is_in_line and after.lines.line_count == self.lines.line_count:  # no \r has come to a \n
                     places = after.item_places = self.item_places.copy()
                     for each in gone:
                         del places[id(each.item)]

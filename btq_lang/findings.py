@@ -20,13 +20,13 @@ class Told:
 
     Attributes:
         diagnostics: in the order of the text, counted from where the item begins.
-        items: the item and the others that places in them count from, behind their files; none where all of it counts
-            from the start of a file.
+        items: first the item, then the others that places in them count from, each behind its file; none where all of
+            it counts from the start of a file.
         fixed: the related places that do, behind their files.
-        shown: for who shows it: what he made of it, with all that it rests on besides.
+        written: for who writes it down: what that rests on besides, and how it reads.
     """
 
-    __slots__ = ("diagnostics", "fixed", "items", "shown")
+    __slots__ = ("diagnostics", "fixed", "items", "written")
 
     def __init__(self, diagnostics: Iterable[Diagnostic], *item: tuple[str, object]) -> None:
         """item: its file and itself."""
@@ -37,7 +37,7 @@ class Told:
         others = [(at.path, at.anchor) for at in anchors if at.path is not None and at.anchor is not None]
         self.items = (*item, *others)
         self.fixed = tuple([(at.path, at.span) for at in related if at.path is not None and at.anchor is None])
-        self.shown: tuple[object, str] | None = None
+        self.written: tuple[object, str] | None = None
 
     def starts(self, workspace: Workspace) -> list[int]:
         """Where the items begin."""

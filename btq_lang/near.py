@@ -87,4 +87,4 @@ def _letters_of(word: str) -> int:
 
 
 _BITS: Final = 39  # with so many no letter of ASCII shares one with a digit
-_letters: Final[Answered[str, int]] = Answered(_letters_of, 2_000)
+_letters: Final[Answered[str, int]] = Answered(_letters_of, 10_000)

@@ -75,6 +75,7 @@ class Session:
 
         text = self.open.pop(path, None)
         self._answers.pop(path, None)
+        self._checked.pop(path, None)  # it counts from items, which nobody holds any more
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
             return (path,)
@@ -131,15 +132,23 @@ class Session:
         may ask for something else."""
         for answers in self._answers.values():
             answers.let_go()
+        worked_in = self._worked_in()
         for workspace in self._workspaces:
-            missions = workspace.missions
-            worked_in = {missions.get(path) for path in self.open}
             held = [path for path, file in workspace.files.items() if file.is_unpacked]
-            idle = [path for path in held if missions[path] not in worked_in]
+            idle = [path for path in held if path not in worked_in]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
-                workspace.pack(idle[:_AT_ONCE])
+                for each in self._workspaces:  # whoever has one of these holds what it was
+                    each.pack(idle[:_AT_ONCE])
                 if len(idle) <= _AT_ONCE:
                     gc.collect()  # much of it refers to itself, and Python would wait until there is far more
+
+    def _worked_in(self) -> set[str]:
+        """The files that are open, and those that are linked with them, in whichever workspace: they may share some."""
+        found: set[str] = set()
+        for workspace in self._workspaces:
+            missions = {workspace.missions.get(path) for path in self.open} - {None}
+            found.update([path for path, mission in workspace.missions.items() if mission in missions])
+        return found
 
     # ---- what is asked ----
 

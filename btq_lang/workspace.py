@@ -61,10 +61,15 @@ class Workspace:
         return after
 
     def pack(self, paths: Iterable[str]) -> None:
-        """Hold as little of some files as can be; who holds a definition in one of them must not ask for it again."""
-        gone = frozenset(paths)
+        """Hold as little of some files as can be; who holds a definition in one of them must not ask for it again.
+
+        Args:
+            paths: those of other workspaces among them are nothing to this one.
+        """
+        gone = self.files.keys() & paths
         for path in gone:
-            self.files[path].pack()
+            if self.files[path].is_unpacked:
+                self.files[path].pack()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
         self._main_trees.clear()

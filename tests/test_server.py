@@ -117,6 +117,31 @@ def test_closing_a_file_that_is_on_no_disk_clears_it(editor: Editor) -> None:
     assert editor.diagnostics("main.btq") == []
 
 
+def test_a_file_has_one_name_at_a_time(tmp_path: Path) -> None:
+    def told(uri: str) -> list[str]:
+        message = editor.wait_for(lambda message: message.get("params", {}).get("uri") == uri)
+        return [each["code"] for each in message["params"]["diagnostics"]]
+
+    (tmp_path / "main (2).btq").write_text(WRONG, encoding="utf-8")
+    ours = (tmp_path / "main (2).btq").as_uri()
+    theirs = ours.replace("%28", "(").replace("%29", ")")
+    assert theirs != ours
+    document = {"uri": theirs, "languageId": "btq", "version": 1, "text": WRONG}
+    editor = Editor(tmp_path)
+    assert told(ours) == ["unknown-node"]
+    editor.notify("textDocument/didOpen", textDocument=document)
+    assert (told(ours), told(theirs)) == ([], ["unknown-node"])
+    assert editor.close() == ""
+
+    editor = Editor(tmp_path, capabilities=PULLS)
+    first = editor.request("workspace/diagnostic", previousResultIds=[])["items"]
+    editor.notify("textDocument/didOpen", textDocument=document)
+    known = [{"uri": each["uri"], "value": each["resultId"]} for each in first]
+    items = editor.request("workspace/diagnostic", previousResultIds=known)["items"]
+    assert {each["uri"]: len(each["items"]) for each in items} == {ours: 0, theirs: 1}
+    assert editor.close() == ""
+
+
 def test_a_buffer_without_a_file(editor: Editor) -> None:
     uri = "untitled:Untitled-1"
     editor.notify("textDocument/didOpen", textDocument={"uri": uri, "languageId": "btq", "version": 1, "text": WRONG})

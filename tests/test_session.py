@@ -171,6 +171,50 @@ def test_many_files_are_let_go_of_in_parts(tmp_path: Path, monkeypatch: pytest.M
     assert parts == [12, 7, 2, 0]
 
 
+def test_a_closed_file_is_let_go_of_with_all_that_was_found_in_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    path, convert = str(tmp_path / "main.btq"), Converter()
+    text = OTHER.replace("Pick", "Sequnce")
+    (tmp_path / "main.btq").write_text(text, encoding="utf-8")
+    session = session_of(tmp_path, {path: text})
+    told = shown_by(session, path, convert)
+    assert "Sequnce" in told
+    assert session.close(path) == (path,)
+    for _ in range(2):
+        session.let_go()
+        assert shown_by(session, path, convert) == told
+
+
+def test_a_file_that_two_projects_have(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    one, other = tmp_path / "one", tmp_path / "other"
+    files = {
+        one / "btq.toml": "",
+        other / "btq.toml": "",
+        one / "requirements.btq": REQUIREMENTS,
+        one / "main.btq": 'include "requirements.btq"\n' + REQUIREMENTS.replace("3 s", "4 s"),
+        other / "main.btq": 'include "../one/requirements.btq"\n' + REQUIREMENTS.replace("3 s", "5 s"),
+    }
+    for path, text in files.items():
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    opened, convert = str(one / "main.btq"), Converter()
+    texts = {opened: files[one / "main.btq"]}
+    session = session_of(tmp_path, texts)
+    assert len(session.workspaces()) == 2
+    for comment in ("# a\n", "# b\n"):
+        texts[opened] = comment + texts[opened]
+        session.edit(opened, texts[opened])
+        new = session_of(tmp_path, texts)
+        for path in new.paths():
+            told = shown_by(session, path, convert)
+            assert told == shown_by(new, path, Converter())
+            assert ("conflicting-requirement" in told) == path.endswith("main.btq")
+            session.let_go()
+
+
 def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

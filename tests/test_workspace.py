@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from btq_lang.file import File
 from btq_lang.name_kinds import Kind
 from btq_lang.project import Project
 from btq_lang.workspace import Workspace
@@ -130,3 +131,17 @@ def test_who_says_a_name_is_looked_for_no_further_than_asked() -> None:
     entry, mention = next(file.mentioned("Dock"))
     assert (entry.start, mention.name) == (0, "Dock")
     assert ["mentions" in facts.__dict__ for facts in file.facts.values()] == [True, False]
+
+
+@pytest.mark.parametrize(
+    "text", ["# a\rx\n\nBehaviorTree A\n    X\n", "QualityReq a  QualityReq b\r\n\r\nRoot A\r\n  Root B"]
+)
+def test_where_items_begin_is_known_after_any_edit(text: str) -> None:
+    before = File("a.btq", text)
+    assert len(before.item_places) == len(before.parsed.entries)
+    for start in range(len(text)):
+        for gone, come in ((0, " "), (1, ""), (1, "\n"), (1, "x"), (0, "\r"), (2, ""), (0, "\nRoot C\n")):
+            edited = f"{text[:start]}{come}{text[start + gone :]}"
+            after, new = before.edited(edited), File("a.btq", edited)
+            for one, other in zip(after.parsed.entries, new.parsed.entries, strict=True):
+                assert after.item_places[id(one.item)] == new.item_places[id(other.item)], (start, gone, come)

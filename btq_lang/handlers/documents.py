@@ -19,7 +19,9 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         path = convert.path(params.text_document.uri)
-        convert.learn_uri(path, params.text_document.uri)
+        if convert.uri(path) != params.text_document.uri:
+            server.withdraw(path)
+            convert.learn_uri(path, params.text_document.uri)
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, params.text_document.text))
 
@@ -56,6 +58,8 @@ def _diagnostics(server: Server) -> None:
         # those whose result it has forgotten, as VS Code does when a document is closed.
         gone = (known.keys() | server.shown) - set(paths) - session.open.keys()
         items = [_about(convert.uri(path), None, NOTHING) for path in sorted(gone)]
+        spelt = [one.uri for one in params.previous_result_ids if convert.uri(convert.path(one.uri)) != one.uri]
+        items += [_about(uri, None, NOTHING) for uri in spelt]  # for the file has another one since then
         async with checking(server, 0 if known else len(paths)) as told:  # who knows something asks for the news
             for done, path in enumerate(paths, 1):
                 report = server.report(path, known.get(path))

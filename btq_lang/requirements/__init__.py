@@ -88,7 +88,7 @@ def requirements(workspace: Workspace, path: str, memory: Memory | None = None) 
         lambda at: _read_requirement(reader, workspace.files[homes[at]], symbols[at], enclosing[at]),
     )
     if table.others is not None:
-        gone = [*memory.requirements]
+        gone = [*memory.requirements]  # in the order of the table, which has as many
         reader.news["requirement"] = frozenset([name for at in table.others for name in (gone[at], symbols[at].name)])
     if not table.is_as_before:
         names = [symbol.name for symbol in symbols]
