@@ -25,7 +25,7 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
-        # Most candidates fall here, at a tenth of the price: every edit mends one letter that only one of the two has.
+        # Most candidates fall here, and cost little: every edit mends one letter that only one of the two has.
         others = _letters[candidate]
         if (letters & ~others).bit_count() > cutoff or (others & ~letters).bit_count() > cutoff or candidate == word:
             continue

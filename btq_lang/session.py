@@ -180,15 +180,15 @@ class Session:
 
     def findings(self, path: str) -> Findings:
         """All that is wrong with a file now."""
-        from btq_lang.checks import check, check_again
-        from btq_lang.checks.answers import Answers
-
         workspace = self.workspace_of(path)
         if workspace is None:
             return Findings([])
         known = self._checked.get(path)
         if known is not None and known[0]() is workspace:
             return known[1]
+        from btq_lang.checks import check, check_again
+        from btq_lang.checks.answers import Answers
+
         if path in self.open:
             found = check_again(workspace, path, self._answers.setdefault(path, Answers()))
         else:  # placed, for what counts from items would hold them

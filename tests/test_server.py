@@ -1048,57 +1048,55 @@ def test_what_is_outdated_is_not_checked() -> None:
     assert told == ["first", "edited", "linked", "other"]
 
 
+class Telling(Server):
+    """A server that notes which files it checks, and has one open."""
+
+    pulls = False
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told: list[str] = []
+        self.session.open["open"] = ""
+
+    def publish(self, path: str) -> None:
+        self.told.append(path)
+
+
 def test_what_is_asked_is_answered_before_files_that_are_not_open_are_checked() -> None:
-    class Telling(Server):
-        pulls = False
-
-        def publish(self, path: str) -> None:
-            told.append(path)
-
     async def ask() -> None:
         server = Telling()
-        server.session.open["open"] = ""
         server.answering = 1
         server.check_soon(("open", "closed"))
         await asyncio.sleep(0.05)
-        assert told == ["open"]
+        assert server.told == ["open"]
         server.check_soon(("open",))  # a key meanwhile does not wait
         await asyncio.sleep(0.05)
-        assert told == ["open", "open"]
+        assert server.told == ["open", "open"]
         server.answering = 0
         assert server.task is not None
         await server.task
+        assert server.told == ["open", "open", "closed"]
 
-    told: list[str] = []
     asyncio.run(ask())
-    assert told == ["open", "open", "closed"]
 
 
 def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Telling(Server):
-        pulls = False
-
-        def publish(self, path: str) -> None:
-            told.append(path)
-
     async def press() -> None:
         server = Telling()
-        server.session.open["open"] = ""
         server.check_soon(("open", "closed"))
         for keys in range(1, 4):
-            while len(told) < keys:
+            while len(server.told) < keys:
                 await asyncio.sleep(0)
             server.check_soon(("open",))
-        while len(told) < 4:
+        while len(server.told) < 4:
             await asyncio.sleep(0)
         assert server.task is not None
         assert not server.task.done()
+        assert server.told == ["open"] * 4
         server.task.cancel()
 
     monkeypatch.setattr("btq_lang.editor.TO_ASK", 2)
-    told: list[str] = []
     asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
-    assert told == ["open"] * 4
 
 
 def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:

@@ -262,7 +262,7 @@ def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[D
         if found or entry.diagnostics:
             of_item = _told(view, entry, found, project)
             told.append((of_item, of_item.starts(workspace)))
-    return _wanted(workspace, path, Findings(told)).diagnostics
+    return (Findings(told) if project is not None else _wanted(workspace, path, Findings(told))).diagnostics
 
 
 def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
@@ -289,7 +289,7 @@ def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
         if same[2].diagnostics:
             told.append((same[2], same[2].starts(workspace)))
     answers.end()
-    return _wanted(workspace, path, Findings(told))
+    return Findings(told) if project is not None else _wanted(workspace, path, Findings(told))
 
 
 def _looks_beyond(workspace: Workspace, path: str) -> bool:
@@ -298,9 +298,7 @@ def _looks_beyond(workspace: Workspace, path: str) -> bool:
 
 
 def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
-    """What is to be told of all that was found, where more is to be looked at than each item."""
-    if not _looks_beyond(workspace, path):
-        return found
+    """What is to be told of all that was found, where that takes more than each item and the project."""
     file = workspace.files[path]
     diagnostics: Iterable[Diagnostic] = found.diagnostics
     if file.has_directives:
