@@ -41,6 +41,7 @@ COMPILED = (
     "node_clauses",
     "syntax",
     "scan",
+    "item_words",
     "plain",
     "blocks",
     "lexer",

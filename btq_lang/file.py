@@ -11,6 +11,7 @@ from bisect import bisect_left, bisect_right
 
 from btq_lang.caches import cached_property
 from btq_lang.facts import Facts, Names, Tally
+from btq_lang.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Item
@@ -307,7 +308,7 @@ class File:
 
     @cached_property
     def includes(self) -> tuple[Include, ...]:
-        if "include" not in self.text:  # most files have none, and need not be parsed to know what another one means
+        if "parsed" not in self.__dict__ and not may_include(self.text):
             return ()
         return self.of_type(Include)
 

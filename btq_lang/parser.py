@@ -13,7 +13,7 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
-from btq_lang.near import near
+from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.nodes import XML, NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.plain_models import plain_model, plain_port
@@ -276,20 +276,19 @@ class Parser(NodeParser):
         self.entry(item, in_root)
 
     def item_word(self) -> str:
-        """The word that begins the item; a misspelt one is reported and read as the word that was meant, save that
-        of a model, which is part of the tree."""
+        """The word that begins the item; a misspelt one is reported and mostly read as the word that was meant."""
         if self.kind != NAME:
             return ""
         if self.raw in ITEM_WORDS:
             return self.raw
-        likely = near(self.raw, ITEM_WORDS, limit=1)
+        meant = item_word_meant(self.raw)
         following = self.kinds[self.index + 1]
-        if not likely or not (following in (NAME, STRING) or (likely[0] in _ALONE and following in (NEWLINE, OPEN))):
+        if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
             return ""
-        fix = replace_fix(f"Replace `{self.raw}` by `{likely[0]}`", self.here(), likely[0])
-        message = f"`{self.raw}` begins no item: did you mean `{likely[0]}`?"
+        fix = replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant)
+        message = f"`{self.raw}` begins no item: did you mean `{meant}`?"
         self.complain("syntax-error", self.here(), message, (), (fix,))
-        return likely[0] if likely[0] not in CATEGORIES else ""
+        return read_as(self.raw)
 
     def begins_item(self) -> bool:
         """Whether the open line looks like an item, wherever it stands; a node may look like a model."""
@@ -564,7 +563,7 @@ class Parser(NodeParser):
         if self.lexer.level > level:
             return self.begins_item()
         word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
-        return self.lexer.level < level or word in ITEM_WORDS or bool(near(word, ITEM_WORDS, limit=1))
+        return self.lexer.level < level or word in ITEM_WORDS or bool(item_word_meant(word))
 
 
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
@@ -577,11 +576,6 @@ _OTHER_ITEMS: Final = {  # what people write for them, in small letters
 }
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
-ITEM_WORDS: Final = (
-    *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),
-    *("quality", "qualities", "xml"),
-    *sorted(CATEGORIES),
-)
 
 
 def _root_causes(found: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, ...]:

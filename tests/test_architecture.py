@@ -48,7 +48,7 @@ ROWS: tuple[frozenset[str], ...] = (
             "plain_models",
             "plain_requirements",
         }
-        | {"parser", "comments", "script"}
+        | {"item_words", "parser", "comments", "script"}
     ),
     frozenset({"catalog"}),
     frozenset(

@@ -11,7 +11,8 @@ from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phr
 from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
-from btq_lang.parser import ITEM_WORDS, parse
+from btq_lang.item_words import ITEM_WORDS
+from btq_lang.parser import parse
 from btq_lang.tokens import NODE_CLAUSES
 
 DOCS = (Path(__file__).resolve().parents[1] / "docs" / "language.md").read_text("utf-8")

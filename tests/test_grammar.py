@@ -12,7 +12,8 @@ import pytest
 from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
-from btq_lang.parser import ITEM_WORDS, parse
+from btq_lang.item_words import ITEM_WORDS
+from btq_lang.parser import parse
 from btq_lang.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "grammar.md").read_text(encoding="utf-8")

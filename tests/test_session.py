@@ -250,6 +250,16 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
+def test_a_misspelt_include_brings_its_file_whatever_else_the_text_says(folder: Path) -> None:
+    main, text = f"{folder}/main.btq", MAIN.replace("include", "enclude")
+    session = session_of(folder, {main: text})
+    told = [each.rule for each in session.diagnostics(main)]
+    as_meant = session_of(folder, {}).diagnostics(main)
+    assert told == ["syntax-error", "syntax-error", *[each.rule for each in as_meant]]
+    session.edit(main, f"{text}# include")
+    assert [each.rule for each in session.diagnostics(main)] == told
+
+
 def test_a_file_that_no_folder_has(tmp_path: Path) -> None:
     session = Session()
     path = f"{tmp_path}/alone.btq"

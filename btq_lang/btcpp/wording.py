@@ -14,7 +14,7 @@ from btq_lang.btcpp.document import unescape
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
-from btq_lang.parser import ITEM_WORDS
+from btq_lang.item_words import ITEM_WORDS
 from btq_lang.syntax import is_name
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 

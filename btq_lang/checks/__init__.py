@@ -282,9 +282,7 @@ def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
         if not (known.diagnostics or known.restless or entry.diagnostics):
             continue
         same = before.get(facts)
-        # Which lines are sound is known of the text, and not of the item, which may stay as it is.
-        is_as_before = same is not None and same[0] is known and same[1] is project
-        if same is None or not is_as_before or known.restless or entry.diagnostics:
+        if same is None or same[0] is not known or same[1] is not project or known.restless:
             restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
             same = known, project, _told(view, entry, (*known.diagnostics, *restless), project)
         answers.told[facts] = same
