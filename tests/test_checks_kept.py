@@ -169,6 +169,14 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
             assert check_again(workspace, each, kept[each]).diagnostics == check(fresh, each), (step, each, texts)
 
 
+def test_what_no_quote_closes_is_not_empty() -> None:
+    workspace = Workspace.of(
+        {"/p/main.btq": 'QualityReq "Slowly\nQualityReq rq1 : safety "Calm"\n    takes at most 3 s\n'}
+    )
+    anew, kept = check(workspace, "/p/main.btq"), check_again(workspace, "/p/main.btq", Answers()).diagnostics
+    assert [each.rule for each in anew] == [each.rule for each in kept] == ["unclosed-string"]
+
+
 @pytest.mark.parametrize("spelling", ["classic", "short"])
 def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
     """In a file of so many trees that what is kept of all of them is brought up to date, and not made anew."""

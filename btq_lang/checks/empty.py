@@ -39,16 +39,17 @@ def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if view.is_xml or not (view.keeps_answers or _has_empty(view.text)):
         return
     for what, word in _names(entry.item):
-        if word is not None and (word.text == "" or word.raw == "{}"):
+        if word is not None and word.raw in _EMPTY:
             severity = Severity.HINT if what in _FOR_PEOPLE else None
             yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)
 
 
 @cache_of(1)  # all items of a file ask
 def _has_empty(text: str) -> bool:
-    return any(sign in text for sign in ('""', "''", "{}"))
+    return any(sign in text for sign in _EMPTY)
 
 
+_EMPTY = ('""', "''", "{}")
 _TITLE, _REASON = "this title", "this reason"
 _FOR_PEOPLE = (_TITLE, _REASON)
 
