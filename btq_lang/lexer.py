@@ -427,7 +427,7 @@ class Lexer:
         message = f"`{sign[0]}` begins a comment only behind a blank"
         insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
         in_value = bool(self.raws) and self.raws[-1] == "="
-        if start == sign.start() and self.raws and not in_value:
+        if start == sign.start() and not in_value:
             fix = Fix(insert.title, insert.changes, safe=True)
             self.problems.append(Diagnostic("misplaced-comment", Span(start, sign.end()), message, fixes=(fix,)))
             return self._read_comment(start)

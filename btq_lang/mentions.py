@@ -51,7 +51,7 @@ from btq_lang.syntax import (
     walk,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import BRACED, NAME, QUANTITY, STRING
+from btq_lang.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -401,6 +401,8 @@ def _requirement(requirement: Requirement, node: Node | None, attached: bool, to
     refers = attached and requirement.is_reference
     to.word(What.REQUIREMENT, requirement.name, defines=not refers, node=node, owner=requirement)
     _quality(requirement.quality, node, to)
+    if requirement.text is not None:
+        to.value(requirement.text)
     for parameter in requirement.parameters:
         to.word(What.PARAMETER, parameter.name, defines=True, owner=requirement)
         to.word(What.UNIT, parameter.unit)
@@ -428,8 +430,11 @@ def _values(part: Clause | Parameter | Argument | object, owner: Requirement | N
             _path(found, to)
         elif isinstance(found, Every):
             to.word(What.PLACE, found.name)
-        elif isinstance(found, Word) and found.kind == QUANTITY:
-            to.word(What.QUANTITY, found)
+        elif isinstance(found, Word):
+            if found.kind == QUANTITY:
+                to.word(What.QUANTITY, found)
+            elif found.kind == NUMBER:
+                to.value(found)
 
 
 def _quantities(part: object, to: Listener) -> None:

@@ -28,7 +28,7 @@ from btq_lang.record import Record
 from btq_lang.syntax import Entry, Requirement
 from btq_lang.text import LINE_END, Span, width_of
 from btq_lang.token_list import pieces
-from btq_lang.tokens import OPERATOR, SYMBOL
+from btq_lang.tokens import COMMENT, OPERATOR, SYMBOL
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -185,6 +185,11 @@ class _Words(Listener):
 
 def _tokens_between(text: str) -> list[Token]:
     """The tokens between two words of a tree, before the first or behind the last."""
+    head, sign, comment = text.partition("\n#")
+    end = comment.find("\n")
+    if sign and end == len(comment.rstrip()) and _BEGINNING.isdisjoint(head) and "\r" not in comment:
+        start = len(head) + 1  # in front of an item there often is a comment, each of them another one
+        return [*_between[text[:start]], (start, start + 1 + end, PLAIN[COMMENT])]
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
@@ -258,4 +263,5 @@ def _lines(raw: str) -> list[tuple[int, int]]:
     return found
 
 
+_BEGINNING: Final = frozenset("\"'=/\r")  # what may go on over a line end, and what a comment may not stand behind
 _between: Final = Answered(_tokens_between, 2_000)

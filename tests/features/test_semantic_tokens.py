@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from feature_asserts import check_delta, check_tokens
+import random
+from collections.abc import Iterator
+
+import pytest
+from feature_asserts import check_delta, check_tokens, decoded
 
 from btq_lang.features.colours import Change, colours, delta
+from btq_lang.text import LINE_END, LineIndex, Span
+from btq_lang.token_list import tokens
+from btq_lang.tokens import COMMENT
 from btq_lang.workspace import Workspace
+
+AROUND_COMMENTS = (
+    *("\n#", "\n# why", "\n    # why", "# why", "//", "/*", "*/", "#", '"', "'", "(", ")", "{", "=", ":", "\n", "\r"),
+    *("\n\n", "    ", " ", "\u2028", "\xa0", "ä", "x", "30 s", "\nBehaviorTree M", "\n    Go", " (a = 1)"),
+    *("\nQualityReq r", "\n    takes at most 3 s"),
+)
 
 
 def test_a_tree() -> None:
@@ -82,6 +95,27 @@ def test_a_keyword_may_be_a_name() -> None:
         "class.definition satisfies",
         "function takes",
     )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_comments_are_those_of_the_text(seed: int) -> None:
+    chance = random.Random(seed)
+    for _ in range(300):
+        text = "".join(chance.choices(AROUND_COMMENTS, k=chance.randrange(2, 14)))
+        data = colours(Workspace.of({"main.btq": text}), "main.btq", "utf-16").data
+        found = [span for span, look in decoded(data, LineIndex(text), "utf-16") if look == "comment"]
+        assert found == [*comment_lines(text)], text
+
+
+def comment_lines(text: str) -> Iterator[Span]:
+    """The comments of a text, line by line."""
+    for token in tokens(text):
+        at = token.start
+        for line in LINE_END.split(token.text) if token.kind == COMMENT else ():
+            at = text.index(line, at)
+            if line:
+                yield Span(at, at + len(line))
+            at += len(line)
 
 
 def test_wide_characters_count_as_the_encoding_has_them() -> None:
