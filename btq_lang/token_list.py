@@ -18,32 +18,21 @@ if not COMPILED:
 def tokens(text: str) -> tuple[Token, ...]:
     """All tokens of a text, blanks and comments included, INDENT and DEDENT where blocks open and close."""
     lexer = Lexer(text)
+    comments = lexer.comments
     found: list[Token] = []
-    end = level = comment = 0
-
-    def fill(start: int) -> None:
-        """What the lexer passed over up to `start`: blanks, comments and characters that begin nothing."""
-        nonlocal end, comment
-        while comment < len(lexer.comments) and lexer.comments[comment][0] < start:
-            comment_start, comment_end = lexer.comments[comment]
-            found.extend(_pieces(text, end, comment_start))
-            found.append(Token(COMMENT, comment_start, text[comment_start:comment_end]))
-            end = comment_end
-            comment += 1
-        found.extend(_pieces(text, end, start))
-        end = start
-
+    end = level = told = 0
     while lexer.open_line():
         lexer.scan()
-        fill(lexer.starts[0])
+        told = _fill(found, text, end, lexer.starts[0], comments, told)
+        end = lexer.starts[0]
         step = INDENT if lexer.level > level else DEDENT
-        found += [Token(step, lexer.starts[0], "")] * abs(lexer.level - level)
+        found += [Token(step, end, "")] * abs(lexer.level - level)
         level = lexer.level
         for kind, start, raw in zip(lexer.kinds, lexer.starts, lexer.raws, strict=True):
-            fill(start)
+            told = _fill(found, text, end, start, comments, told)
             found.append(Token(kind, start, raw))
             end = start + len(raw)
-    fill(len(text))
+    _fill(found, text, end, len(text), comments, told)
     found += [Token(DEDENT, len(text), "")] * level
     return tuple(found)
 
@@ -71,6 +60,26 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
 
 def _start_of(piece: tuple[int, int, str]) -> int:
     return piece[1]
+
+
+def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], told: int) -> int:
+    """Add what the lexer passed over between two tokens: blanks, comments and characters that begin nothing.
+
+    Args:
+        told: how many of the comments were added before.
+
+    Returns:
+        How many are now.  (A function inside of `tokens` would hold all of these, compiled, until Python looks for
+        garbage.)
+    """
+    while told < len(comments) and comments[told][0] < start:
+        comment, behind = comments[told]
+        found += _pieces(text, end, comment)
+        found.append(Token(COMMENT, comment, text[comment:behind]))
+        end = behind
+        told += 1
+    found += _pieces(text, end, start)
+    return told
 
 
 def _pieces(text: str, start: int, end: int) -> list[Token]:

@@ -49,6 +49,33 @@ for line in sys.stdin:
 """
 
 
+LEFT_BEHIND = """
+import gc, sys
+from btq_lang.features.completion import complete
+from btq_lang.features.hover import hover
+from btq_lang.session import Session
+
+text, path, session = sys.stdin.read(), "/nowhere/main.btq", Session()
+session.open[path] = text
+session.reload()
+
+def key(place):
+    session.edit(path, text[:place] + "x" + text[place:])
+    session.findings(path)
+    session.let_go()
+    workspace = session.workspace_of(path)
+    complete(workspace, path, place)
+    hover(workspace, path, place)
+
+key(0)  # the first one imports
+gc.collect()
+gc.disable()
+for place in range(0, len(text), len(text) // 20):
+    key(place)
+print(gc.collect())
+"""
+
+
 def answers(package: Path, texts: list[str]) -> tuple[list[Path], list[str]]:
     """What the parser, the checks and the colours of a package say of each text, and where a module of each lies."""
     said = subprocess.run(
@@ -110,6 +137,17 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     assert len(pure) == len(by_compiled) == len(texts)
     for text, expected, found in zip(texts, pure, by_compiled, strict=True):
         assert found == expected, text
+
+
+def test_keys_and_questions_leave_nothing_to_the_garbage_collector(compiled: Path) -> None:
+    """mypyc makes a ring of every function inside of another one: what the outer one holds stays with it."""
+    for package in (ROOT, compiled):
+        command = [sys.executable, "-c", LEFT_BEHIND]
+        env = os.environ | {"PYTHONPATH": str(package)}
+        done = subprocess.run(
+            command, input=mission(100, 2, "short"), cwd=package, env=env, capture_output=True, text=True, check=True
+        )
+        assert done.stdout == "0\n", package
 
 
 def test_nothing_compiled_lies_in_the_checkout(compiled: Path) -> None:

@@ -111,8 +111,10 @@ class Nodes:
 
     def let_go(self, before: Nodes) -> None:
         """Let go of those trees of an earlier workspace that are not among these."""
-        for item in before._of_item.keys() - self._of_item.keys():
-            before._of_item[item].let_go()
+        replaced = before.trees if self.others is None else [one for one, _ in self.others]
+        for tree in replaced:
+            if self._of_item.get(id(tree.item)) is not tree:
+                tree.let_go()
 
     @cached_property
     def all(self) -> tuple[SourceNode, ...]:
