@@ -308,7 +308,7 @@ class File:
 
     @cached_property
     def includes(self) -> tuple[Include, ...]:
-        if "parsed" not in self.__dict__ and not may_include(self.text):
+        if not may_include(self.text):
             return ()
         return self.of_type(Include)
 
