@@ -351,11 +351,12 @@ class File:
 
 def _sharing(before: Parsed, now: Parsed, change: Span | None) -> Parsed:
     """The same, but where the item before the change was read again and says what it said, it is the same object: a
-    change in the first line of an item may touch the one before it."""
+    change in the first line of an item may touch the one before it.  Of an item that is the same all text up to the
+    next one is the same, too; so it is not where that has become a comment."""
     old, new = before.entries, now.entries
     at = bisect_right(old, change.start, key=_start_of) - 2 if change is not None else -1
-    is_first_one = 0 <= at < len(new) and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
-    if not is_first_one or new[at] != old[at]:
+    is_first_one = 0 <= at < len(new) - 1 and new[at] is not old[at] and (at == 0 or new[at - 1] is old[at - 1])
+    if not is_first_one or new[at + 1].start != old[at + 1].start or new[at] != old[at]:
         return now  # and those that are others stay in one row
     return Parsed(now.text, (*new[:at], old[at], *new[at + 1 :]), now.starts)
 

@@ -128,6 +128,23 @@ def test_wide_characters_count_as_the_encoding_has_them() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("before", "old", "new"),
+    [
+        ("signal a : m\nsignal b : m\n\nRoot X\n", "signal b", "# signal b"),
+        ("signal a : m\nsignal b : m\n\nRoot X\n", "signal b : m\n", ""),
+        ('include "a.btq"\ninclude "a.btq"\n\nRoot X\n', '\ninclude "a.btq"', ""),
+        ("BehaviorTree A\n    Go\nBehaviorTree B\n    Go\n", "BehaviorTree B\n    Go\n", "/* B */\n"),
+    ],
+)
+def test_what_stands_behind_an_item_becomes_another_text(before: str, old: str, new: str) -> None:
+    workspace = Workspace.of({"main.btq": before})
+    for text in (before, before.replace(old, new), before):
+        workspace = workspace.with_file("main.btq", text)
+        shown = colours(workspace, "main.btq", "utf-16").data
+        assert shown == colours(Workspace.of({"main.btq": text}), "main.btq", "utf-16").data
+
+
 def test_delta() -> None:
     one, two, three = [0, 0, 1, 1, 0], [1, 0, 1, 2, 0], [0, 5, 1, 3, 0]
     check_delta(one + two + three, one + two + three, None)
