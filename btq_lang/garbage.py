@@ -48,12 +48,15 @@ def keep_what_is_there() -> None:
 
 def collect_in_pause() -> None:
     """For a server that has nothing to do: what the last edits have left goes now, and not while somebody waits."""
-    young, older, _ = gc.get_count()
+    young, older, oldest = gc.get_count()
     if young > _ENOUGH:
-        gc.collect(1 if older > _OFTEN else 0)
+        gc.collect(0 if older <= _OFTEN else 1 if oldest <= _NOW_AND_THEN else 2)
 
 
 _SELDOM: Final = (20_000, 50, 10)
 _IN_PAUSES: Final = (100_000, 50, 10)  # not reached in 900 keys that nobody paused between
 _ENOUGH: Final = 4_000  # objects, of some 50 edits: what is found of fewer would be looked at too often
 _OFTEN: Final = 20  # pauses, after which what was in use in one of them may be garbage
+_NOW_AND_THEN: Final = (
+    5  # times as many pauses, after which all is looked through that came since the server has settled
+)

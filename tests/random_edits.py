@@ -77,7 +77,8 @@ PIECES = (
     "\u2028",
 )
 MOST = 1_500
-EVERYTHING, MEMORY = 100, 500
+EVERYTHING, MEMORY = 100, 500  # after so many edits
+WHOLE_LINES = 0.05  # of the edits: a line is taken out, or made a comment
 
 
 class Drift:
@@ -124,6 +125,9 @@ class Drift:
         at = self.chance.randrange(len(text) + 1)
         end = min(at + self.chance.choice((0, 0, 0, 0, 1, 1, 2, 5, 30)), len(text))
         piece = self.chance.choice(PIECES)
+        if self.chance.random() < WHOLE_LINES:
+            at = text.rfind("\n", 0, at) + 1
+            end, piece = self.chance.choice(((at, "# "), (text.find("\n", at) + 1 or len(text), "")))
         self.texts[name] = text[:at] + piece + text[end:]
         lines = LineIndex(text)
         places = [lines.position(offset, "utf-16") for offset in (at, end)]

@@ -267,6 +267,6 @@ def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
             check_again(workspace, "/p/main.btq", answers)
             answers.let_go()
         kinds = [type(each) for each in gc.get_objects()]
-        assert (kinds.count(Demanded), kinds.count(Budgets)) == (1, 1)
+        assert (kinds.count(Demanded), kinds.count(Budgets)) == (0, 0)
     finally:
         gc.enable()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import random
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -248,6 +250,29 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert list(session.edit(skills, SKILLS.replace("Move", "Drive"))) == linked
     assert list(session.edit(skills, SKILLS)) == linked
     assert session.close(skills) == (skills,)
+
+
+def test_what_edits_replace_goes_at_once(folder: Path) -> None:
+    main = f"{folder}/main.btq"
+    session = session_of(folder, {})
+
+    def rounds(start: int) -> Counter[str]:
+        """Names that come and go, and includes; what there is of each kind of object in the end."""
+        for number in range(start, start + 20):
+            for text in (MAIN.replace("Carry", f"Carry{number}"), MAIN.replace("include", "# include", 1), MAIN):
+                for path in session.edit(main, text):
+                    session.diagnostics(path)
+                session.let_go()
+        kinds = Counter(type(each).__name__ for each in gc.get_objects())
+        return Counter({name: kinds[name] for name in ("File", "Workspace", "TreeNodes", "Table", "View", "set")})
+
+    rounds(0)
+    gc.collect()
+    gc.disable()
+    try:
+        assert rounds(20) == rounds(40)
+    finally:
+        gc.enable()
 
 
 def test_a_misspelt_include_brings_its_file_whatever_else_the_text_says(folder: Path) -> None:

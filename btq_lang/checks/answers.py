@@ -103,6 +103,8 @@ class Answers:
             self._answers, self._askers, self._look_ups, self._named = {}, {}, set(), {}
             self._outermost, self._tables, self._restless = set(), set(), set()
             self._known_of, self._each = {}, {}
+            if self.resolved is not None:
+                self.resolved.end()
             self.told, self.resolved = {}, None
         touched = {name for each, file in files.items() for name in _touched(self._files.get(each, file), file)}
         self._left = old
@@ -294,8 +296,10 @@ class Answers:
         self._known_of.pop(question[0], None)
         if known.asked is None:
             self._look_ups.discard(question)
-            if question[1:] in self._named:
-                self._named[question[1:]].discard(question)
+            if (of_name := self._named.get(question[1:])) is not None:
+                of_name.discard(question)
+                if not of_name:
+                    del self._named[question[1:]]
             return ()
         return known.asked
 

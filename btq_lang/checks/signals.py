@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from btq_lang.checks.writers import Entries
     from btq_lang.requirements import Memory
-    from btq_lang.requirements.memory import Table
     from btq_lang.requirements.model import Signal
 
 _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
@@ -34,7 +33,7 @@ def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> I
     if not here:
         return
     entries = demanded.entries
-    yield from _never_written(demanded, here, entries, guards, memory.table("near", demanded))
+    yield from _never_written(demanded, here, entries, guards, memory)
     yield from _of_text(demanded, here, entries)
 
 
@@ -54,7 +53,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
 
 
 def _never_written(
-    demanded: Demanded, here: list[Signal], entries: list[Entries], guards: list[Guard], table: Table
+    demanded: Demanded, here: list[Signal], entries: list[Entries], guards: list[Guard], memory: Memory
 ) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
     same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
@@ -69,6 +68,7 @@ def _never_written(
     guarding = {signal.name for signals, _ in guards for signal in signals}
     unwritten = [signal for signal in here if (signal.key or "").removeprefix("@") not in written]
     keys = [(signal.key or "").removeprefix("@") for signal in unwritten]
+    table = memory.table("near", demanded)
     near_keys = table.all(unwritten, [written] * len(unwritten), lambda at: near(keys[at], written))
     likely_keys = dict(zip(keys, near_keys, strict=True))
     for signal in here:

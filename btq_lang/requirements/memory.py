@@ -85,6 +85,11 @@ class Memory:
         Of a large file that takes as long as a tenth of what an edit does."""
         self._tables_before = {}
 
+    def end(self) -> None:
+        """Nobody asks for any of it any more."""
+        for tree in self.nodes.trees if self.nodes is not None else ():
+            tree.let_go()
+
     def once(self, name: str, made_of: tuple[object, ...], make: Callable[[], T]) -> T:
         """What was made before, if that was of these very objects."""
         known = self._made.get(name)
@@ -134,7 +139,7 @@ class Table:
         self._asked: list[tuple[Question, ...]] = []  # for each of them
         self._made: list[Any] = []
         self._places: dict[int, int] | None = None  # of the owners before, by their `id`s, once somebody asks
-        self._asker = asker
+        self._asker: Asker | None = asker  # until all is asked for: it knows what knows this table
         self._before: Table | None = before
         self._changed: set[Question] = set()
         self._most: int = before._most if before is not None else 0
@@ -163,7 +168,8 @@ class Table:
             made_of: what else it is made of.
             make: is told which owner it is, counted from 0.
         """
-        before, count = self._before, len(owners)
+        before, count, asker = self._before, len(owners), self._asker
+        assert asker is not None, "all is asked for once"
         self._owners, self._made_of = owners, made_of
         if before is not None and len(before._owners) == count:
             self._asked, self._made = before._asked, before._made  # which nobody asks for these any more
@@ -182,13 +188,13 @@ class Table:
             ):
                 self._asked[at], self._made[at] = before._asked[was], before._made[was]
                 continue
-            self._asker.noted = {}
+            asker.noted = {}
             self._made[at] = make(at)
-            self._asked[at] = tuple(self._asker.noted)
-            self.answers.update(self._asker.noted)
+            self._asked[at] = tuple(asker.noted)
+            self.answers.update(asker.noted)
             if self.others is not None:
                 self.others.append(at)
-        self._before = None
+        self._before = self._asker = None
         return self._made
 
     @property
