@@ -68,6 +68,8 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     foreign = next((place.path for place in places if not is_btq(place.path)), None)
     if foreign is not None:  # a node without a model means the same in files that know nothing of each other
         return Refusal(f"`{wanted.name}` stands in {foreign}, too, which is no .btq file")
+    if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
+        return Refusal("names in scripts hold only the letters A to Z, digits and `_`")
     reasons: list[str] = []
     for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
@@ -125,6 +127,12 @@ def _unfit(wanted: Subject, name: str) -> str:
     if wanted.what is What.INSTANCE and (problem := instance_name_problem(name)):
         return f"the engine refuses the name: {problem}"
     return ""
+
+
+def _is_in_script(mention: Mention) -> bool:
+    """Whether it is an entry's name in a script, and neither a value by itself nor in braces."""
+    text = mention.word.text
+    return mention.what is What.KEY and text != mention.name and not text.startswith("{")
 
 
 def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool) -> Iterator[Edit]:

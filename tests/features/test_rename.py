@@ -121,6 +121,11 @@ def test_no_rename(text: str, reason: str) -> None:
         ),
         ("BehaviorTree Main\n    Pi$0ck\n", "Retry", "`Retry` is a node of the engine"),
         ("BehaviorTree Main\n    Pi$0ck\n", "my node", "the engine refuses the name: it contains a blank"),
+        (
+            "BehaviorTree Main\n    ->\n        Pick (to = {wo$0rk})\n        Script (code = \"work := 'x'\")\n",
+            "wörk",
+            "names in scripts hold only the letters A to Z, digits and `_`",
+        ),
         ("signal sp$0eed : m/s\n", "top speed", "a signal is a plain name: letters, digits and `_`"),
         ("signal v : m/s\ncontext c : v$0 > 0\n", "not", "`not` would be read as something else here"),
         (
