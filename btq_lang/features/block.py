@@ -5,6 +5,7 @@ One invariant: what stands in a string or a comment over several lines keeps its
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from btq_lang.file import File
@@ -89,6 +90,12 @@ def blanks_before(text: str, start: int) -> str:
     return line[: len(line) - len(line.lstrip(" \t"))]
 
 
+def deeper(text: str, blanks: str) -> str:
+    """One level below a line that begins with these; if with none, in the characters of the first line with some."""
+    indented = _INDENTED.search(text) if not blanks else None
+    return blanks + ("\t" if "\t" in (indented[1] if indented else blanks) else STEP)
+
+
 def _line_starts(file: File, span: Span) -> list[int]:
     """The starts of the lines in a stretch, but of those that begin inside a text."""
     texts = [
@@ -107,3 +114,6 @@ def _line_start(text: str, offset: int) -> int:
 def _line_end(text: str, offset: int) -> int:
     found = LINE_END.search(text, offset)
     return found.start() if found else len(text)
+
+
+_INDENTED = re.compile(r"[\r\n]([ \t])[ \t]*[^\s]")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.features.block import STEP
+from btq_lang.features.block import deeper
 from btq_lang.features.meaning import at, everywhere, subject
 from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
 from btq_lang.mentions import What
@@ -35,14 +34,14 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
             return ()
         wanted = line_blanks(text, place.words[0].start)
     elif place.words and place.depth:
-        wanted = _deeper(text, line_blanks(text, place.words[0].start))
+        wanted = deeper(text, line_blanks(text, place.words[0].start))
     else:
         above = _line_above(workspace, path, start)
         if not above:
             return ()
         wanted = line_blanks(text, above[0].start)
         if _opens(workspace, path, above):
-            wanted = _deeper(text, wanted)
+            wanted = deeper(text, wanted)
     line = text[start:]
     blanks = line[: len(line) - len(line.lstrip(" \t"))]
     return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
@@ -61,12 +60,6 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
     text = workspace.files[path].text
     same = all(one.path == path and text[one.span.start : one.span.end] == wanted.name for one in places)
     return tuple(one.span for one in places) if same and len(places) > 1 else ()
-
-
-def _deeper(text: str, blanks: str) -> str:
-    """One level below a line that begins with these; if with none, in the characters of the first line with some."""
-    indented = _INDENTED.search(text) if not blanks else None
-    return blanks + ("\t" if "\t" in (indented[1] if indented else blanks) else STEP)
 
 
 def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:
@@ -100,5 +93,4 @@ def _opens(workspace: Workspace, path: str, words: tuple[Token, ...]) -> bool:
     return isinstance(target, Model) and target.category.raw in ("Control", "Decorator")
 
 
-_INDENTED = re.compile(r"[\r\n]([ \t])[ \t]*[^\s]")
 _OPENERS = frozenset(("BehaviorTree", "TreeNodesModel"))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.features.block import STEP, Standing, block_of, moved, node_at, shifts
+from btq_lang.features.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
 from btq_lang.file import File
@@ -240,9 +240,13 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
                 continue
             if not entry.start + requirement.start <= offset <= entry.start + requirement.end:
                 continue
+            if quality is not None and workspace.scope(path).is_repeated(Kind.REQUIREMENT, requirement.name.text):
+                continue  # the item says its quality, which the other places leave to what encloses them
             name = _written(requirement.name.text)
-            item = _item(file, entry, requirement, quality.path if quality else None)
-            put = Edit(Span(tree.start, tree.start).shifted(entry.start), f"{item}\n\n")
+            start = entry.start + tree.start
+            margin = blanks_before(file.text, start)  # in a Root block, items are indented
+            item = _item(file, entry, requirement, quality.path if quality else None, margin)
+            put = Edit(Span(start, start), f"{item}\n\n{margin}")
             if quality is None:
                 refer = Edit(Span(requirement.start, requirement.end).shifted(entry.start), name)
             else:
@@ -264,7 +268,8 @@ def _defined_in(clause: object) -> Iterator[tuple[Requirement, Quality | None]]:
         yield from ((one, quality) for quality in clause.qualities for one in quality.requirements)
 
 
-def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPath | None) -> str:
+def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPath | None, margin: str) -> str:
+    """The requirement as an item.  margin: what its first line is to stand behind, and the others begin with."""
     assert requirement.name is not None, "what has no name cannot be referred to"
     path = requirement.quality or quality
     shown = f" : {'.'.join(_written(name.text) for name in path.names)}" if path is not None else ""
@@ -274,7 +279,8 @@ def _item(file: File, entry: Entry, requirement: Requirement, quality: QualityPa
         parameters = f"({file.text[entry.start + first : last]})"
     text = f" {quote(' '.join(requirement.text.text.split()))}" if requirement.text is not None else ""
     lines = [f"QualityReq {_written(requirement.name.text)}{parameters}{shown}{text}"]
-    lines += [f"{STEP}{_clause(file, entry, clause)}" for clause in requirement.clauses]
+    blanks = deeper(file.text, margin)
+    lines += [f"{blanks}{_clause(file, entry, clause)}" for clause in requirement.clauses]
     return "\n".join(lines)
 
 

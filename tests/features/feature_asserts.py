@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
+from pathlib import Path
 from textwrap import dedent
 
 from check_asserts import split_files
 
+from btq_lang.checks import check
 from btq_lang.features.actions import Action, code_actions
 from btq_lang.features.calls import called, callers, prepare_calls
 from btq_lang.features.colours import colours, difference
@@ -34,9 +37,11 @@ from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import encoded_within, groups, stretch_of
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
+from btq_lang.loader import open_workspace
 from btq_lang.parser import parse
 from btq_lang.project import Project
-from btq_lang.text import Encoding, LineIndex, Position, Span, apply_edits
+from btq_lang.rules import Severity
+from btq_lang.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.token_list import tokens as tokens_of
 from btq_lang.workspace import Workspace
 
@@ -359,6 +364,33 @@ def check_actions(text: str, *titles: str, only: tuple[str, ...] = ()) -> None:
 def check_no_action(text: str, title: str) -> None:
     """Nothing whose title begins so is offered."""
     assert not [one.title for one in _actions(Fixture(text)) if one.title.startswith(title)]
+
+
+def check_all_actions(example: Path, title: str, *severities: Severity) -> list[str]:
+    """Whatever begins so and is offered on any line of an example: with it no file has more findings of these
+    severities than before.
+
+    Returns:
+        the titles, in the order of the text.
+    """
+    workspace = open_workspace(str(example.parent))
+    path = str(example)
+    text = workspace.files[path].text
+    before = _findings(workspace, severities)
+    offered: dict[tuple[str, tuple[Edit, ...]], None] = {}
+    for line in re.finditer(r"\S.*", text):
+        for offset in line.span():
+            found = code_actions(workspace, path, Span(offset, offset), ("refactor",), ())
+            offered.update(((one.title, one.edits[path]), None) for one in found if one.title.startswith(title))
+    for named, edits in offered:
+        after = _findings(workspace.with_file(path, apply_edits(text, edits)), severities)
+        assert after <= before, (named, after - before)
+    return [named for named, _ in offered]
+
+
+def _findings(workspace: Workspace, severities: tuple[Severity, ...]) -> Counter[str]:
+    found = (one for path in workspace.files for one in check(workspace, path))
+    return Counter(one.rule for one in found if one.effective_severity in severities)
 
 
 def _actions(fixture: Fixture, only: tuple[str, ...] = ()) -> tuple[Action, ...]:

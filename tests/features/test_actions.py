@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
-from feature_asserts import check_action, check_actions, check_no_action
+from feature_asserts import check_action, check_actions, check_all_actions, check_no_action
+
+from btq_lang.rules import Severity
+
+FOLDER = Path(__file__).resolve().parents[2] / "examples"
+EXAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))
 
 
 def test_fixes_of_diagnostics() -> None:
@@ -220,6 +227,30 @@ def test_lift_a_classic_requirement() -> None:
             )
         """,
     )
+
+
+@pytest.mark.parametrize(("item", "step"), [("    ", "    "), ("\t", "\t"), ("", "\t")])
+def test_lift_to_where_the_tree_stands(item: str, step: str) -> None:
+    """In a Root block all items are indented; the clauses are so in the characters of the file."""
+    node = item + step + step
+    tree = f"{item}BehaviorTree Main\n{item}{step}->\n{node}Wave satisfies {{}}\n{node}SubTree Other\n"
+    after = f"{item}BehaviorTree Other\n{item}{step}Wave\n"
+    check_action(
+        "Root Main\n" + tree.format('QualityReq r$0 : safety "x" takes at most 3 s') + after,
+        "Lift `r` to the file's level",
+        f'Root Main\n{item}QualityReq r : safety "x"\n{item}{step}takes at most 3 s\n\n{tree.format("r")}{after}',
+    )
+
+
+def test_lifts_in_examples() -> None:
+    lifted = [title for example in EXAMPLES for title in check_all_actions(example, "Lift", Severity.ERROR)]
+    assert lifted == [f"Lift `rq{number}` to the file's level" for number in (1, 2, 3)]
+
+
+def test_what_is_not_lifted() -> None:
+    """A quality that encloses one of two definitions: as an item it would say more than the other one."""
+    wave = 'Wave (satisfices Quality = safety (QualityReq ID = "{}" description = "d"))'
+    check_no_action(f"BehaviorTree Main\n    ->\n        {wave.format('r$0')}\n        {wave.format('r')}\n", "Lift")
 
 
 def test_the_short_form_of_a_node() -> None:
