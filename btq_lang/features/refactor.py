@@ -7,18 +7,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from btq_lang.catalog.nodes import lookup
+from btq_lang.catalog.names import legal_name
+from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
+from btq_lang.checks.lookups import taken_names
 from btq_lang.features.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
 from btq_lang.file import File
 from btq_lang.mentions import Mention, What
 from btq_lang.name_kinds import Kind
+from btq_lang.placeholders import is_placeholder
 from btq_lang.record import Record
+from btq_lang.requirements import requirements
+from btq_lang.requirements.model import Span as Time
 from btq_lang.syntax import (
+    Between,
+    Claim,
     Clause,
     Entry,
     Node,
+    OnViolation,
     Quality,
     QualityPath,
     Requirement,
@@ -29,7 +37,7 @@ from btq_lang.syntax import (
     quote,
 )
 from btq_lang.text import Edit, Position, Span
-from btq_lang.tokens import BRACED
+from btq_lang.tokens import BRACED, NODE_CLAUSES
 from btq_lang.workspace import Workspace
 
 
@@ -66,7 +74,7 @@ def _extract(workspace: Workspace, path: str, standing: Standing) -> Iterator[Re
         return
     file = workspace.files[path]
     keys = _keys_in(workspace, path, entry, node)
-    if keys is None:
+    if keys is None or _parts_a_time(workspace, path, node):
         return
     name = _free_name(workspace, path, node)
     block = block_of(file, entry, node)
@@ -107,13 +115,51 @@ def _way(workspace: Workspace, path: str, mention: Mention) -> str:
 
 
 def _free_name(workspace: Workspace, path: str, node: Node) -> str:
-    base = node.name.text if node.name is not None and is_name(node.name.text) else "Extracted"
-    taken = {*workspace.scope(path).names(Kind.TREE), *workspace.scope(path).names(Kind.MODEL)}
-    taken |= {each.id.text for entry in _trees(workspace.files[path]) for each in entry.walk() if each.id is not None}
+    """The node's name, made one that the engine takes for a tree; where it has none, or it is a skill's, `Extracted`.
+    It is free in all files of the mission, for a build puts their trees and nodes side by side."""
+    own = node.name.text if node.name is not None and not is_placeholder(node) else ""
+    base = legal_name(own) if is_name(own) else "Extracted"
+    taken = {*taken_names(workspace, path, ""), *NODE_CLAUSES}  # a clause behind SubTree is one, and no name
+    taken.update(*(_names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))
     name, number = base, 2
     while name in taken or lookup(name) is not None:
         name, number = f"{base}{number}", number + 1
     return name
+
+
+def _names_of_nodes(file: File) -> set[str]:
+    """The IDs of a file's nodes and of the trees that it runs, and those that its placeholders become."""
+    found = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
+    if not found.isdisjoint(PLACEHOLDERS):  # else its tree is not asked for: it may have been let go
+        nodes = (node for tree in _trees(file) for node in tree.walk() if is_placeholder(node))
+        found |= {legal_name(node.name.text) for node in nodes if node.name is not None}
+    return found
+
+
+def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
+    """Whether a build enforces the time between two nodes, and only one of them is among those below a node: in
+    another tree than the other one, no node would be left whose time that is."""
+    inside = {id(node) for node in top.walk()}
+    return any(
+        len({id(node.node) in inside for node in applied.nodes}) > 1
+        for each in workspace.linked(path)
+        if _has_hard_span(workspace.files[each])
+        for applied in requirements(workspace, each).applied
+        if isinstance(applied.subject, Time) and applied.requirement.action in _ENFORCED
+    )
+
+
+def _has_hard_span(file: File) -> bool:
+    """Whether a requirement in a file enforces a time between two events: few do, and all others are not resolved."""
+    if "violation" not in file.text:
+        return False
+    targets = (symbol.target for symbol in file.names.symbols[Kind.REQUIREMENT])
+    clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
+    return any(
+        any(isinstance(one, Claim) and isinstance(one.subject, Between) for one in each)
+        and any(isinstance(one, OnViolation) and one.action and one.action.text in _ENFORCED for one in each)
+        for each in clauses
+    )
 
 
 def _trees(file: File) -> Iterator[Tree]:
@@ -127,6 +173,9 @@ def _item_end(file: File, entry: Entry) -> int:
     end = max([tree.end, *(child.block_end for child in tree.children if isinstance(child, Node))])
     line = file.lines.position(entry.start + end).line
     return file.lines.offset(Position(line, len(file.lines.line(line))))
+
+
+_ENFORCED = ("fail", "halt")
 
 
 # ---- a subtree put in ----

@@ -125,6 +125,58 @@ def test_extract_gives_a_free_name() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("node", "name"),
+    [
+        ('$0ScriptAction (name = "Drive")', "Extracted"),  # which becomes the node Drive
+        ("-> $0Ready?", "Ready"),
+        ("-> $0Root", "Root_"),
+        ("-> $0Drive", "Drive2"),
+        ("-> $0Pick", "Pick2"),
+        ("-> $0Look_there", "Look_there2"),
+        ("-> $0Home", "Home2"),
+        ("-> $0Sequence", "Sequence2"),
+        ('-> $0"tags"', "tags2"),
+    ],
+)
+def test_extract_gives_a_name_that_no_check_complains_of(node: str, name: str) -> None:
+    """Nor in a file that includes this one, which has nodes, a skill in the classic form and a tree."""
+    including = (
+        '//- mission.btq\ninclude "main.btq"\nRoot Home\nBehaviorTree Home\n    ->\n        Pick\n'
+        '        ScriptAction (name = "Drive")\n        ScriptAction (name = "Look there")\n        SubTree Main\n'
+    )
+    check_actions(
+        f"//- main.btq\nBehaviorTree Main\n    ->\n        {node}\n            Wait\n{including}",
+        f"Extract into the tree `{name}`",
+        only=("refactor.extract",),
+    )
+
+
+def test_extractions_in_examples() -> None:
+    problems = (Severity.ERROR, Severity.WARNING)
+    found = {example.name: check_all_actions(example, "Extract", *problems) for example in EXAMPLES}
+    named = [title.split("`")[1] for title in found["inspector.qualitybtcpp"]]
+    assert named == ["Extracted", "Pumps", *["Extracted"] * 7]
+
+
+def test_a_time_that_is_enforced_is_not_parted() -> None:
+    """A build puts it around the Sequence that begins and ends with its nodes; what is monitored may be parted."""
+    for action, first in (("fail", ()), ("halt", ()), ("log", ("Extract into the tree `Extracted`",))):
+        text = (
+            "Root Main\n"
+            'QualityReq r "x"\n    from Pick starts to Place succeeds takes at most 9 s\n'
+            f"    on violation {action}\n"
+            "BehaviorTree Main\n    ->\n        Wait\n        -> All\n"
+            "            Pick\n            Move\n            Place\n"
+        )
+        check_actions(text.replace("  Pick", "  Pi$0ck"), *first, only=("refactor.extract",))
+        check_actions(text.replace("  Place", "  Pl$0ace"), *first, only=("refactor.extract",))
+        check_actions(
+            text.replace("  Move", "  Mo$0ve"), "Extract into the tree `Extracted`", only=("refactor.extract",)
+        )
+        check_actions(text.replace("-> All", "-> A$0ll"), "Extract into the tree `All`", only=("refactor.extract",))
+
+
 def test_what_cannot_be_extracted() -> None:
     check_no_action("BehaviorTree Main\n    Pi$0ck\n", "Extract")
     check_no_action("BehaviorTree Main\n    ->\n        SubTree Do$0ck\n", "Extract")
