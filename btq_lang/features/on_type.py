@@ -8,6 +8,7 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.features.block import deeper
 from btq_lang.features.meaning import at, everywhere, subject
 from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
+from btq_lang.file import File
 from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model
@@ -19,17 +20,23 @@ from btq_lang.workspace import Workspace
 def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[Edit, ...]:
     """What to change after a character was typed: the blanks that the line of the offset begins with.
 
-    A new line goes one level deeper behind what opens a block, a tree, a requirement, a control or a decorator, and in
-    brackets; else it stands as the line above.  A level is a tab where the file is indented with tabs, whatever the
-    editor would rather: the language takes no mixture.  A `)` that begins a line stands as the line that opened the
-    brackets.
+    A new line, or the rest of one that was parted, goes one level deeper behind what opens a block, a tree, a
+    requirement, a control or a decorator, and in brackets; else it stands as the line above.  A line that was only
+    moved down stands as before, for its indentation says what it belongs to.  A level is a tab where the file is
+    indented with tabs, whatever the editor would rather: the language takes no mixture.  A `)` that begins a line
+    stands as the line that opened the brackets.
     """
     text = workspace.files[path].text
     start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
     place = place_at(workspace, path, offset)
     if place.inside != "code":
         return ()
-    if typed == ")":
+    line = text[start:]
+    blanks = line[: len(line) - len(line.lstrip(" \t"))]
+    moved_from = _moved_from(workspace.files[path], start) if typed == "\n" else None
+    if moved_from is not None:
+        wanted = blanks if offset > start else moved_from + blanks  # it is the editor that indented, or nobody
+    elif typed == ")":
         if text[start:offset].strip() != ")" or not place.words:
             return ()
         wanted = line_blanks(text, place.words[0].start)
@@ -42,8 +49,6 @@ def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[E
         wanted = line_blanks(text, above[0].start)
         if _opens(workspace, path, above):
             wanted = deeper(text, wanted)
-    line = text[start:]
-    blanks = line[: len(line) - len(line.lstrip(" \t"))]
     return (Edit(Span(start, start + len(blanks)), wanted),) if blanks != wanted else ()
 
 
@@ -60,6 +65,14 @@ def linked_ranges(workspace: Workspace, path: str, offset: int) -> tuple[Span, .
     text = workspace.files[path].text
     same = all(one.path == path and text[one.span.start : one.span.end] == wanted.name for one in places)
     return tuple(one.span for one in places) if same and len(places) > 1 else ()
+
+
+def _moved_from(file: File, start: int) -> str | None:
+    """Where Enter was typed in front of all words of a line: the blanks that it left on the line above; None where it
+    parted a line between words, or made an empty one."""
+    number = file.lines.position(start).line
+    above = file.lines.line(number - 1) if number else ""
+    return None if above.strip() or not file.lines.line(number).strip() else above
 
 
 def _line_above(workspace: Workspace, path: str, start: int) -> tuple[Token, ...]:

@@ -39,6 +39,27 @@ from feature_asserts import check_linked, check_typed
         ("BehaviorTree Main\n\t->\n\t    $0", "BehaviorTree Main\n\t->\n\t\t"),
         ("BehaviorTree Main\n\tPick (\n        $0", "BehaviorTree Main\n\tPick (\n\t\t"),
         ("BehaviorTree A\n\tPick\nBehaviorTree B\n    $0", "BehaviorTree A\n\tPick\nBehaviorTree B\n\t"),
+        # A line that was parted between its words, one that was only moved down, and one that the editor indented.
+        ("BehaviorTree Main\n    ->\n    $0Pick\n", "BehaviorTree Main\n    ->\n        Pick\n"),
+        (
+            "BehaviorTree Main\n    ->\n        Inverter\n            Pick\n\n$0        ->\n            Place\n",
+            "BehaviorTree Main\n    ->\n        Inverter\n            Pick\n\n        ->\n            Place\n",
+        ),
+        (
+            "BehaviorTree A\n    ->\n        Pick\n\n$0# The other one.\nBehaviorTree B\n    Place\n",
+            "BehaviorTree A\n    ->\n        Pick\n\n# The other one.\nBehaviorTree B\n    Place\n",
+        ),
+        (
+            "BehaviorTree Main\n    ->\n        Retry\n            Pick\n     \n$0   Place\n",
+            "BehaviorTree Main\n    ->\n        Retry\n            Pick\n     \n        Place\n",
+        ),
+        (
+            "BehaviorTree Main\n    ->\n        \n        $0Pick\n",
+            "BehaviorTree Main\n    ->\n        \n        Pick\n",
+        ),
+        ("BehaviorTree Main\n    ->\n    \n        $0Pick\n", "BehaviorTree Main\n    ->\n    \n        Pick\n"),
+        ("BehaviorTree Main\n    Pick (\n\n$0    a = 1\n)\n", "BehaviorTree Main\n    Pick (\n\n    a = 1\n)\n"),
+        ("\r\n$0Root A\r\n", "\r\nRoot A\r\n"),
         # Not inside texts.
         ('BehaviorTree Main\n    Pick (a = "x\n$0y")\n', 'BehaviorTree Main\n    Pick (a = "x\ny")\n'),
     ],
