@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from btq_lang.claims import HAPPENINGS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.conditions import COMPARISONS
-from btq_lang.record import Record
-from btq_lang.tokens import BRACED, CLOSE, NAME, NUMBER, QUANTITY, STRING, Token
+from btq_lang.conditions import COMPARISONS, FUNCTIONS
+from btq_lang.record import Record, replace
+from btq_lang.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 
 
 class Expected(Record):
@@ -37,6 +37,9 @@ def expected(words: Sequence[Token]) -> Expected:
     """What may follow these words of a requirement or a condition."""
     if not words:
         return Expected(clause=True)
+    opened = next((index for index in reversed(range(len(words))) if words[index].kind == OPEN), None)
+    if opened is not None:
+        return _in_brackets(words, opened)
     last = words[-1]
     before = words[-2].text if len(words) > 1 else ""
     earlier = [word.text for word in words]
@@ -62,6 +65,41 @@ def expected(words: Sequence[Token]) -> Expected:
     return Expected(clause=True)
 
 
+def opens_condition(words: Sequence[Token]) -> bool:
+    """Whether a bracket behind these words is one of a condition: around a part of it, or behind a function."""
+    if words and words[-1].kind == OPEN:
+        return True
+    if not any(word.text in _BEFORE_CONDITIONS for word in words):
+        return False
+    wanted = _at_bracket(words[:-1] if _is_function(words[-1]) else words)
+    return wanted.condition or wanted.operand
+
+
+def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
+    """What may follow in the brackets of a condition that were opened last: no clause, for they are still open."""
+    is_behind = opened < len(words) - 1
+    if opened and _is_function(words[opened - 1]):
+        return Expected(signal=not is_behind)
+    if not is_behind:
+        return _at_bracket(words)
+    wanted = replace(expected([word for word in words if word.kind != OPEN]), clause=False)
+    return replace(wanted, words=_BEHIND_OPERAND) if "else" in wanted.words else wanted
+
+
+def _at_bracket(words: Sequence[Token]) -> Expected:
+    """What may stand in a bracket behind these words of a condition, that of which it is a part."""
+    end = len(words)
+    while end and words[end - 1].kind == OPEN:
+        end -= 1
+    if words[0].text == "context" and words[end - 1].text == ":":
+        return _CONDITION
+    return expected(words[:end])
+
+
+def _is_function(word: Token) -> bool:
+    return word.kind == NAME and word.text in FUNCTIONS
+
+
 def sorted_words(words: Sequence[str] | frozenset[str]) -> tuple[str, ...]:
     return tuple(sorted(words))
 
@@ -84,7 +122,7 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     if head == "over":
         return sorted_words(EXPERIMENTS)
     if head in _CONDITIONS:
-        return ("and", "or", "<=", ">=", "<", ">", "==", "!=")
+        return _BEHIND_OPERAND
     if "if" in words:
         return ("and", "or", "else")
     return ("if",) if head in ("takes", "succeeds", "goal") else ()
@@ -96,6 +134,8 @@ def _last_index(words: Sequence[str], word: str) -> int:
 
 _BOUNDS = ("at most", "at least", "less than", "more than", "between")
 _CONDITIONS = ("needs", "keeps", "never", "leaves", "while", "when", "context")
+_BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
+_BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 _EVENTS = ("follows", "after", "from", "to")
 _CLAUSES = (
     *("takes", "succeeds", "uses", "tries", "runs", "starts", "ends", "follows", "in", "with", "confidence", "over"),

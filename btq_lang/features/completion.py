@@ -169,7 +169,9 @@ def _in_code(workspace: Workspace, path: str, place: Place, offset: int) -> Iter
         yield from _line_heads(workspace, path, place)
         return
     first = words[0].text if words[0].kind == NAME else ""
-    if place.block in ("items", "models"):
+    if place.is_of_parameters:
+        yield from offer.units_of_names() if place.last == ":" else ()
+    elif place.block in ("items", "models"):
         yield from _in_item(workspace, path, place, first)
     elif place.block == "ports":
         yield from offer.port_words(place)
@@ -223,8 +225,7 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
 
 def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
     if last == ":":
-        yield from offer.units(Measured())
-        yield from offer.words(("bool", "text", "1"), "unit")
+        yield from offer.units_of_names()
     elif len(place.words) >= 4:
         given = {word.text for word in place.words}
         wanted = (word for word in ("from {}", "level", "counter", "gauge", "fresh within", "initially"))

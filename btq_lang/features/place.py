@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
+from btq_lang.features.clause_words import opens_condition
 from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.syntax import unquote
@@ -56,7 +57,7 @@ class Place(Record):
             (of a requirement).
         parent: the words of the line that opened the block; none for the file's own.
         words: the words of the logical line before the one that is being typed.
-        group: those in the innermost open brackets.
+        group: those in the innermost open brackets; brackets of a condition are words of it as others are.
         depth: how many brackets are open.
         callee: the name behind which the innermost brackets were opened, where they are no node's.
         node: the node in whose brackets or behind whose kind one is; None at the start of a line.
@@ -80,6 +81,12 @@ class Place(Record):
         if len(self.group) >= 2 and self.group[-1].text == "=" and self.depth:
             return word_text(self.group[-2])
         return None
+
+    @property
+    def is_of_parameters(self) -> bool:
+        """Whether the innermost brackets are those of a requirement's parameters: `QualityReq slow(limit : m/s)`."""
+        head = len(self.words) - _length(self.words) - 3 if self.depth else -1
+        return head >= 0 and self.words[head].text == "QualityReq"
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -161,21 +168,20 @@ def words_before(tokens: Sequence[Token], index: int) -> tuple[Token, ...]:
 
 
 def _innermost(words: tuple[Token, ...]) -> tuple[tuple[Token, ...], int]:
-    """The words in the innermost brackets that are open, and how many are."""
-    opened: list[int] = []
-    for index, word in enumerate(words):
+    """The words in the innermost brackets that are open, those of conditions left aside, and how many are open."""
+    opened: list[list[Token]] = [[]]
+    of_condition: list[bool] = []
+    for word in words:
         if word.kind == OPEN:
-            opened.append(index)
-        elif word.kind == CLOSE and opened:
+            of_condition.append(opens_condition(opened[-1]))
+            opened.append([*opened[-1], word] if of_condition[-1] else [])
+        elif word.kind != CLOSE:
+            opened[-1].append(word)
+        elif of_condition:  # what stands in closed brackets is over
             opened.pop()
-    inside = words[opened[-1] + 1 :] if opened else words
-    kept: list[Token] = []
-    depth = 0
-    for word in inside:  # what stands in closed brackets is over
-        depth += (word.kind == OPEN) - (word.kind == CLOSE)
-        if depth == 0 and word.kind != CLOSE:
-            kept.append(word)
-    return tuple(kept), len(opened)
+            if of_condition.pop():
+                opened[-1].append(word)
+    return tuple(opened[-1]), len(of_condition)
 
 
 def _length(words: tuple[Token, ...]) -> int:

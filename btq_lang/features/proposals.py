@@ -405,6 +405,12 @@ def units(wanted: Measured) -> Iterator[Proposal]:
             yield Proposal(unit.symbol, "unit", dimension_name(unit), unit.symbol)
 
 
+def units_of_names() -> Iterator[Proposal]:
+    """What may stand behind the `:` of a signal or a parameter."""
+    yield from units(Measured())
+    yield from words(("bool", "text", "1"), "unit")
+
+
 def rules() -> Iterator[Proposal]:
     for rule in RULES.values():
         yield Proposal(rule.name, "rule", rule.summary, rule.name, None, "", rule.name)

@@ -35,6 +35,8 @@ MAIN, LIB = FILES.split("//- lib.btq\n")
 
 
 FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+CONDITION = ("low", "battery", "not", "node", *FUNCTIONS)
+BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 TIMES = "signal far : km\nsignal spent : s\nQualityReq a(limit : min = 2 min, near : m)\n"
 NODES = ("MoveBase", "Near", "Wait", "Script", "Sequence", "Main", "Dock")
 
@@ -78,6 +80,20 @@ def typed(line: str) -> str:
         ('QualityReq a "t"\n    uses at most 3 Wh of $0', ("battery",)),
         ('QualityReq a "t"\n    keeps $0', ("low", "battery", "not", "node", "max()", "min()", "mean()", "p95()")),
         ('QualityReq a "t"\n    starts within 1 s after Dock $0', ("fails", "finishes", "halts", "starts", "succeeds")),
+        # In the brackets of a condition, closed or not: its parts, and no clause, for what is open goes on.
+        ('QualityReq a "t"\n    keeps ($0', CONDITION),
+        ('QualityReq a "t"\n    keeps low and (not ($0)', CONDITION),
+        ('QualityReq a "t"\n    takes at most 3 s if ($0', CONDITION),
+        ("context high : ($0)", ("low", "high", *CONDITION[1:])),
+        ('BehaviorTree X\n    Pick (satisfies QualityReq a "t" keeps ($0', CONDITION),
+        ('QualityReq a "t"\n    keeps battery <= ($0)', ("battery", *FUNCTIONS)),
+        ('QualityReq a "t"\n    keeps (battery $0)', BEHIND_OPERAND),
+        ('QualityReq a "t"\n    takes at most 3 s if (low $0', BEHIND_OPERAND),
+        ('QualityReq a "t"\n    keeps max($0)', ("battery",)),
+        ('QualityReq a "t"\n    keeps max(ba$0) < 3', ("battery",)),
+        ('QualityReq a "t"\n    keeps (low or max($0) >= 15 %', ("battery",)),
+        ('QualityReq a "t"\n    keeps max(battery $0', ()),
+        ("QualityReq max($0", ()),
         # Of what a value measures: no signal that is none where that is certain, else those that do first.
         (f"{TIMES}    takes at most $0", ("limit", "spent")),
         (f"{TIMES}    succeeds within $0", ("limit", "spent")),
@@ -148,6 +164,10 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         (f"{TIMES}    takes at most 3 s if far > 3 m else 3 $0", ("s", "ms", "min"), ("km", "m", "%")),
         (f"{TIMES}    in at least 95 $0", ("%", "of runs"), ("s", "m")),
         ("signal a : $0", ("m", "%", "m/s", "bool", "text"), ("level",)),
+        ("QualityReq a(n : $0", ("m", "%", "m/s", "bool", "text"), ("takes at most",)),
+        ("QualityReq a(n : m, k : $0) : safety", ("m", "%", "m/s", "bool", "text"), ("takes at most",)),
+        ("BehaviorTree X\n    Pick satisfies QualityReq a(n : $0", ("m", "%", "bool"), ("limit", "takes at most")),
+        ('QualityReq a "t"\n    keeps (low) $0', ("and", "or", "takes at most"), ("battery", "not")),
         ("signal a : m/s $0", ("from {}", "level", "fresh within"), ("m",)),
         ('QualityReq a "t"\n    from $0', ("mission", "when", "Main", "MoveBase", "ToWard"), ("Sequence",)),
         ("BehaviorTree X\n    MoveBase  # btq: ignore[$0", ("syntax-error", "unknown-node"), ()),
