@@ -55,6 +55,8 @@ def expected(words: Sequence[Token]) -> Expected:
     if text in COMPARISONS or text in ("+", "-", "*", "/"):
         return Expected(operand=True)
     if last.kind in (NUMBER, QUANTITY):
+        if is_window(earlier):
+            return Expected(sorted_words(EXPERIMENTS)) if last.kind == NUMBER else Expected(clause=True)
         return Expected(_behind_value(earlier), clause=True)
     if last.kind in (NAME, STRING, CLOSE) or text in HAPPENINGS:
         if _begins_last(earlier, (*_EVENTS, *_CLAUSES)) in _EVENTS and text not in HAPPENINGS:
@@ -73,6 +75,20 @@ def opens_condition(words: Sequence[Token]) -> bool:
         return False
     wanted = _at_bracket(words[:-1] if _is_function(words[-1]) else words)
     return wanted.condition or wanted.operand
+
+
+def is_count(words: Sequence[str]) -> bool:
+    """Whether a number at the end of these words says how often: `tries at most 3`, `runs at least 9`."""
+    head = _begins_last(words, _CLAUSES)
+    if head not in ("tries", "runs"):
+        return False
+    behind = words[_last_index(words, head) + 1 :]
+    return not {"per", "every"} & set(behind) and _begins_last(behind, ("if", "else", ",")) != "if"
+
+
+def is_window(words: Sequence[str]) -> bool:
+    """Whether a number at the end of these words says over what is judged: `over last 200 runs`, `over last 7 d`."""
+    return _begins_last(words, _CLAUSES) == "over"
 
 
 def _in_brackets(words: Sequence[Token], opened: int) -> Expected:
@@ -113,7 +129,7 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
     if head == "uses" and "of" not in words[_last_index(words, head) :]:
         return ("of",)
-    if head in ("tries", "runs") and "per" not in words[_last_index(words, head) :]:
+    if is_count(words):
         return ("per", "if")
     if head in ("starts", "ends") and "after" not in words[_last_index(words, head) :]:
         return ("after", "if")

@@ -13,7 +13,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.features import proposals as offer
-from btq_lang.features.clause_words import Expected, expected
+from btq_lang.features.clause_words import Expected, expected, is_count, is_window
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.measures import Measured, measured_at
 from btq_lang.features.place import Place, place_at
@@ -125,7 +125,8 @@ def _in_string(workspace: Workspace, path: str, place: Place, text: str, offset:
 
 
 def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int) -> Completion | None:
-    """Behind a number: units; those that a port, a signal or a verb asks for first."""
+    """Behind a number: units; those that a port, a signal or a verb asks for first.  Behind a count none, and behind
+    the number of a window first what may be counted."""
     line = text[_line_start(text, offset) : offset]
     begun = re.search(r"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)([^\W\d_]*|%)$", line)
     if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
@@ -151,9 +152,12 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     else:
         wanted = measured_at(workspace, path, place)
     separator = "" if begun[1] else " "
-    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in offer.units(wanted))
+    clause = [word.text for word in place.group]
+    known = () if not in_brackets and is_count(clause) else offer.units(wanted)
+    found = tuple(replace(one, insert=f"{separator}{one.insert}") for one in known)
     behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
-    return Completion(Span(offset - len(begun[2]), offset), (*found, *behind))
+    proposals = (*behind, *found) if not in_brackets and is_window(clause) else (*found, *behind)
+    return Completion(Span(offset - len(begun[2]), offset), proposals)
 
 
 def _line_start(text: str, offset: int) -> int:

@@ -3,6 +3,7 @@ with."""
 
 from __future__ import annotations
 
+from btq_lang.features.clause_words import is_window
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.place import Place
 from btq_lang.measured import measured
@@ -34,11 +35,14 @@ class Measured(Record):
 
 
 def measured_at(workspace: Workspace, path: str, place: Place) -> Measured:
-    """What a value measures at a place of a clause."""
+    """What a value measures at a place of a clause, of a signal, or of what a requirement is given."""
+    declared = _of_argument(workspace, path, place) or _of_first_value(workspace, path, place)
+    if declared is not None:
+        return Measured(declared, is_certain=True)
     words = [word.text for word in place.words]
     if words[-1:] == ["goal"] or words[-2:-1] == ["goal"]:
         return _of_goal(workspace, path, place)
-    unit = measured(words)
+    unit = "s" if is_window(words) else measured(words)
     if unit is not None:
         return Measured(unit, is_certain=True)
     parameters = parameters_at(place)
@@ -62,6 +66,33 @@ def parameters_at(place: Place) -> dict[str, str]:
         if colon and is_name(name):
             found[name] = rest.partition("=")[0]
     return found
+
+
+def _of_argument(workspace: Workspace, path: str, place: Place) -> str | None:
+    """The unit of the parameter whose value, or what it is by default, is being written."""
+    words = [word.text for word in place.group] if place.callee else []
+    at = _last(words, "=")
+    if at < 1 or next((word for word in reversed(words[at:]) if word in ("if", "else", ",")), "") == "if":
+        return None  # what is compared in a condition is no value of the parameter
+    if place.is_of_parameters:
+        return parameters_at(place).get(words[_last(words[:at], ":") - 1])
+    found = workspace.scope(path).find(Kind.REQUIREMENT, place.callee)
+    item = found.symbol.target if found is not None else None
+    parameters = item.parameters if isinstance(item, Requirement) else ()
+    return next((one.unit.text for one in parameters if one.unit and one.name.text == words[at - 1]), None)
+
+
+def _last(words: list[str], word: str) -> int:
+    """Where a word stands last; -1: nowhere."""
+    return next((index for index in reversed(range(len(words))) if words[index] == word), -1)
+
+
+def _of_first_value(workspace: Workspace, path: str, place: Place) -> str | None:
+    """The unit of the signal whose value before the first reading is being written."""
+    words = place.words
+    if len(words) < 2 or words[0].text != "signal" or "initially" not in (words[-1].text, words[-2].text):
+        return None
+    return _signal_unit(workspace, path, words[1].text)
 
 
 def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:

@@ -397,7 +397,9 @@ def qualities(workspace: Workspace, path: str) -> Iterator[Proposal]:
 def units(wanted: Measured) -> Iterator[Proposal]:
     """Units, those first that measure what is wanted, and of them the one that is spelt so; no others where that is
     certain."""
-    known = [*symbols(), *(unit for text in _COMPOUNDS if (unit := parse_unit(text)) is not None)]
+    compounds = dict.fromkeys((*_COMPOUNDS, wanted.unit or "1"))
+    known = [*symbols(), *(unit for text in compounds if text != "1" and (unit := parse_unit(text)) is not None)]
+    known = list({unit.symbol: unit for unit in known}.values())
     fitting = {unit.symbol for unit in known if wanted.fits(unit.symbol)}
     known.sort(key=lambda unit: (unit.symbol not in fitting, unit.symbol != wanted.unit))
     for unit in known:

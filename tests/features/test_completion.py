@@ -36,6 +36,8 @@ MAIN, LIB = FILES.split("//- lib.btq\n")
 
 FUNCTIONS = ("max()", "min()", "mean()", "p95()")
 CONDITION = ("low", "battery", "not", "node", *FUNCTIONS)
+SPEEDS = ("m/s", "kmh", "mph")
+DURATIONS = ("s", "ns", "us", "ms", "min", "h", "d", "week")
 BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
 TIMES = "signal far : km\nsignal spent : s\nQualityReq a(limit : min = 2 min, near : m)\n"
 NODES = ("MoveBase", "Near", "Wait", "Script", "Sequence", "Main", "Dock")
@@ -106,6 +108,20 @@ def typed(line: str) -> str:
         (f"{TIMES}    keeps battery > 3 % and far + $0", ("near", "far", "limit", "battery", "spent", *FUNCTIONS)),
         (f"{TIMES}    keeps far > 3 * $0", ("limit", "near", "battery", "far", "spent", *FUNCTIONS)),
         (f"{TIMES}    in at least $0", ("battery",)),
+        # Units alone that measure what is declared; the one that it is declared with first.
+        ("BehaviorTree X\n    Pick satisfies slow(limit = 10 $0)", (*SPEEDS, "limit")),
+        ("BehaviorTree X\n    Pick (satisfies slow(limit = 10$0))", SPEEDS),
+        ("apply slow(limit = 1 m/s if battery < 3 % else 3$0) to Pick", SPEEDS),
+        ("signal a : m/s initially 5$0", SPEEDS),
+        ("signal a : m/s fresh within 5 s initially 3$0", SPEEDS),
+        ("signal a : bool initially 5$0", ()),
+        ("signal a : N*m/s initially 5$0", ("N*m/s", "W", "uW", "mW", "kW", "MW", "GW")),
+        ("QualityReq a(n : m/s = 3 $0", SPEEDS),
+        ("QualityReq a(k : m = 3 m, n : m/s = 3$0)", SPEEDS),
+        # Counts have none; a window counts, or it is a time.
+        ('QualityReq a "t"\n    tries at most 3$0', ()),
+        ('QualityReq a "t"\n    over last 200 $0', ("activations", "runs", *DURATIONS)),
+        ('QualityReq a "t"\n    over last 7$0', DURATIONS),
         # Strings and comments.
         ('include "$0', ("lib.btq",)),
         ("include $0", ("lib.btq",)),
@@ -162,6 +178,13 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         (f"{TIMES}    takes at most 3 s if low, $0", ("limit", "spent", "Main"), ("near", "battery", "far")),
         (f"{TIMES}    takes at most 3 s if far > 3 $0", ("km", "m", "s", "%"), ()),
         (f"{TIMES}    takes at most 3 s if far > 3 m else 3 $0", ("s", "ms", "min"), ("km", "m", "%")),
+        ('QualityReq a "t"\n    tries at most 3 $0', ("per", "if", "takes at most"), ("m", "s", "%")),
+        ('QualityReq a "t"\n    runs between 3 and 9 $0', ("per", "if"), ("m", "s", "%")),
+        ('QualityReq a "t"\n    tries at most 3 if low else 5 $0', ("per",), ("m", "s", "%")),
+        ('QualityReq a "t"\n    tries at most 3 if battery < 5 $0', ("%", "m", "s"), ()),
+        ('QualityReq a "t"\n    runs at least 3 per 9 $0', ("s", "ms", "takes at most"), ("m", "per", "%")),
+        ('QualityReq a "t"\n    over last 7 d $0', ("takes at most",), ("activations", "runs", "s")),
+        ("BehaviorTree X\n    Pick satisfies slow(limit = 1 m/s if battery < 3 $0)", ("%", "m", "s"), ()),
         (f"{TIMES}    in at least 95 $0", ("%", "of runs"), ("s", "m")),
         ("signal a : $0", ("m", "%", "m/s", "bool", "text"), ("level",)),
         ("QualityReq a(n : $0", ("m", "%", "m/s", "bool", "text"), ("takes at most",)),
