@@ -10,8 +10,10 @@ from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
 from btq_lang.fixes import fixed
 from btq_lang.record import Record
+from btq_lang.rules import UNREADABLE
+from btq_lang.scan import string_end
 from btq_lang.text import Edit, Position, Span
-from btq_lang.tokens import COMMENT
+from btq_lang.tokens import COMMENT, STRING
 from btq_lang.workspace import Workspace
 
 QUICK_FIX, REFACTOR, FIX_ALL = "quickfix", "refactor", "source.fixAll"
@@ -81,7 +83,7 @@ def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
 
 
 def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> Iterator[Action]:
-    """A comment at the end of the line that silences a rule there."""
+    """A comment at the end of the line that silences a rule there, where one can be written and is heeded."""
     file = workspace.files[path]
     for diagnostic in found:
         line = file.lines.position(diagnostic.span.start).line
@@ -89,7 +91,7 @@ def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> 
         inside = any(
             token.start < end <= token.end and _runs_on(token.text, token.kind) for token in file.parsed.tokens
         )
-        if diagnostic.rule == "syntax-error" or inside:
+        if diagnostic.rule in UNREADABLE or inside:
             continue
         comment = f"  # btq: ignore[{diagnostic.rule}]"
         title = f"Silence `{diagnostic.rule}` on this line"
@@ -97,7 +99,9 @@ def _silencing(workspace: Workspace, path: str, found: Sequence[Diagnostic]) -> 
 
 
 def _runs_on(text: str, kind: int) -> bool:
-    """Whether nothing can be written behind a token on its line: a comment, or a text over several lines."""
+    """Whether nothing can be written behind a token on its line: a comment, or a text that goes on or is not closed."""
+    if kind == STRING and string_end(text, 1, text[0]) < 0:
+        return True
     return kind == COMMENT or ("\n" in text.strip() or "\r" in text.strip())
 
 

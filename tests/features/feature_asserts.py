@@ -14,7 +14,7 @@ from itertools import pairwise
 from pathlib import Path
 from textwrap import dedent
 
-from check_asserts import split_files
+from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
 from btq_lang.checks import check
 from btq_lang.features.actions import Action, code_actions
@@ -391,6 +391,26 @@ def check_all_actions(example: Path, title: str, *severities: Severity) -> list[
 def _findings(workspace: Workspace, severities: tuple[Severity, ...]) -> Counter[str]:
     found = (one for path in workspace.files for one in check(workspace, path))
     return Counter(one.rule for one in found if one.effective_severity in severities)
+
+
+def check_silences(text: str) -> None:
+    """Each silencing that is offered in some files, their markers left out, removes what it is for from what a check
+    finds, and adds nothing to it."""
+    files = split_files("\n".join(COMMENT_WITH_MARKERS.sub("", line).rstrip() for line in text.split("\n")))
+    workspace = workspace_of(files)
+    for path, content in files.items():
+        found = check(workspace, path)
+        before = Counter((one.rule, one.message) for one in found)
+        for action in code_actions(workspace, path, Span(0, len(content)), ("quickfix",), found):
+            if action.diagnostic is None or not action.title.startswith("Silence"):
+                continue
+            silenced = workspace_of({**files, path: apply_edits(content, action.edits[path])})
+            left = Counter((one.rule, one.message) for one in check(silenced, path))
+            assert left < before, action.title
+            assert (
+                left[action.diagnostic.rule, action.diagnostic.message]
+                < before[action.diagnostic.rule, action.diagnostic.message]
+            ), action.title
 
 
 def _actions(fixture: Fixture, only: tuple[str, ...] = ()) -> tuple[Action, ...]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from feature_asserts import check_action, check_actions, check_all_actions, check_no_action
+from feature_asserts import check_action, check_actions, check_all_actions, check_no_action, check_silences
+from test_rules import blocks
 
 from btq_lang.rules import Severity
 
@@ -29,6 +30,20 @@ def test_silencing() -> None:
     )
     check_no_action("BehaviorTree Main\n    Sequn$0ce  # why\n        Pick\n", "Silence")
     check_no_action("BehaviorTree Main\n    Pick $0)\n", "Silence `syntax-error`")
+
+
+@pytest.mark.parametrize("text", [text for _, language, text in blocks() if language == "btq"])
+def test_silencing_is_offered_where_it_works(text: str) -> None:
+    check_silences(text)
+
+
+@pytest.mark.parametrize("line", ["Pick (a = 3 se$0k)", "Pick W#$02", 'Pick (a = "$0x)', "Pick (a = 1$0"])
+def test_no_mistake_in_the_syntax_is_silenced(line: str) -> None:
+    check_no_action(f"BehaviorTree Main\n    {line}\n", "Silence")
+
+
+def test_a_text_that_is_not_closed_takes_no_comment() -> None:
+    check_no_action('BehaviorTree Main\n    AlwaysSuccess (_sk"ip = "mo$0de = 3")\n', "Silence")
 
 
 def test_all_safe_fixes_at_once() -> None:
