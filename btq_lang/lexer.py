@@ -382,14 +382,26 @@ class Lexer:
                     self._no_double = start
                 else:
                     self._no_single = start
+        raw = text[start:end] if end >= 0 else ""
+        has_lines = "\n" in raw or "\r" in raw
+        if (end < 0 or has_lines) and self._closes_path(start):
+            return self._add(ERROR, start, start + 1)
         if end < 0:
             return self._unclosed_string(start, quote)
-        raw = text[start:end]
-        if "\n" in raw or "\r" in raw:
+        if has_lines:
             self._check_lines(start, end)
         if "\\" in raw:
             self.problems += unknown_escapes(start, raw)
         return self._add(STRING, start, end)
+
+    def _closes_path(self, start: int) -> bool:
+        """Whether a quote at the end of its line closes what stands behind `include` without an opening one: no string
+        begins there, and the parser says what is missing."""
+        if len(self.raws) < 2 or self.raws[0] != "include" or self.kinds[-1] == STRING:
+            return False
+        end = blanks_end(self.text, start + 1, self.size)
+        is_last = end == self.size or self.text[end] in "\r\n#/"
+        return is_last and self.starts[-1] + len(self.raws[-1]) == start
 
     def _unclosed_string(self, start: int, quote: str) -> int:
         end = line_end(self.text, start)

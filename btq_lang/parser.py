@@ -18,7 +18,7 @@ from btq_lang.nodes import XML, NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.plain_models import plain_model, plain_port
 from btq_lang.record import replace
-from btq_lang.scan import COMPILED, line_end, name_end, path_end
+from btq_lang.scan import COMPILED, blanks_end, line_end, name_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -49,6 +49,7 @@ from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
     DIRECTIONS,
+    ERROR,
     NAME,
     NEWLINE,
     NODE_CLAUSES,
@@ -315,17 +316,38 @@ class Parser(NodeParser):
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
         start = self.take().start
+        if (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
+            behind = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
+            fix = self.without_sign(f"Remove `{self.raw}`", behind, "", safe=True)
+            self.complain("syntax-error", self.here(), f"no `{self.raw}` stands here", (), (fix,))
+            self.advance()
         path = self.take() if self.kind == STRING else self.unquoted_path()
         attributes = self.pairs_only()
         return Include(start, self.end_line(), path, attributes)
 
     def unquoted_path(self) -> Word | None:
         """Complain of `include stations.btq`; there is no path."""
-        start = self.starts[self.index]
-        end = path_end(self.text, start)
-        fix = replace_fix("Put quotes around it", Span(start, end), quote(self.text[start:end]))
-        self.expected("a file in quotes", (), (fix,) if end > start else ())
+        has_sign = self.at(":") or self.at("=")
+        first = self.index + 1 if has_sign and self.kinds[self.index + 1] != NEWLINE else self.index
+        start = self.starts[first]
+        end = behind = path_end(self.text, start)
+        for index in range(first, len(self.kinds)):
+            if self.kinds[index] == ERROR and self.raws[index] in ("'", '"'):  # only the opening quote is missing
+                end, behind = self.starts[index], self.starts[index] + 1
+        title, path = "Put quotes around it", quote(self.text[start:end])
+        fixes: tuple[Fix, ...] = ()
+        if end > start and first > self.index:
+            fixes = (self.without_sign(title, behind, path, safe=False),)
+        elif end > start and not has_sign:
+            fixes = (replace_fix(title, Span(start, behind), path),)
+        self.expected("a file in quotes", (), fixes)
         return None
+
+    def without_sign(self, title: str, end: int, text: str, *, safe: bool) -> Fix:
+        """Write a text from the `:` or `=` behind `include` on, up to `end`; a blank stays before it."""
+        start = self.starts[self.index]
+        blank = "" if self.text[start - 1] in " \t" else " "
+        return replace_fix(title, Span(start, end), f"{blank}{text}", safe=safe)
 
     def qualities(self) -> Qualities:
         """ "qualities" NAME NL"""

@@ -362,6 +362,7 @@ IS_EVENT = "an event is a node and what happens to it: `Pick starts`, `Place suc
 A_TIME = "what is measured here is a time: ms, s, min, h"
 TITLE = "a title stands in quotes"
 ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found "
+A_FILE = "expected a file in quotes, found "
 
 
 @pytest.mark.parametrize(
@@ -454,6 +455,15 @@ ITEM = "expected an item: BehaviorTree, QualityReq, include, signal, …, found 
          "signal a : m fresh within 200 ms\n"),
         ("signal a : boolean\n", "`boolean` is no unit: did you mean `bool`?", None, "signal a : bool\n"),
         ('import "a.btq"\n', ITEM + "`import`", None, 'include "a.btq"\n'),
+        ('include: "b.btq"\n', "no `:` stands here", None, 'include "b.btq"\n'),
+        ('include = "b.btq"\n', "no `=` stands here", None, 'include "b.btq"\n'),
+        ('include: /* x */ "b.btq"\n', "no `:` stands here", None, 'include /* x */ "b.btq"\n'),
+        ('include:"b.btq"\n', "no `:` stands here", None, 'include "b.btq"\n'),
+        ('include = b.btq"\n', A_FILE + "`=`", None, 'include "b.btq"\n'),
+        ('include =\n', A_FILE + "`=`", None, None),
+        ('include b.btq"\n', A_FILE + "`b`", None, 'include "b.btq"\n'),
+        ('include my b.btq"  # and\nAction A "x"\n', A_FILE + "`my`", None,
+         'include "my b.btq"  # and\nAction A "x"\n'),
         ('Requirement r "t"\n', ITEM + "`Requirement`", None, 'QualityReq r "t"\n'),
         ("tree T\n    A\n", ITEM + "`tree`", None, "BehaviorTree T\n    A\n"),
         ('QualityReq REQ.001 : safety "t"\n', "this ID needs quotes", None, 'QualityReq "REQ.001" : safety "t"\n'),
