@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
-from btq_lang.diagnostics import Change, Fix, Place, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.near import near
 from btq_lang.slips import value_meant
 from btq_lang.syntax import (
@@ -123,11 +123,11 @@ class AttributeParser(ClauseParser):
         """`charger" …`: what follows is a string only because a quote is missing."""
         span = word.span.shifted(self.base)
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
-        at, lexer = self.starts[self.index], self.lexer
-        lexer.problems = [problem for problem in lexer.problems if problem.span.start != at]  # that it is not closed
-        self.forget()
-        self.complain("syntax-error", span, f"a quote is missing at `{word.raw}`", (), (fix,))
-        self.inside_out = min(self.inside_out, span.end)
+        at = self.starts[self.index]
+        unclosed = [problem for problem in self.lexer.problems if problem.span.start == at]
+        message = f"a quote is missing at `{word.raw}`"
+        if self.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
+            self.inside_out = min(self.inside_out, span.end)
         self.recover()
         return word
 

@@ -377,9 +377,22 @@ class Cursor:
         next_said = bisect_left(self._said, self._silent_from)
         return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
 
-    def forget(self) -> None:
-        """What the lexer said of this line has changed."""
+    def complain_instead(self, of: list[Diagnostic], diagnostic: Diagnostic) -> bool:
+        """Report one mistake in the place of what the lexer found; where there is nothing to report, as another mistake
+        on the line was not told for what the lexer said of it, that stays.
+
+        Returns:
+            Whether it was reported.
+        """
+        lexer, told = self.lexer, len(self.problems)
+        found, lexer.problems = lexer.problems, [problem for problem in lexer.problems if problem not in of]
         self._said = None
+        self.report(diagnostic)
+        is_told = len(self.problems) > told
+        if not is_told:
+            lexer.problems = found
+            self._said = None
+        return is_told
 
     def recover(self) -> None:
         """To the next `key =` or the closing bracket of the group at hand; outside brackets to the end of the line."""

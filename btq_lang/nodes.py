@@ -220,13 +220,12 @@ class NodeParser(AttributeParser):
         plain = self.index > 1
         plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
         changes: tuple[Change, ...] = (Change(Place(Span(start, start)), "("),)
-        if closing := [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]:
-            lexer.problems.remove(closing[-1])  # what is missing is the `(`
-            self.forget()
-        else:
+        closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
+        if not closing:  # else what is missing is the `(`
             changes += (Change(Place(Span(end, end)), ")"),)
         fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
-        self.complain("syntax-error", Span(start, end), "attributes stand in brackets: `( key = value )`", (), fixes)
+        message = "attributes stand in brackets: `( key = value )`"
+        self.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
 
     def is_stray_bracket(self, problem: Diagnostic) -> bool:
         return problem.rule == "syntax-error" and self.text.startswith(")", problem.span.start)
@@ -406,9 +405,8 @@ class NodeParser(AttributeParser):
         span = Span(start, start + len(self.text[start:end].rstrip()))
         raw = self.text[span.start : span.end]
         fix = replace_fix("Put quotes around it", span, quote(raw), safe=True)
-        lexer = self.lexer
-        lexer.problems = [problem for problem in lexer.problems if not span.start <= problem.span.start < span.end]
-        self.complain("syntax-error", span, "this type needs quotes", (), (fix,))
+        inside = [problem for problem in self.lexer.problems if span.start <= problem.span.start < span.end]
+        self.complain_instead(inside, Diagnostic("syntax-error", span, "this type needs quotes", fixes=(fix,)))
         while self.kind != NEWLINE and self.starts[self.index] < span.end:
             self.advance()
         return Word(NAME, type_.start, raw)

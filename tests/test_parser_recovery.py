@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 from syntax_asserts import apply_fix, assert_invariants, assert_parse, assert_safe_fixes, show_problems
 
+from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed, parse
 from btq_lang.syntax import Skipped, shape
 
+IN_BRACKETS = (
+    *("A", " (", ")", "p", " = ", " =", "=", ":", '"x"', '"a b"', '"', "'", "3", "30 s", ",", "{k}", "_skipIf", " "),
+    *("\n", "\n    ", "# c", "/*", "*/", "satisfies r", "-> ", 'include "b"', "QualityReq q", "takes at most 3 s"),
+)
 MISSION = """\
 include "skills.btq"
 signal battery : % from {battery_level} fresh within 5 s
@@ -582,6 +589,32 @@ def test_what_may_be_meant_in_several_ways_has_several_fixes() -> None:
     text = "QualityReq r\n    takes at most 1,000 s\n"
     (only,) = parse(text).diagnostics
     assert [apply_fix(text, fix) for fix in only.fixes] == [text.replace(",", "."), text.replace(",", "")]
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('A (p"q = "r = 3")', '")'),
+        ("A ({k}3)satisfies r=)", ")"),
+        ('A (include "b"A)satisfies r=)', ")"),
+    ],
+)
+def test_what_would_be_said_instead_of_a_mistake_but_is_not(line: str, said: str) -> None:
+    text = f"BehaviorTree t\n    {line}\n"
+    (only,) = parse(text).diagnostics
+    assert text[only.span.start : only.span.end] == said
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_text_in_which_the_lexer_finds_a_mistake_passes(seed: int) -> None:
+    chance = random.Random(seed)
+    for _ in range(2_000):
+        line = "".join(chance.choices(IN_BRACKETS, k=chance.randrange(2, 9)))
+        text = f"BehaviorTree t\n    A ({line})\n"
+        lexer = Lexer(text)
+        while lexer.open_line():
+            lexer.scan()
+        assert parse(text).diagnostics or not lexer.problems, text
 
 
 def test_a_lost_quote_before_a_string_that_begins_with_a_sign() -> None:
