@@ -124,7 +124,7 @@ class AttributeParser(ClauseParser):
         span = word.span.shifted(self.base)
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
         at = self.starts[self.index]
-        unclosed = [problem for problem in self.lexer.problems if problem.span.start == at]
+        unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == at]
         message = f"a quote is missing at `{word.raw}`"
         if self.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
             self.inside_out = min(self.inside_out, span.end)

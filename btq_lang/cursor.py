@@ -378,19 +378,20 @@ class Cursor:
         return at > self._unclosed or (next_said < len(self._said) and self._said[next_said] <= self._silent_to)
 
     def complain_instead(self, of: list[Diagnostic], diagnostic: Diagnostic) -> bool:
-        """Report one mistake in the place of what the lexer found; where there is nothing to report, as another mistake
-        on the line was not told for what the lexer said of it, that stays.
+        """Report one mistake in the place of what the lexer found in this line; where there is nothing to report, as
+        another mistake was not told for what the lexer said of it, that stays.
 
         Returns:
             Whether it was reported.
         """
-        lexer, told = self.lexer, len(self.problems)
-        found, lexer.problems = lexer.problems, [problem for problem in lexer.problems if problem not in of]
+        found, known, told = self.lexer.problems, self.known, len(self.problems)
+        of_line = found[known:]  # before it there may be thousands
+        found[known:] = [problem for problem in of_line if problem not in of]
         self._said = None
         self.report(diagnostic)
         is_told = len(self.problems) > told
         if not is_told:
-            lexer.problems = found
+            found[known:] = of_line
             self._said = None
         return is_told
 

@@ -405,7 +405,8 @@ class NodeParser(AttributeParser):
         span = Span(start, start + len(self.text[start:end].rstrip()))
         raw = self.text[span.start : span.end]
         fix = replace_fix("Put quotes around it", span, quote(raw), safe=True)
-        inside = [problem for problem in self.lexer.problems if span.start <= problem.span.start < span.end]
+        of_line = self.lexer.problems[self.known :]
+        inside = [problem for problem in of_line if span.start <= problem.span.start < span.end]
         self.complain_instead(inside, Diagnostic("syntax-error", span, "this type needs quotes", fixes=(fix,)))
         while self.kind != NEWLINE and self.starts[self.index] < span.end:
             self.advance()

@@ -151,8 +151,6 @@ def _parts_a_time(workspace: Workspace, path: str, top: Node) -> bool:
 
 def _has_hard_span(file: File) -> bool:
     """Whether a requirement in a file enforces a time between two events: few do, and all others are not resolved."""
-    if "violation" not in file.text:
-        return False
     targets = (symbol.target for symbol in file.names.symbols[Kind.REQUIREMENT])
     clauses = [target.clauses for target in targets if isinstance(target, Requirement)]
     return any(
