@@ -70,6 +70,21 @@ def test_every_setting_and_every_command_is_tested() -> None:
     assert [each["title"] for each in contributes["commands"] if each["title"] not in tests] == []
 
 
+def test_the_node_of_the_readme_packs_it_without_a_warning() -> None:
+    """npm warns (EBADENGINE) of each package of the lock file whose `engines` exclude the Node that runs."""
+    assert "with Node.js 20 or\nnewer to pack the extension" in (ROOT / "README.md").read_text(encoding="utf-8")
+    lock = json.loads((ROOT / "editors/vscode/package-lock.json").read_text(encoding="utf-8"))
+    needs = {name: package.get("engines", {}).get("node", "*") for name, package in lock["packages"].items()}
+    assert len(needs) > 100
+    assert {name: need for name, need in needs.items() if not any(map(admits_20_19, need.split("||")))} == {}
+
+
+def admits_20_19(versions: str) -> bool:
+    """Whether one alternative of a range of npm's admits Node 20.19, the last line of 20: of the forms that occur."""
+    least = re.fullmatch(r"\s*>=\s*(\d+)(?:\.(\d+))?(?:\.\d+)?\s*", versions)
+    return versions.strip() in ("*", "20") or (least is not None and (int(least[1]), int(least[2] or 0)) <= (20, 19))
+
+
 def test_every_library_is_pure_python(unpacked: Path) -> None:
     wheels = sorted(unpacked.glob("python/libs/*.dist-info/WHEEL"))
     assert len(wheels) == 7
