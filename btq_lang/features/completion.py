@@ -211,7 +211,7 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
     elif first == "qualities":
         yield from offer.words(EDITIONS, "enum")
     elif first == "quality":
-        yield from offer.qualities(workspace, path) if last in (":", ".") else ()
+        yield from offer.qualities(workspace, path, place) if last in (":", ".") else ()
     elif first == "signal":
         yield from _in_signal(place, last)
     elif first == "context":
@@ -266,7 +266,7 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
             return
         if behind[-1] in (":", ".") and "takes" not in behind:
-            yield from offer.qualities(workspace, path)
+            yield from offer.qualities(workspace, path, place)
             return
         if behind == ["ID", "="]:
             yield from offer.requirements(workspace, path)
@@ -349,7 +349,7 @@ def _open_list(place: Place) -> str | None:
 
 def _in_list(workspace: Workspace, path: str, place: Place, word: str) -> Iterator[Proposal]:
     if word == "satisfices":
-        yield from offer.qualities(workspace, path)
+        yield from offer.qualities(workspace, path, place)
     elif word == "satisfies":
         yield from offer.requirements(workspace, path)
         yield from offer.words(("QualityReq",), "keyword")

@@ -11,11 +11,13 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import beginning
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.catalog.qualities import find as find_quality
+from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.features.meaning import edition, is_main
 from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
-from btq_lang.features.place import LineNode, Place
+from btq_lang.features.place import LineNode, Place, word_text
 from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
@@ -379,18 +381,31 @@ def port_unit(workspace: Workspace, path: str, node: LineNode, key: str) -> str 
 # ---- knowledge ----
 
 
-def qualities(workspace: Workspace, path: str) -> Iterator[Proposal]:
-    """Qualities: one's own, then characteristics, then their parts, found by either spelling and by the part alone."""
+def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposal]:
+    """Qualities: one's own, then characteristics, then their parts; after `performance-efficiency.`, its parts alone.
+
+    A part is found by its own name and by its characteristic's.  Some editors compare the typed letters with the start
+    of the filter text alone, so the name that begins with these letters comes first in it.
+    """
+    chosen = EDITIONS[edition(workspace, path)]
+    if place.last == ".":
+        whole = find_quality((word_text(place.group[-2]),), chosen).quality if len(place.group) > 1 else None
+        for one in quality_parts(whole.id, chosen) if whole else ():
+            part = one.id.rpartition(".")[2]
+            names = dict.fromkeys((part, part.replace("behaviour", "behavior"), one.name))
+            yield Proposal(part, "quality", one.name, part, None, " ".join(names), one.id)
+        return
     for found, include in _defined(workspace, path, Kind.QUALITY):
         item = found.symbol.target
         text = item.text.text if isinstance(item, QualityDecl) and item.text else ""
         yield Proposal(
             found.symbol.name, "quality", text, written(found.symbol.name), None, "", found.symbol.name, include
         )
-    known = standard_qualities(EDITIONS[edition(workspace, path)])
-    for one in sorted(known, key=lambda quality: "." in quality.id):
+    for one in sorted(standard_qualities(chosen), key=lambda quality: "." in quality.id):
         part = one.id.rpartition(".")[2]
-        both = " ".join(dict.fromkeys((one.id, part, one.id.replace("behaviour", "behavior"), one.name)))
+        names = dict.fromkeys((one.id, part, one.id.replace("behaviour", "behavior"), one.name))
+        typed = place.prefix.lower()
+        both = " ".join(sorted(names, key=lambda name: not name.lower().startswith(typed)))
         yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
 
 

@@ -194,6 +194,46 @@ def test_completion_proposes_qualities(neovim: Neovim) -> None:
     assert {"performance-efficiency", "reliability", "safety"} <= set(labels)
 
 
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        ("time", ["performance-efficiency.time-behaviour"]),
+        ("performance-efficiency.ti", ["time-behaviour"]),
+        (
+            "perf",
+            [
+                "performance-efficiency",
+                "performance-efficiency.time-behaviour",
+                "performance-efficiency.resource-utilization",
+                "performance-efficiency.capacity",
+            ],
+        ),
+    ],
+)
+def test_a_quality_is_found_by_either_name(neovim: Neovim, typed: str, words: list[str]) -> None:
+    """With CTRL-X CTRL-O, which compares the typed letters with the start of a filter text; it does since 0.11."""
+    script = """
+    if vim.fn.has('nvim-0.11') == 0 then
+      return vim.NIL
+    end
+    btq.wait(btq.client, 'the server')
+    vim.o.completeopt = 'menuone,noinsert'
+    local found, asked = {}, 0
+    vim.fn.timer_start(50, function(timer)
+      found, asked = vim.fn.complete_info({ 'items' }).items, asked + 1
+      if #found > 0 or asked == 400 then
+        vim.fn.timer_stop(timer)
+        vim.api.nvim_input('<C-e><Esc>')
+      end
+    end, { ['repeat'] = -1 })
+    vim.fn.cursor(3, 1)
+    vim.api.nvim_feedkeys(vim.api.nvim_replace_termcodes('A<C-x><C-o>', true, false, true), 'tx!', false)
+    return vim.tbl_map(function(item) return item.word end, found)
+    """
+    found = neovim.run({"main.btq": f"BehaviorTree Main\n    Dock\n        satisfices {typed}\n"}, script)
+    assert found in (None, words)  # None: it is older
+
+
 def test_a_code_action_mends_the_mistake(neovim: Neovim) -> None:
     script = """
     btq.diagnostics(1)

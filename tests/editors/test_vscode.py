@@ -160,6 +160,21 @@ def test_completion_offers_qualities_and_hover_explains_them(code: Workbench, ar
     code.save()
 
 
+def test_a_quality_is_found_by_either_name_and_after_its_dot(code: Workbench) -> None:
+    code.write("concerns.btq", "BehaviorTree Main\n    Dock\n        satisfices \n")
+    code.open("concerns.btq")
+    code.see(".codelens-decoration")  # the server answers
+    code.cursor(3, 20)
+    whole = "performance-efficiency"
+    parts = ["time-behaviour", "resource-utilization", "capacity"]
+    expected = {"time": [f"{whole}.time-behaviour"], "performance": [whole, *(f"{whole}.{part}" for part in parts)]}
+    for typed, first in {**expected, f"{whole}.": parts}.items():
+        code.type(typed)
+        assert [row for row in code.suggestions() if row.startswith(whole) or typed.endswith(".")] == first
+        code.keys("Escape", "Escape", *["Backspace"] * len(typed), "Escape")
+    code.save()
+
+
 def test_the_light_bulb_mends(code: Workbench) -> None:
     code.write("wrong.btq", WRONG)
     code.open("wrong.btq")

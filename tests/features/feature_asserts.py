@@ -295,6 +295,11 @@ def check_offers(text: str, *labels: str, absent: Iterable[str] = ()) -> None:
     assert not set(found) & set(absent)
 
 
+def check_filter(text: str, label: str, filtered: str) -> None:
+    """What an editor compares the typed letters with, for a proposal at the cursor."""
+    assert [one.filter for one in _complete(Fixture(text)).proposals if one.label == label] == [filtered]
+
+
 def check_accept(text: str, label: str, after: str, *, plain: str | None = None) -> None:
     """Accepting a proposal makes this of the file, with `$1` for the places to fill in; `plain`: where an editor has
     no such places."""

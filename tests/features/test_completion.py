@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from feature_asserts import check_accept, check_completion, check_documentation, check_include, check_offers
+from feature_asserts import (
+    check_accept,
+    check_completion,
+    check_documentation,
+    check_filter,
+    check_include,
+    check_offers,
+)
 
 FILES = """//- main.btq
 signal battery : % from {battery_level}
@@ -54,6 +61,14 @@ def typed(line: str) -> str:
         # Behind SubTree and Root: trees, those of other files too.
         ("BehaviorTree X\n    SubTree $0", ("Main", "Dock", "X", "Far")),
         ("Root M$0", ("Main", "Dock", "Far")),
+        # After a characteristic and its dot: its parts, by any name of the whole.
+        (
+            "BehaviorTree X\n    Pick satisfices safety, performance-efficiency.$0",
+            ("time-behaviour", "resource-utilization", "capacity"),
+        ),
+        ("quality quick : performance.ti$0", ("time-behaviour", "resource-utilization", "capacity")),
+        ('QualityReq a : "Performance Efficiency".$0', ("time-behaviour", "resource-utilization", "capacity")),
+        ("BehaviorTree X\n    Pick satisfices nonsense.$0", ()),
         # Requirements, with those that are elsewhere; their parameters.
         ("BehaviorTree X\n    Pick satisfies $0", ("slow", "far", "QualityReq")),
         ("BehaviorTree X\n    Pick satisfies slow, $0", ("slow", "far", "QualityReq")),
@@ -202,6 +217,28 @@ def test_among_what_may_stand_here(line: str, labels: tuple[str, ...], absent: t
 
 
 @pytest.mark.parametrize(
+    ("typed_before", "names"),
+    [
+        (
+            "",
+            "performance-efficiency.time-behaviour time-behaviour performance-efficiency.time-behavior Time behaviour",
+        ),
+        (
+            "Perf",
+            "performance-efficiency.time-behaviour performance-efficiency.time-behavior time-behaviour Time behaviour",
+        ),
+        (
+            "time",
+            "time-behaviour Time behaviour performance-efficiency.time-behaviour performance-efficiency.time-behavior",
+        ),
+    ],
+)
+def test_the_name_that_is_typed_comes_first_for_editors_that_compare_beginnings(typed_before: str, names: str) -> None:
+    line = f"BehaviorTree X\n    Pick satisfices {typed_before}$0"
+    check_filter(typed(line), "performance-efficiency.time-behaviour", names)
+
+
+@pytest.mark.parametrize(
     ("line", "label", "after", "plain"),
     [
         ("    Move$0", "MoveBase", "    MoveBase (station = ${1:{=\\}})", "    MoveBase"),
@@ -215,6 +252,7 @@ def test_among_what_may_stand_here(line: str, labels: tuple[str, ...], absent: t
         ("    Pick satisfies s$0", "slow", "    Pick satisfies slow(limit = ${1:limit})", "    Pick satisfies slow"),
         ("    SubTree D$0", "Dock", "    SubTree Dock (place = ${1:{=\\}})", "    SubTree Dock"),
         ("    Pick satisfices perf$0", "safety", "    Pick satisfices safety", None),
+        ("    Pick satisfices safety.ha$0", "hazard-warning", "    Pick satisfices safety.hazard-warning", None),
         ("    Pick  # btq: ign$0", "btq: ignore[…]", "    Pick  # btq: ignore[$0]", "    Pick  # btq: ignore[]"),
     ],
 )
