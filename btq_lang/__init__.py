@@ -12,7 +12,9 @@ Names are imported when they are first used, so that `import btq_lang` costs not
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 9 ms
+# False; type checkers read it as True.  Importing `typing` for it takes 9 ms.  After a literal False, jedi (completion in
+# IPython and editors) takes the imports for code that never runs.
+TYPE_CHECKING = bool()  # noqa: UP018
 if TYPE_CHECKING:
     from btq_lang.checks import check
     from btq_lang.diagnostics import Diagnostic
@@ -65,3 +67,8 @@ def __getattr__(name: str) -> object:
     value: object = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    """The public names, whether they are imported yet or not: shells complete them."""
+    return list(__all__)
