@@ -12,8 +12,8 @@ Names are imported when they are first used, so that `import btq_lang` costs not
 
 from __future__ import annotations
 
-# False; type checkers read it as True.  Importing `typing` for it takes 9 ms.  After a literal False, jedi (completion in
-# IPython and editors) takes the imports for code that never runs.
+# False; type checkers read it as True.  Importing `typing` for it takes 9 ms.  After a literal False, jedi, with which
+# IPython and editors complete, takes the imports for code that never runs.
 TYPE_CHECKING = bool()  # noqa: UP018
 if TYPE_CHECKING:
     from btq_lang.checks import check
