@@ -4,9 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from btq_lang.syntax import quote
+
+
+def made_up(strategy: st.SearchStrategy[str], number: int) -> Sequence[str]:
+    """Texts, always the same ones, for tests that need many at once."""
+    found: dict[str, None] = {}
+
+    @settings(
+        max_examples=number,
+        derandomize=True,
+        database=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(strategy)
+    def collect(text: str) -> None:
+        found[text] = None
+
+    collect()
+    return list(found)
+
 
 # ---- sound missions -------------------------------------------------------------------------------------------------
 

@@ -9,9 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from engine_loader import Answer, Engine, job
-from hypothesis import HealthCheck, Phase, given, settings
-from hypothesis import strategies as st
-from mission_strategies import START, missions, odd_missions
+from mission_strategies import START, made_up, missions, odd_missions
 
 from btq_lang.btcpp.export import export
 from btq_lang.checks import check
@@ -28,6 +26,7 @@ PARDONED = re.compile(
 
 
 def test_sound_missions_load_and_tick(engine: Engine, tmp_path: Path) -> None:
+    # Collected first: an engine that starts for each would take minutes.
     answers = run(engine, made_up(missions(), 250), tmp_path)
     assert len(answers) > 150
     assert {text: answer.error for text, answer in answers.items() if is_refused(answer)} == {}
@@ -37,25 +36,6 @@ def test_missions_with_odd_names_load_and_tick(engine: Engine, tmp_path: Path) -
     answers = run(engine, made_up(odd_missions(), 250), tmp_path)
     assert len(answers) > 40
     assert {text: answer.error for text, answer in answers.items() if is_refused(answer)} == {}
-
-
-def made_up(strategy: st.SearchStrategy[str], number: int) -> Sequence[str]:
-    """Texts, always the same ones: they are collected first, for an engine that starts for each would take minutes."""
-    found: dict[str, None] = {}
-
-    @settings(
-        max_examples=number,
-        derandomize=True,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(strategy)
-    def collect(text: str) -> None:
-        found[text] = None
-
-    collect()
-    return list(found)
 
 
 def run(engine: Engine, texts: Sequence[str], folder: Path) -> dict[str, Answer]:
