@@ -27,7 +27,10 @@ def program() -> None:
     It ends as it stands: to free every object first, as Python does, takes a tenth of a small check, and the system
     takes all of it back anyway.
     """
-    code = main()
+    try:
+        code = main()
+    except Exception as error:  # a mistake of btq's: nothing of it says that there are findings
+        code = _internal_error(error)
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
@@ -91,6 +94,18 @@ def _finish(run: Callable[[Any], int], options: object) -> int:
         print(f"btq: {error.strerror}", file=sys.stderr)
         return TROUBLE
     return code
+
+
+def _internal_error(error: Exception) -> int:
+    from btq_lang.failures import internal_error
+
+    if os.environ.get("BTQ_TRACEBACK"):
+        from traceback import print_exception
+
+        print_exception(error)
+    said = internal_error(error, f"in `{' '.join(['btq', *sys.argv[1:]])}`")
+    print(f"btq: {said}; BTQ_TRACEBACK=1 shows the traceback", file=sys.stderr)
+    return TROUBLE
 
 
 def build_parser() -> ArgumentParser:

@@ -21,7 +21,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
-from btq_lang import __version__, features
+from btq_lang import __version__, failures, features
 from btq_lang.convert import Converter
 from btq_lang.findings import Findings
 from btq_lang.garbage import collect_in_pause, keep_what_is_there
@@ -85,6 +85,8 @@ class Server(LanguageServer):
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
         self._is_settled = False  # what was read first will not be looked through for garbage again
+        self._failures: set[object] = set()  # the places of those that are logged
+        self.protocol.log_failure = self.log_failure
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, but for how messages are read."""
@@ -145,6 +147,19 @@ class Server(LanguageServer):
                 say(begin, arguments)
 
         return answer_later if asyncio.iscoroutinefunction(handler) else answer  # type: ignore[return-value]  # `wraps`
+
+    def log_failure(self, error: BaseException) -> tuple[str, bool]:
+        """Log an exception that nothing expected, once: while somebody types it is raised at every key.
+
+        Returns:
+            What is said of it, and whether it is a new one.
+        """
+        said, where = failures.internal_error(error), failures.place(error)
+        is_new = where not in self._failures
+        self._failures.add(where)
+        if is_new:
+            logging.getLogger(__name__).error(said, exc_info=error)
+        return said, is_new
 
     # ---- what an editor can do ----
 
@@ -256,8 +271,8 @@ class Server(LanguageServer):
             del self.waiting[path]
             try:
                 self.publish(path)
-            except Exception:  # one file that cannot be checked must not silence the others, nor end the server
-                logging.getLogger(__name__).exception("checking %s", path)
+            except Exception as error:  # one file that cannot be checked must not silence the others
+                self.log_failure(error)
             self.session.let_go()
             told = loop.time() if is_open else told
             await asyncio.sleep(0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from typing import Any, BinaryIO
 
@@ -31,13 +31,33 @@ class Protocol(LanguageServerProtocol):
 
     Documents are kept by the session, and not by pygls too, which at every key cuts a text into lines, and not where
     editors do (form feeds, U+2028).  Answers are written as what they are made of: plain data by `json`, at once.
+
+    Attributes:
+        log_failure: logs an exception that no handler should raise; returns what to say of it, and whether it is new.
     """
+
+    log_failure: Callable[[BaseException], tuple[str, bool]]
 
     def _check_handler_result(self, future: Future[Any]) -> None:
         kept = {} if future.cancelled() else self._request_futures  # pygls goes through them when it cancels all
         for key in [key for key, other in kept.items() if other is future]:  # pygls 2.1 keeps each notification
             del kept[key]
-        super()._check_handler_result(future)
+        failed = _failure(future)
+        if failed is None:
+            super()._check_handler_result(future)
+            return
+        said, is_new = self.log_failure(failed)
+        if is_new:
+            self._server.window_show_message(types.ShowMessageParams(types.MessageType.Error, said))
+
+    def _send_handler_result(self, future: Future[Any], *, msg_id: int | str) -> None:
+        failed = _failure(future)
+        if failed is None:
+            super()._send_handler_result(future, msg_id=msg_id)
+            return
+        self._request_futures.pop(msg_id, None)
+        said, _ = self.log_failure(failed)
+        self._send_response(msg_id, error=types.ResponseError(types.ErrorCodes.InternalError, said))
 
     def _send_response(self, msg_id: int | str, result: Any = None, error: types.ResponseError | None = None) -> None:
         if error is not None:
@@ -119,6 +139,12 @@ class Messages:
         if length:
             self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
+
+
+def _failure(future: Future[Any]) -> BaseException | None:
+    """The exception that a handler should not have raised."""
+    error = None if future.cancelled() else future.exception()
+    return None if isinstance(error, JsonRpcException) else error
 
 
 _USUAL = (

@@ -79,6 +79,7 @@ ROWS: tuple[frozenset[str], ...] = (
             "session",
             "convert",
             "editor",
+            "failures",
             "protocol",
             "handlers",
             "preview",

@@ -606,3 +606,70 @@ def test_format_keeps_the_line_ends_of_standard_input(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "btq_lang", "format", "-"]
     done = subprocess.run(command, cwd=tmp_path, input=b"BehaviorTree Main\r\n  Dock\r\n", capture_output=True)
     assert done.stdout == b"BehaviorTree Main\r\n    Dock\r\n"
+
+
+BROKEN = """\
+import sys
+from btq_lang import checks
+def check(workspace, path, **more):
+    raise {error}
+checks.check = check
+from btq_lang.cli import program
+program()
+"""
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "told"),
+    [
+        ("KeyError('x')", 2, "btq: internal error: KeyError: 'x' while reading main.btq"),
+        ("RuntimeError('two\\nlines')", 2, "btq: internal error: RuntimeError: two lines while reading main.btq"),
+        ("RecursionError", 2, "btq: internal error: RecursionError while reading main.btq"),
+        ("KeyboardInterrupt", 130, ""),
+        ("SystemExit(3)", 3, ""),
+    ],
+)
+def test_what_nothing_expected_is_one_line_and_no_finding(tmp_path: Path, error: str, code: int, told: str) -> None:
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    more = "; report it in btq's issue tracker; BTQ_TRACEBACK=1 shows the traceback\n" if told else ""
+    for arguments in (["check", "main.btq"], ["check", "--jobs", "2", "."], ["build", "main.btq"]):
+        done = run_broken(tmp_path, error, arguments)
+        assert (done.stdout, done.stderr, done.returncode) == ("", told + more, code)
+
+
+def test_the_traceback_is_shown_when_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text(WRONG, encoding="utf-8")
+    done = run_broken(tmp_path, "KeyError('x')", ["check", "main.btq"], BTQ_TRACEBACK="1")
+    lines = done.stderr.splitlines()
+    assert lines[0] == "Traceback (most recent call last):"
+    assert lines[-2:] == [
+        "KeyError: 'x'",
+        "btq: internal error: KeyError: 'x' while reading main.btq; report it in btq's issue tracker; "
+        "BTQ_TRACEBACK=1 shows the traceback",
+    ]
+    assert done.returncode == 2
+
+
+def test_where_no_file_was_at_hand_the_command_is_said(tmp_path: Path) -> None:
+    broken = BROKEN.replace("from btq_lang import checks", "from btq_lang.commands import explain")
+    broken = broken.replace("checks.check = check", "explain.run = lambda _: check('', '')")
+    done = run_broken(tmp_path, "KeyError('x')", ["explain", "Retry"], broken)
+    assert done.stderr == (
+        "btq: internal error: KeyError: 'x' in `btq explain Retry`; report it in btq's issue tracker; "
+        "BTQ_TRACEBACK=1 shows the traceback\n"
+    )
+    assert done.returncode == 2
+
+
+def run_broken(
+    folder: Path, error: str, arguments: list[str], program: str = BROKEN, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """`btq` with a check that raises."""
+    return subprocess.run(
+        [sys.executable, "-c", program.format(error=error), *arguments],
+        cwd=folder,
+        capture_output=True,
+        encoding="utf-8",
+        env={**os.environ, "NO_COLOR": "1", "PYTHONUTF8": "1", **environment},
+        timeout=60,
+    )

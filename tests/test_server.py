@@ -928,12 +928,35 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     )
     editor = Editor(tmp_path, command=(sys.executable, "-c", program))
     editor.open("main.btq", WRONG)
-    answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
-    assert "broken" in answer["error"]["message"]
+    for _ in range(3):
+        answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
+        told = "internal error: ZeroDivisionError: broken while reading {path}; report it in btq's issue tracker"
+        assert answer["error"] == {"code": -32603, "message": told.format(path=tmp_path / "main.btq")}
     unknown = editor.ask("workspace/executeCommand", command="btq.unknown", arguments=[])
     assert unknown["error"]["code"] == -32602
     assert editor.diagnostics("main.btq") != []
-    assert "ZeroDivisionError: broken" in editor.close()
+    assert editor.close().splitlines().count("ZeroDivisionError: broken") == 1
+
+
+@pytest.mark.parametrize(("broken", "is_told"), [("findings", False), ("edit", True)])
+def test_what_raises_while_somebody_types_is_logged_once(tmp_path: Path, broken: str, is_told: bool) -> None:
+    """A check, which nobody asks for, and what takes a change, which nobody is answered."""
+    program = (
+        "from btq_lang.session import Session\n"
+        "def broken(*_): raise ZeroDivisionError('broken')\n"
+        f"Session.{broken} = broken\n"
+        "from btq_lang.server import main; main([])\n"
+    )
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor.open("main.btq", WRONG)
+    for _ in range(3):
+        editor.change("main.btq", RIGHT)
+        editor.ask("textDocument/foldingRange", **editor.document("main.btq"))
+    shown = [message["params"]["message"] for message in editor.kept if message["method"] == "window/showMessage"]
+    told = "internal error: ZeroDivisionError: broken while reading {path}; report it in btq's issue tracker"
+    places = 2 if is_told else 1  # it is opened, and changed
+    assert shown == [told.format(path=tmp_path / "main.btq")] * (places if is_told else 0)
+    assert editor.close().splitlines().count("ZeroDivisionError: broken") == places
 
 
 def test_a_request_that_cannot_be_read_is_answered(tmp_path: Path) -> None:
@@ -977,7 +1000,7 @@ def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> N
     editor.notify("$/setTrace", value="verbose")
     assert "HoverParams" in traces(editor, "textDocument/hover")[-1]["verbose"]
     failed = traces(editor, "textDocument/signatureHelp")[-1]
-    assert failed["message"].startswith("Exception occurred")
+    assert failed["message"].startswith("internal error: ZeroDivisionError: broken while reading ")
     assert "ZeroDivisionError: broken" in failed["verbose"]
     editor.notify("$/setTrace", value="off")
     assert traces(editor, "textDocument/hover") == []

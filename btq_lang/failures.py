@@ -1,0 +1,54 @@
+"""What is said of an exception that nothing expected: one line for people, and the traceback for whoever mends it.
+
+One invariant: to say it raises nothing.
+"""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import FrameType
+
+WHERE = "report it in btq's issue tracker"
+
+
+def internal_error(error: BaseException, otherwise: str = "") -> str:
+    """`internal error: KeyError: 'x' while reading a.btq; report it …`, on one line.
+
+    Args:
+        otherwise: what is said in place of `while reading …` where no file was at hand.
+    """
+    from btq_lang.loader import shown  # a server imports this when it starts, and seldom needs more
+
+    said = " ".join(str(error).split())
+    what = f"{type(error).__name__}: {said}" if said else type(error).__name__
+    path = next(_files(error), None)
+    doing = f"while reading {shown(path)}" if path is not None else otherwise
+    return f"internal error: {what}{f' {doing}' if doing else ''}; {WHERE}"
+
+
+def place(error: BaseException) -> object:
+    """Where an exception came from: the same for the same mistake, however often it is made."""
+    frames = [*_frames(error)][:_FRAMES]
+    return type(error), tuple((frame.f_code, line) for frame, line in frames)
+
+
+def _files(error: BaseException) -> Iterator[str]:
+    """The files that were at hand, the last one first."""
+    from btq_lang.file import SUFFIXES  # as above
+
+    for frame, _ in reversed([*_frames(error)]):
+        path = frame.f_locals.get("path")
+        if isinstance(path, str) and path.endswith((*SUFFIXES, ".xml")):
+            yield path
+
+
+def _frames(error: BaseException) -> Iterator[tuple[FrameType, int]]:
+    at = error.__traceback__
+    while at is not None:
+        yield at.tb_frame, at.tb_lineno
+        at = at.tb_next
+
+
+_FRAMES = 40  # of a recursion without end the innermost frames are others each time
