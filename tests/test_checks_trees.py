@@ -163,6 +163,31 @@ def test_circles(trees: dict[str, str], problems: list[str]) -> None:
     assert_problems(text, *problems)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        # What the node of `A` is, only a model says, and the parser could not say of which item it is a part.
+        "BehaviorTree A\n    Go (value = {x})\n        A\nTreeNodesModel\n    SubTree A\n",
+        "BehaviorTree A\n    ->\n        Go (value = {x})\n        A (value = {x})\nSubTree A\n",
+        "BehaviorTree A\n    SubTree B (x = {x})\nBehaviorTree B\n    Inverter\n        A (x = {x})\nSubTree A\n",
+        "BehaviorTree A\n    SubTreePlus (ID = B x = {y})\nBehaviorTree B\n    A\nSubTree A\nSubTree B\n",
+        "BehaviorTree SubTreePlus\n    SubTreePlus (ID = B x = {y})\nBehaviorTree B\n    SubTree SubTreePlus\n",
+        'BehaviorTree ""\n    SubTree "" (x = {y})\n',
+    ],
+)
+def test_circles_through_trees_that_are_declared_have_an_end(text: str) -> None:
+    for order in (text, "".join(reversed([f"BehaviorTree {each}" for each in text.split("BehaviorTree ")[1:]]))):
+        assert [each.rule for each in problems(order, "recursive-tree")] == ["recursive-tree"]
+
+
+def test_a_node_that_a_model_declares_runs_its_tree() -> None:
+    assert_problems(
+        "Root A\nBehaviorTree A\n    ->\n        B\n        X\nBehaviorTree B\n    A\nTreeNodesModel\n"
+        "    SubTree A\n    SubTree B\n    Action X\n",
+        "4:9 error recursive-tree «B» the tree `A` contains itself: `A` → `B` → `A`",
+    )
+
+
 def test_a_knot_of_circles_is_told_once_with_the_shortest_way() -> None:
     assert_problems(
         """

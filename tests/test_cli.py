@@ -608,6 +608,17 @@ def test_format_keeps_the_line_ends_of_standard_input(tmp_path: Path) -> None:
     assert done.stdout == b"BehaviorTree Main\r\n    Dock\r\n"
 
 
+def test_a_tree_that_runs_itself_as_a_declared_one_is_a_finding(btq: Run) -> None:
+    text = "BehaviorTree A\n    Go\n        value = {x}\n            A\nTreeNodesModel\n    SubTree A\n"
+    done = btq("check", "--output-format", "concise", "-", stdin=text)
+    assert done.stdout.splitlines() == [
+        "<stdin>:3:9: error[syntax-error] attributes stand in brackets: `( key = value )`",
+        "<stdin>:4:13: error[recursive-tree] the tree `A` contains itself",
+        "Found 2 errors",
+    ]
+    assert (done.stderr, done.returncode) == ("", 1)
+
+
 BROKEN = """\
 import sys
 from btq_lang import checks

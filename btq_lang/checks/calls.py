@@ -9,10 +9,13 @@ from btq_lang.symbols import Use
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, KeysView, Mapping
-    from typing import TypeAlias
+    from collections.abc import Callable, Iterable, KeysView, Mapping
+    from typing import TypeAlias, TypeVar
 
+    from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
+
+    T = TypeVar("T")
 
 # The trees that a tree runs, and those that it means to: where `SubTree` is missing.
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
@@ -45,9 +48,16 @@ def circles(view: View) -> dict[str, tuple[str, ...]]:
     return view.ask(calls).circles
 
 
-def is_circular(view: View, tree: str, called: str) -> bool:
-    """Whether a tree that another one runs leads back to that."""
-    return called in (view.look_up_in(_knots, tree) or ())
+def ask_of_called(view: View, what: Callable[[View, str], T], tree: str, seen: SeenNode) -> T | None:
+    """What a conclusion about trees, `what`, says of the one that a SubTree node of `tree` runs; None: the node names
+    none, or one that leads back to `tree`.
+
+    Whatever rests on the same about other trees asks for it here: so no circle of trees makes it ask for ever.
+    """
+    called = seen.id.text if seen.id is not None else ""
+    if not called or called in (view.look_up_in(_knots, tree) or ()):
+        return None
+    return view.ask(what, called)
 
 
 def _callers(view: View) -> dict[str, tuple[str, ...]]:
@@ -195,10 +205,14 @@ def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
 
 def _runs(view: View, tree: str) -> Runs:
     facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
-    uses = facts.summary.uses if facts is not None else ()
+    if facts is None:
+        return (), ()
+    uses = facts.summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
-    meant = [name for name in map(_meant, uses) if name]
-    trees = {name for name in set(meant) if view.defines(Kind.TREE, name)}
+    declared = {seen.id.text for seen in view.seen_in(facts).subtrees if seen.id is not None}  # by a model, perhaps
+    meant = [name for name in map(_meant, uses) if name and name not in declared]
+    trees = {name for name in (*meant, *declared) if name not in called and view.defines(Kind.TREE, name)}
+    called.update(dict.fromkeys(sorted(declared & trees)))
     return tuple(called), tuple([name for name in meant if name in trees])
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import callers, is_circular
+from btq_lang.checks.calls import ask_of_called, callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.entry_types import declared_type, is_text
@@ -97,12 +97,12 @@ def _types(view: View, tree: str) -> _Types:
 
 def _handed_on(view: View, tree: str, seen: SeenNode) -> Iterator[tuple[str, int | None, _Meeting]]:
     """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
-    called = seen.node.id.text if seen.node.id is not None else ""
-    if is_circular(view, tree, called):
+    types = ask_of_called(view, _types, tree, seen)
+    if types is None:
         return
     given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
     shares_all = remaps_all(seen)
-    for port, meetings in view.ask(_types, called).items():
+    for port, meetings in types.items():
         at = given.get(port)
         value = seen.node.attributes[at].value if at is not None else None
         key: str | None = port if port[0] == "@" else None

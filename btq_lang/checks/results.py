@@ -8,7 +8,7 @@ the blackboard, and so whether a condition is ever true.
 from __future__ import annotations
 
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import is_circular
+from btq_lang.checks.calls import ask_of_called
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
@@ -73,8 +73,7 @@ def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
 def _of_node(view: View, tree: str, seen: SeenNode, known: dict[int, Results]) -> Results:
     found = UNKNOWN
     if seen.is_subtree:
-        called = seen.id.text if seen.id is not None else ""
-        found = UNKNOWN if is_circular(view, tree, called) else view.ask(_of_tree, called)
+        found = ask_of_called(view, _of_tree, tree, seen) or UNKNOWN
     elif seen.kind is not None and not seen.is_placeholder:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind.tag, seen.node, children)

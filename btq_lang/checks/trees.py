@@ -110,11 +110,13 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     definition = view.scope.find(Kind.TREE, name)
     if circle is None or definition is None or not view.is_this(definition, entry):
         return
-    use = next(use for use in view.uses(entry, Kind.TREE) if use.name == circle[1])
+    places = [(use.name, use.span) for use in view.uses(entry, Kind.TREE)]
+    places += [(seen.id.text, seen.id.span) for seen in view.seen(entry).subtrees if seen.id is not None]
+    span = next(span for called, span in places if called == circle[1])
     way = " → ".join(f"`{step}`" for step in circle)
     yield Diagnostic(
         "recursive-tree",
-        use.span,
+        span,
         f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else ""),
         notes=("the engine refuses it from 4.9 on and crashes before; repeat with Repeat or Retry instead",),
     )

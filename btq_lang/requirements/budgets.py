@@ -120,9 +120,13 @@ class Budgets:
     def gaps(self, node: SourceNode) -> tuple[Gap, ...]:
         """Why no bound can be said of a node, if all below it are as demanded; the first reasons, if there are many."""
         found: dict[Gap, None] = {}
+        seen: set[int] = set()  # a tree may be run from many places
         waiting = [node]
         while waiting and len(found) < _MOST_GAPS:
             at = waiting.pop()
+            if id(at) in seen:
+                continue
+            seen.add(id(at))
             composed = self.composed(at)
             if composed.is_bounded:
                 continue
