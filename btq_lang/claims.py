@@ -37,6 +37,7 @@ VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
 )
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
+MAX_CASES: Final = 100  # in one value: a table may stand in each case of another one
 RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
 
 
@@ -263,6 +264,11 @@ class ClaimParser(ConditionParser):
             cases.append(Case(value, self.cond()))
             if not self.accept(","):
                 break
+            if len(cases) == MAX_CASES:
+                note = "let a node work the value out, and declare a signal for what it writes"
+                self.complain("nested-too-deep", self.here(), f"more than {MAX_CASES} cases in one value", (note,))
+                self.recover()
+                return Table(tuple(cases))
             value = self.amount()
             if value is None:
                 return Table(tuple(cases))

@@ -203,6 +203,11 @@ def test_counters_of_included_files_keep_apart() -> None:
 
 # ---- why not ----
 
+TOO_LONG = (
+    "its script would be longer than 10000 characters; "
+    "let a node work it out, and declare a signal for what that writes"
+)
+
 
 @pytest.mark.parametrize(
     ("clauses", "why"),
@@ -214,7 +219,8 @@ def test_counters_of_included_files_keep_apart() -> None:
         ("needs nowhere", "`nowhere` names no blackboard entry"),
         ('keeps mode == "it\'s"', "a text in a script has no quote in it, and in older engines ASCII only"),
         ('keeps mode == "größe"', "a text in a script has no quote in it, and in older engines ASCII only"),
-        ("leaves large", "its script would be too long"),
+        ("leaves large", TOO_LONG),
+        ("needs nearly_as_large and nearly_as_large\n    when nearly_as_large", TOO_LONG),
         ("runs every 1 s", "no node of the engine makes another one start in time"),
         ("starts within 1 s after Rest starts", "no node of the engine makes another one start in time"),
         ("follows when on", "the engine runs no script when that happens"),
@@ -224,7 +230,8 @@ def test_reasons(clauses: str, why: str) -> None:
     contexts = "context c0 : on\n" + "".join(f"context c{n} : c{n - 1} or c{n - 1}\n" for n in range(1, 40))
     text = (
         "signal on : bool from {on} initially true\nsignal nowhere : bool\nsignal mode : text from {mode}\n"
-        f"{contexts}context large : c39\nQualityReq r\n    {clauses}\n    on violation fail\napply r to Move\n{TAIL}"
+        f"{contexts}context large : c39\ncontext nearly_as_large : c8\n"
+        f"QualityReq r\n    {clauses}\n    on violation fail\napply r to Move\n{TAIL}"
     )
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [f"r: monitored: {why}"]
 

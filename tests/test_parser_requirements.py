@@ -579,3 +579,13 @@ def test_chains_of_operators_have_an_end(operator: str) -> None:
     problem = f"1:{at + 1} nested-too-deep «{word}» more than 100 operators in one condition"
     for length in (103, 5000):
         assert_parse(f"context a : {f' {operator} '.join('a' * length)}\nsignal z : m", None, problem)
+
+
+def test_a_value_of_many_cases_has_an_end() -> None:
+    def limit(cases: int) -> str:
+        return "QualityReq a takes at most " + "1 s if b, " * (cases - 1) + "1 s if b else 2 s\nsignal z : m"
+
+    assert_parse(limit(100))
+    at = len("QualityReq a takes at most " + "1 s if b, " * 100)
+    for cases in (101, 5000):
+        assert_parse(limit(cases), None, f"1:{at + 1} nested-too-deep «1 s» more than 100 cases in one value")

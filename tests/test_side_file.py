@@ -66,6 +66,47 @@ def said(text: str, **others: str) -> dict[str, Any]:
     return data
 
 
+def test_a_context_is_said_once_and_named_elsewhere() -> None:
+    data = said(
+        "signal speed : m/s from {speed}\ncontext slow : speed < 1 m/s\ncontext calm : slow or not slow\n"
+        "QualityReq r(limit : m/s)\n    keeps speed < limit\n    while calm\n    on violation fail\n"
+        "apply r(limit = 1 m/s if calm else 2 m/s) to Move\nBehaviorTree Main\n    Action Move\n"
+    )
+    slow = {"is": "incontext", "name": "slow"}
+    calm = {"is": "incontext", "name": "calm"}
+    value = {"is": "value", "text": "1 m/s", "si": 1.0, "unit": "m/s"}
+    read = {"is": "read", "signal": "speed"}
+    assert data["version"] == 2
+    assert data["contexts"] == [
+        {"name": "slow", "condition": {"is": "compare", "operators": ["<"], "operands": [read, value]}},
+        {"name": "calm", "condition": {"is": "any", "conditions": [slow, {"is": "not", "condition": slow}]}},
+    ]
+    (requirement,) = data["requirements"]
+    assert requirement["scopes"] == [{"is": "scope", "word": "while", "condition": calm, "text": "while calm"}]
+    (applied,) = data["applied"]
+    assert applied["arguments"]["limit"]["cases"][0] == {"is": "case", "value": value, "condition": calm}
+
+
+def test_side_files_of_version_1_are_read() -> None:
+    """As they were written before contexts were named: an import gives the mission back, as it was and changed."""
+    mission = MISSION.replace("# how fast", "# how fast\ncontext slow_now : speed < 1 m/s")
+    xml, side = built(mission.replace("keeps speed <= limit", "keeps speed <= limit\n    while slow_now"))
+    assert side is not None
+    new = json.loads(side)
+    context = {each["name"]: each["condition"] for each in new.pop("contexts")}["slow_now"]
+    named = '{"is": "incontext", "name": "slow_now"}'
+    old = json.dumps({**new, "version": 1})
+    assert old.count(named) == 1
+    old = old.replace(named, json.dumps({"is": "incontext", "name": "slow_now", "condition": context}))
+    assert restored(xml, import_xml(xml).text, old) == restored(xml, import_xml(xml).text, side)
+    changed = xml.replace('name="Again"', 'name="Anew"')
+    restoring = restored(changed, import_xml(changed).text, old)
+    assert restoring == restored(changed, import_xml(changed).text, side)
+    assert restoring is not None
+    assert "context slow_now" in restoring.text
+    assert restored(xml, import_xml(xml).text, old.replace('"version": 1', '"version": 3')) is None
+
+
 def test_what_a_side_file_says() -> None:
     data = said(MISSION)
     assert data["main_tree"] == "Main"

@@ -59,8 +59,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
         script = condition_script(condition.conditions[0], stored)
         for each in condition.conditions[1:]:
             script = f"({script} {operator} {condition_script(each, stored)})"
-            if len(script) > _LONGEST:  # contexts in contexts grow without bounds
-                raise NoScript("its script would be too long")
+            no_longer_than_allowed(script)  # contexts in contexts grow without bounds
         return script
     if isinstance(condition, Not):
         return f"(!{condition_script(condition.condition, stored)})"
@@ -126,6 +125,17 @@ def first_value_script(signal: Signal) -> str:
     """
     assert signal.initially is not None, "asked only of signals that have one"
     return _number(signal.initially, signal.unit, _none_stored)
+
+
+def no_longer_than_allowed(script: str) -> None:
+    """Refuse a script that nobody can read any more.
+
+    Raises:
+        NoScript: it is too long.
+    """
+    if len(script) > LONGEST:
+        what_to_do = "let a node work it out, and declare a signal for what that writes"
+        raise NoScript(f"its script would be longer than {LONGEST} characters; {what_to_do}")
 
 
 def real(value: float) -> str:
@@ -215,4 +225,4 @@ def _none_stored(_table: Table, _unit: Unit | None) -> str:
     raise NoScript("a first value is one value")
 
 
-_LONGEST: Final = 10_000
+LONGEST: Final = 10_000  # characters: the engine reads such a script at each load, and nobody else can

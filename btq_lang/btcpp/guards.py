@@ -7,7 +7,15 @@ seen at work, or the engine does by itself what it asks.  It does not know eleme
 from __future__ import annotations
 
 from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
-from btq_lang.btcpp.conditions import NoScript, condition_script, real, signal_script, table_script, value_script
+from btq_lang.btcpp.conditions import (
+    NoScript,
+    condition_script,
+    no_longer_than_allowed,
+    real,
+    signal_script,
+    table_script,
+    value_script,
+)
 from btq_lang.btcpp.keys import legal
 from btq_lang.record import Record, replace
 from btq_lang.requirements.model import (
@@ -100,6 +108,10 @@ class _Draft:
             script = Leaf("Script", f"{self.name}_start", "; ".join(self._values))
             values = Wrapper(VALUES, self.requirement.name, "Sequence", f"{self.name}_values", before=(script,))
             wrappers = [(self.node, values), *wrappers]
+        for _, wrapper in wrappers:
+            for leaf in (*wrapper.before, *wrapper.behind):
+                if isinstance(leaf, Leaf):
+                    no_longer_than_allowed(leaf.code)
         claim = self.claim
         scopes = tuple(scope.condition for scope in self.requirement.scopes)
         read = signals_in((claim.condition, claim.limit, claim.signal, scopes))

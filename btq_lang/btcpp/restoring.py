@@ -12,7 +12,7 @@ from itertools import chain
 
 from btq_lang.btcpp.by_hand import ByHand, NodeGuards, changed_by_hand
 from btq_lang.btcpp.reader import read
-from btq_lang.btcpp.side_file import FORMAT, VERSION
+from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.file import is_btq
@@ -88,7 +88,7 @@ def restored(xml: str, imported: str, side: str) -> Restored | None:
 
     try:
         data = json.loads(side)
-        is_known = data["format"] == FORMAT and data["version"] == VERSION
+        is_known = data["format"] == FORMAT and data["version"] in VERSIONS
         mission, built = data["mission"]["text"], data["xml"]["sha256"]
         place = data["mission"]["file"]
         others = tuple((each["file"], each["text"]) for each in data.get("sources", ()))

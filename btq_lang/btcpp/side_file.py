@@ -18,7 +18,7 @@ from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
 from btq_lang.record import Record, fields_of
 from btq_lang.requirements import requirements
-from btq_lang.requirements.model import Applied, Requirement, Signal, SourceNode, Target
+from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax import Requirement as RequirementItem
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
 FORMAT: Final = "btq-requirements"
-VERSION: Final = 1
+VERSION: Final = 2  # 1: each condition had its contexts in it
+VERSIONS: Final = (1, 2)  # that are read
 SIDE_SUFFIX: Final = ".qreq.json"
 
 
@@ -99,6 +100,11 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
             **({"sources": _sources(workspace, paths)} if len(built.documents) < len(paths) else {}),
             "main_tree": main,
             "signals": [_plain(signal, place) for signal in found.signals.values()],
+            "contexts": [
+                {"name": name, "condition": _plain(condition, place)}
+                for name, condition in found.contexts.items()
+                if condition is not None
+            ],
             "requirements": [_requirement(each, loose.get(each.name), place) for each in found.all.values()],
             "applied": [
                 _applied(each, built.held[index] if built.held else (), running, place)
@@ -249,9 +255,13 @@ class _Places:
     def __init__(self, workspace: Workspace, folder: str) -> None:
         self._workspace = workspace
         self._folder = folder or "."
+        self._names: dict[str, str] = {}
 
     def name(self, path: str) -> str:
-        return posixpath.relpath(path, self._folder)
+        known = self._names.get(path)
+        if known is None:
+            known = self._names[path] = posixpath.relpath(path, self._folder)
+        return known
 
     def of(self, place: Place) -> dict[str, Json]:
         if place.path is None:
@@ -264,7 +274,7 @@ class _Places:
 
 
 def _plain(value: object, place: _Places) -> Json:
-    """A value of the model: its fields, `is` says what it is; signals and nodes by what they are called."""
+    """A value of the model: its fields, `is` says what it is; signals, contexts and nodes by what they are called."""
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
@@ -275,6 +285,8 @@ def _plain(value: object, place: _Places) -> Json:
         return value.symbol
     if isinstance(value, SourceNode):
         return {"name": value.node.head.text, **place.of(value.place)}
+    if isinstance(value, InContext):
+        return {"is": "incontext", "name": value.name}
     found: dict[str, Json] = {}
     if not isinstance(value, Requirement | Signal):
         found["is"] = type(value).__name__.lower()

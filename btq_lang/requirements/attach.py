@@ -17,6 +17,7 @@ from btq_lang.requirements.model import (
     Bounded,
     Claim,
     Every,
+    InContext,
     Mission,
     Parameter,
     Requirement,
@@ -166,8 +167,8 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
         return values.get(part.name, part)
     if isinstance(part, tuple):
         return tuple([_filled(each, values) for each in part])
-    if type(part).__module__ != model.__name__ or isinstance(part, SourceNode):
-        return part
+    if type(part).__module__ != model.__name__ or isinstance(part, SourceNode | InContext):
+        return part  # no parameter is known in a context
     fields = fields_of(part)
     if "signal" in fields and "verb" not in fields:
         return part  # what is read has no parameters in it, and its signal may be large

@@ -271,10 +271,14 @@ class Not(Record):
 
 
 class InContext(Record):
-    """A context by its name, and what it stands for."""
+    """A context by its name, and what it stands for: all that name a context share one condition."""
 
     name: str
     condition: Condition
+
+    def __hash__(self) -> int:
+        """By the name: a condition looks through all that it shares again and again."""
+        return hash((InContext, self.name))
 
 
 class Running(Record):
