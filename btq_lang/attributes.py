@@ -9,7 +9,7 @@ from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.near import near
-from btq_lang.slips import value_meant
+from btq_lang.slips import CHILDREN, value_meant
 from btq_lang.syntax import (
     NodeClause,
     Pair,
@@ -22,7 +22,20 @@ from btq_lang.syntax import (
     Word,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NODE_CLAUSES, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.tokens import (
+    BRACED,
+    CATEGORIES,
+    CLOSE,
+    NAME,
+    NEWLINE,
+    NODE_CLAUSES,
+    NUMBER,
+    OPEN,
+    OPERATOR,
+    QUANTITY,
+    STRING,
+    SYMBOL,
+)
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -42,8 +55,8 @@ class AttributeParser(ClauseParser):
         pairs = self.attributes(clauses)
         if clauses:
             span = Span(clauses[0].start, clauses[0].end).shifted(self.base)
-            note = "qualities and requirements stand at a node, or on a line of their own in the block of a tree"
-            self.complain("syntax-error", span, "only `key = value` pairs stand in these brackets", (note,))
+            note = "write qualities and requirements after a node, or on a line of their own in the block of a tree"
+            self.complain("syntax-error", span, "only `key = value` pairs are allowed in these brackets", (note,))
         return pairs
 
     def attributes(self, clauses: list[NodeClause]) -> tuple[Pair, ...]:
@@ -61,7 +74,7 @@ class AttributeParser(ClauseParser):
                 elif self.kind == NAME and self.raw == "parameters":
                     self.advance()
                     if not self.at_key():
-                        self.expected("`key = value` behind `parameters`")
+                        self.expected("`key = value` after `parameters`")
                     continue
                 else:
                     self.not_an_attribute(pairs, clauses)
@@ -78,10 +91,14 @@ class AttributeParser(ClauseParser):
         at = self.index
         if self.at_name() and (self.is_operator(at + 1, ":") or self.is_operator(at + 1, "==")):
             sign = self.starts[at + 1]
-            span = Span(sign, sign + len(self.raws[at + 1]))
+            is_assignment = self.text.startswith(":=", sign)
+            span = Span(sign, sign + (2 if is_assignment else len(self.raws[at + 1])))
             written = "=" if self.text[sign - 1] in " \t" else " ="
             fix = replace_fix("Write `=`", span, written, safe=True)
-            self.complain("syntax-error", span, "key and value are joined by `=`", (), (fix,))
+            message = f"expected `=` between key and value, found `{self.text[span.start : span.end]}`"
+            self.complain("syntax-error", span, message, (), (fix,))
+            if is_assignment:
+                self.advance()
             pairs.append(self.pair())
             return
         if self.kind == NAME and self.kinds[at + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
@@ -89,16 +106,37 @@ class AttributeParser(ClauseParser):
             return
         notes: tuple[str, ...] = ()
         if self.kinds[at - 1] in (NAME, NUMBER, QUANTITY) and self.kind in (NAME, NUMBER, QUANTITY):
-            notes = ("a value or name of several words stands in quotes",)
+            notes = ("a value or name of several words goes in quotes",)
         elif self.kinds[at - 1] == OPEN and self.kind in (NUMBER, QUANTITY, STRING):
-            notes = (f"a value stands behind the name of its port: `port = {shown(self.raw)}`",)
-        fixes: tuple[Fix, ...] = ()
+            notes = (f"a value goes after the name of its port: `port = {shown(self.raw)}`",)
+        elif self.kinds[at - 1] == OPEN and self.kind == NAME and self.raws[at + 1] == ",":
+            notes = (CHILDREN,)
+        fixes = self.id_in_brackets() or self.classic_quality(clauses)
         if self.kind == NAME and self.kinds[at + 1] in (STRING, NUMBER, QUANTITY, BRACED):
             gap = Span(self.here().end, self.starts[at + 1])
-            fixes = (replace_fix("Put `=` behind it", gap, " = "),)
+            fixes = (replace_fix("Put `=` after it", gap, " = "),)
         self.expected("an attribute: key = value", notes, fixes)
         if self.index == at:
             self.advance()
+
+    def id_in_brackets(self) -> tuple[Fix, ...]:
+        """The fix for `SubTree (PickPlace)`, where the ID needs no brackets."""
+        at = self.index
+        if at != 2 or self.kind != NAME or self.raws[0] not in CATEGORIES or self.kinds[at + 1] != CLOSE:
+            return ()
+        before = Span(self.starts[0] + len(self.raws[0]), self.here().start)
+        behind = Span(self.here().end, self.starts[at + 1] + len(self.raws[at + 1]))
+        return (Fix("Remove the brackets", (Change(Place(before), " "), Change(Place(behind), ""))),)
+
+    def classic_quality(self, clauses: list[NodeClause]) -> tuple[Fix, ...]:
+        """The fix for `satisfices performance (QualityReq …)`, which lacks `Quality =` before the quality."""
+        if self.kind != OPEN or not self.is_word(self.index + 1, "QualityReq") or not clauses:
+            return ()
+        last = clauses[-1]
+        if not isinstance(last, Satisfices) or not last.qualities or last.end != self.last_end():
+            return ()
+        at = last.qualities[-1].path.span.start + self.base
+        return (replace_fix("Put `Quality =` before the quality", Span(at, at), "Quality = "),)
 
     def pair(self) -> Pair:
         """Pair = Name "=" Value"""
@@ -125,7 +163,7 @@ class AttributeParser(ClauseParser):
         fix = Fix(f"Put {self.raw[0]} before it", (Change(Place(Span(span.start, span.start)), self.raw[0]),))
         at = self.starts[self.index]
         unclosed = [problem for problem in self.lexer.problems[self.known :] if problem.span.start == at]
-        message = f"a quote is missing at `{word.raw}`"
+        message = f"missing quote before `{word.raw}`"
         if self.complain_instead(unclosed, Diagnostic("syntax-error", span, message, fixes=(fix,))):
             self.inside_out = min(self.inside_out, span.end)
         self.recover()
@@ -152,8 +190,8 @@ class AttributeParser(ClauseParser):
         if cause is not None:
             self.report(cause)
         elif word.kind == STRING:
-            note = "a quote in a string is written \\\", in a script '; or a closing quote is missing further up"
-            self.complain("syntax-error", Span(start, end), "something stands right behind a string", (note,))
+            note = "write a quote in a string as \\\", in a script as '; or add a closing quote that is missing above"
+            self.complain("syntax-error", Span(start, end), "unexpected text right after a string", (note,))
         else:
             # A quote or a brace in it means that more went wrong than this.
             safe = self.ends_value() and not set(raw) & set("\"'{}\\")
@@ -173,8 +211,12 @@ class AttributeParser(ClauseParser):
     def attaches_nothing(self, span: Span, meant: str) -> None:
         """Complain of a misspelt satisfices, satisfies or tags."""
         word = self.text[span.start : span.end]
-        fix = replace_fix(f"Replace `{word}` by `{meant}`", span, meant)
-        message = f"`{word}` attaches nothing to a node: did you mean `{meant}`?"
+        by = self.index + 1
+        place = span
+        if word == "satisfied" and self.is_word(by, "by") and self.kinds[by + 1] in (NAME, STRING):
+            place = Span(span.start, self.starts[by] + len("by"))
+        fix = replace_fix(f"Replace `{word}` by `{meant}`", place, meant)
+        message = f"unknown word `{word}`; did you mean `{meant}`?"
         self.complain("syntax-error", span, message, (), (fix,))
 
     def node_clause(self, meant: str = "") -> NodeClause:
@@ -203,7 +245,7 @@ class AttributeParser(ClauseParser):
     def satisfices(self) -> tuple[Quality, ...]:
         """Quality { "," Quality };  classic files leave the commas out"""
         found: list[Quality] = []
-        self.skip_colon()
+        self.skip_sign(":")
         while True:
             quality = self.quality()
             if quality is None:
@@ -222,10 +264,16 @@ class AttributeParser(ClauseParser):
         if classic:
             self.advance()
             self.advance()
-        elif self.at_word("Quality") and self.is_behind_quality(self.index + 1):
+        elif self.at_word("Quality") and (self.is_operator(self.index + 1, ":") or self.names_follow(self.index + 1)):
             self.advance()
-            self.expected("`=` behind `Quality`")
-            return None
+            has_sign = self.at(":")
+            place = Span(self.last_end() + self.base, self.here().end if has_sign else self.here().start)
+            blank = "" if self.text[place.end : place.end + 1] in (" ", "\t") else " "
+            fix = replace_fix("Write `=`", place, f" ={blank}", safe=True)
+            message = f"expected `=` after `Quality`, found {self.found()}"
+            self.complain("syntax-error", self.here(), message, (), (fix,))
+            self.accept(":")
+            classic = True
         path = self.quality_path()
         if path is None:
             return None
@@ -240,8 +288,8 @@ class AttributeParser(ClauseParser):
         self.close_group("QualityReq or `)`")
         return Quality(path, tuple(requirements))
 
-    def is_behind_quality(self, index: int) -> bool:
-        """Whether a name stands there, so that `Quality` before it lacks its `=`."""
+    def names_follow(self, index: int) -> bool:
+        """Whether a quality's name is there, so that `Quality` before it lacks its `=`."""
         if self.kinds[index] not in (NAME, STRING) or self.raws[index] in _ATTRIBUTE_WORDS:
             return False
         return not self.is_operator(index + 1, "=")
@@ -249,7 +297,11 @@ class AttributeParser(ClauseParser):
     def satisfies(self) -> tuple[Requirement | ReqRef, ...]:
         """ReqUse { "," ReqUse };  classic files leave the commas out"""
         found: list[Requirement | ReqRef] = []
-        self.skip_colon()
+        self.skip_sign(":", "=")
+        if self.at_word("by") and self.kinds[self.index + 1] in (NAME, STRING):
+            self.advance()  # `satisfied by r`, reported at its first word
+        if not self.group:
+            self.skip_brackets("requirements of a node need no brackets")
         while True:
             if self.at_word("QualityReq"):
                 found.append(self.requirement())
@@ -257,7 +309,7 @@ class AttributeParser(ClauseParser):
                 if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
                     at = self.last_end() + self.base
                     fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
-                    self.expected("another requirement behind the comma", (), (fix,))
+                    self.expected("another requirement after the comma", (), (fix,))
                     break
                 name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
                 if name is None:
@@ -272,7 +324,7 @@ class AttributeParser(ClauseParser):
         if self.at_word("and") and self.kinds[self.index + 1] in (NAME, STRING) and not self.group:
             gone = Span(self.last_end() + self.base, self.here().end)
             fix = replace_fix("Write `,`", gone, ",", safe=True)
-            self.complain("syntax-error", self.here(), "`,` stands between them", (), (fix,))
+            self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
             self.advance()
             return True
         if not self.at(","):

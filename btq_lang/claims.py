@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
-from btq_lang.diagnostics import replace_fix
+from btq_lang.diagnostics import Fix, replace_fix
 from btq_lang.near import near
+from btq_lang.scan import number_end
 from btq_lang.syntax import (
     Amount,
     Between,
@@ -25,9 +26,11 @@ from btq_lang.syntax import (
     Sum,
     Table,
     Word,
+    quote,
 )
 from btq_lang.text import Span
 from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.units import dimension_name, parse_unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -52,7 +55,7 @@ class ClaimParser(ConditionParser):
         subject: Subject | None = None
         if not (self.kind == NAME and self.raw in VERBS):
             subject = self.subject()
-        if not (self.kind == NAME and self.raw in VERBS):
+        if not (self.kind == NAME and self.raw in VERBS) and not self.blank_in_path(subject, VERBS):
             if subject is not None:
                 self.no_verb(subject)
             return None
@@ -71,7 +74,7 @@ class ClaimParser(ConditionParser):
         elif word in _OF_CONDITIONS:
             if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
                 note = (
-                    "a node that never fails is one that `succeeds`; nodes that run are conditions: `never node Dock`"
+                    "write `succeeds` for a node that never fails; that a node runs is a condition: `never node Dock`"
                 )
                 self.expected("a condition", (note,))
             else:
@@ -106,7 +109,7 @@ class ClaimParser(ConditionParser):
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERBS:
             return False
         fix = replace_fix(f"Replace `{self.raw}` by `every`", self.here(), "every")
-        self.complain("syntax-error", self.here(), "all nodes of a kind are `every …`", (), (fix,))
+        self.complain("syntax-error", self.here(), "all nodes of a kind are written `every …`", (), (fix,))
         self.advance()
         return True
 
@@ -122,18 +125,23 @@ class ClaimParser(ConditionParser):
             self.expected("a verb: takes, succeeds, needs, keeps, …", (MEANT[self.raw],))
         elif isinstance(subject, Path) and self.at("."):
             fix = replace_fix("Write `/`", self.here(), "/")
-            self.complain("syntax-error", self.here(), "the names of a path have `/` between them", (), (fix,))
+            self.complain("syntax-error", self.here(), "the names of a path are separated by `/`", (), (fix,))
             self.recover()
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
-            note = "a clause speaks of one node: write it for each, or `sum of A, B` for the time of both"
+            note = "a clause is about one node; write it for each, or `sum of A, B` for the time of both"
             self.expected(_A_VERB, (note,))
+        elif first is not None and first.raw == "at" and (fixes := self.takes_before(first)):
+            self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
         elif first is not None and first.kind == NAME and first.raw in MEANT:
-            self.expected(f"a verb behind `{first.raw}` (takes, succeeds, needs, keeps, …)", (MEANT[first.raw],))
+            self.expected(f"a verb after `{first.raw}` (takes, succeeds, needs, keeps, …)", (MEANT[first.raw],))
         elif first is not None and self.kind == OPERATOR and self.raw in _COMPARISONS:
             at = first.start + self.base
             fix = replace_fix("Put `keeps` before it", Span(at, at), "keeps ")
-            message = "a condition stands behind its verb: `keeps`, `never`, `needs` or `leaves`"
-            notes = ("`keeps` while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
+            if first.raw in ("time", "duration") and (bound := _INSTEAD_OF_BOUNDS.get(self.raw)):
+                written = f"takes {' '.join(bound)}"
+                fix = replace_fix(f"Write `{written}`", Span(at, self.here().end), written)
+            message = "expected a verb before the condition: `keeps`, `never`, `needs` or `leaves`"
+            notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
             self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
             self.recover()
         elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
@@ -146,16 +154,46 @@ class ClaimParser(ConditionParser):
             name = "/".join(word.raw for word in subject.names)
             note = _INSTEAD_OF_A_NODE
             if subject.names[0].kind == STRING:
-                note = "a requirement has one title, behind its name; reasons are written `because …`"
+                note = "a requirement has one title, after its name; reasons are written `because …`"
             elif self.kind == STRING:
-                note = '`:` stands before a quality, and quotes around a title: QualityReq ID : quality "title"'
-            self.expected(f"a verb behind `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
+                note = 'a quality goes after `:` and a title in quotes: QualityReq ID : quality "title"'
+            self.expected(f"a verb after `{shown(name)}` (takes, succeeds, needs, keeps, …)", (note,))
+
+    def blank_in_path(self, path: Subject | None, follow: frozenset[str]) -> bool:
+        """Complain of `Inspect Dock succeeds`, where a path is written `Inspect/Dock`, and pass over the rest.
+
+        Args:
+            follow: the words that may follow the path.
+        """
+        index = self.index
+        while self.kinds[index] in (NAME, STRING) and not (self.kinds[index] == NAME and self.raws[index] in follow):
+            index += 1
+        names = self.raws[self.index : index]
+        is_path = isinstance(path, Path) and path.names[0].raw not in MEANT and not MODALS.intersection(names)
+        if not names or not is_path or _NO_NAMES.intersection(names) or self.raws[index] not in follow:
+            return False
+        start = path.span.start + self.base if isinstance(path, Path) else 0
+        end = self.starts[index - 1] + len(self.raws[index - 1])
+        written = "/".join((self.text[start : self.last_end() + self.base], *names))
+        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
+        message = f"a path is written with `/`: `{shown(written)}`"
+        note = f"a name of several words goes in quotes: {quote(self.text[start:end])}"
+        self.complain("syntax-error", Span(start, end), message, (note,), (fix,))
+        self.go_to(index)
+        return True
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Complain of a word that begins no clause, and pass over the rest."""
         fix = replace_fix(f"Replace `{word}` by `{likely}`", span, likely)
-        self.complain("syntax-error", span, f"`{word}` begins no clause: did you mean `{likely}`?", (), (fix,))
+        self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
         self.recover()
+
+    def takes_before(self, first: Word) -> tuple[Fix, ...]:
+        """The fix for `at most 30 s`, which lacks its verb."""
+        value = self.index + 1
+        is_bound = ("at", self.raw) in RELATIONS and self.kinds[value] == QUANTITY and is_time(self.raws[value])
+        at = first.start + self.base
+        return (replace_fix("Put `takes` before it", Span(at, at), "takes "),) if is_bound else ()
 
     def subject(self) -> Subject | None:
         """Subject = Path | "mission" | "every" Name | "from" Event "to" Event | "sum" "of" Path { "," Path }"""
@@ -178,7 +216,7 @@ class ClaimParser(ConditionParser):
                 if self.at_word("and"):
                     gone = Span(self.last_end() + self.base, self.here().end)
                     fix = replace_fix("Write `,`", gone, ",", safe=True)
-                    self.complain("syntax-error", self.here(), "`,` stands between them", (), (fix,))
+                    self.complain("syntax-error", self.here(), "expected `,` instead of `and`", (), (fix,))
                     self.advance()
                 elif not self.accept(","):
                     break
@@ -192,7 +230,7 @@ class ClaimParser(ConditionParser):
             condition = self.cond()
             return Event(start, self.last_end(), None, "when", condition)
         path = None if self.accept_word("mission") else self.path("an event: a node and what happens to it")
-        if not (self.kind == NAME and self.raw in HAPPENINGS):
+        if not (self.kind == NAME and self.raw in HAPPENINGS) and not self.blank_in_path(path, HAPPENINGS):
             note = "an event is a node and what happens to it: `Pick starts`, `Place succeeds`"
             self.expected("starts, succeeds, fails, finishes or halts", (note,), self.replaced_by(HAPPENINGS))
             return None
@@ -203,7 +241,7 @@ class ClaimParser(ConditionParser):
 
     def bound(self) -> Bound | None:
         """ "at" "most" Bounded | "at" "least" Bounded | "less" … | "more" … | "between" Simple "and" Simple"""
-        self.skip_colon()
+        self.skip_sign(":")
         start = self.start()
         if self.accept_word("between"):
             lower = self.amount()
@@ -212,16 +250,20 @@ class ClaimParser(ConditionParser):
         relation = None
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
             relation = RELATIONS.get((self.raw, self.raws[self.index + 1]))
-        if relation is None and (said := self.bound_in_other_words()):
+        if said := self.bound_in_other_words():
             relation = said
         elif relation is None:
             meant = _INSTEAD_OF_BOUNDS.get(self.raw) if self.kind in (NAME, OPERATOR) else None
             if meant is None:
                 example = self.raw if self.kind in (QUANTITY, NUMBER) else "30 s"
-                note = f"how much is said before the value: `at most {example}`"
+                note = f"write the kind of bound before the value: `at most {example}`"
                 if self.kind in (QUANTITY, NUMBER) and self.raws[self.index + 1] == "-":
                     note = "a range is written `between 10 s and 20 s`"
-                self.expected("a bound: at most, at least, less than, more than or between", (note,))
+                fixes: tuple[Fix, ...] = ()
+                if self.kind == QUANTITY and self.raws[self.index + 1] != "-" and self.raws[self.index - 1] == "takes":
+                    at = self.here().start
+                    fixes = (replace_fix("Put `at most` before it", Span(at, at), "at most "),)
+                self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
                 return None
             relation = RELATIONS[meant]
             written = " ".join(meant)
@@ -235,7 +277,9 @@ class ClaimParser(ConditionParser):
 
     def bound_in_other_words(self) -> str | None:
         """`no more than`, `up to`: complain, and leave their last word at hand."""
-        for length in (3, 2):
+        if self.kind != NAME and self.kind != OPERATOR:
+            return None
+        for length in (5, 4, 3, 2):
             words = tuple(self.raws[self.index : self.index + length])
             meant = _BOUNDS_IN_WORDS.get(words)
             if meant is not None:
@@ -280,7 +324,7 @@ class ClaimParser(ConditionParser):
 
     def amount(self, strings: bool = False) -> Amount | None:
         """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
-        self.skip_colon()
+        self.skip_sign(":")
         negative = self.accept("-")
         if self.kind == QUANTITY or self.kind == NUMBER:
             return Amount(self.take(), negative)
@@ -290,12 +334,18 @@ class ClaimParser(ConditionParser):
         return None
 
 
-QUALITY_IN_HEAD: Final = "a requirement's quality stands behind its name: `QualityReq fast : reliability`"
+def is_time(raw: str) -> bool:
+    """Whether a quantity is a time: `30 s`."""
+    unit = parse_unit(raw[number_end(raw, 0) :].strip())
+    return unit is not None and dimension_name(unit) == "time"
+
+
+QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
 MEANT: Final = {  # by what is read as a node in front of a verb
-    "at": "a bound stands behind its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
+    "at": "a bound goes after its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
     "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
-    "if": "what holds in a situation only is followed by `while humans_near`, or `when fragile`",
+    "if": "to limit a clause to a situation, add `while humans_near` or `when fragile`",
     "unless": "write `while not humans_near`",
     "after": "write `follows Look succeeds`, or `starts within 2 s after Look succeeds`",
     "before": "write `from Pick starts to Place succeeds takes at most 45 s`, or `Place follows Pick succeeds`",
@@ -305,7 +355,7 @@ MEANT: Final = {  # by what is read as a node in front of a verb
     "quality": QUALITY_IN_HEAD,
     **dict.fromkeys(
         ("title", "description", "text"),
-        'a requirement has one title, behind its name: `QualityReq fast "in time"`',
+        'a requirement has one title, after its name: `QualityReq fast "in time"`',
     ),
     **dict.fromkeys(
         ("must", "shall", "should", "will", "may"),
@@ -313,9 +363,12 @@ MEANT: Final = {  # by what is read as a node in front of a verb
     ),
 }
 MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
+_NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
 _COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
-_INSTEAD_OF_A_NODE: Final = "it is read as a node, for it begins no clause: in at least, while, on violation, goal, …"
+_INSTEAD_OF_A_NODE: Final = (
+    "btq reads it as a node, since no clause begins with it: in at least, while, on violation, goal, …"
+)
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(
@@ -325,6 +378,12 @@ _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(
         (("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("=", ">")), ("at", "least")
     ),
+    **{
+        (word, *than, "or", "equal", *to): (("at", "most") if word in ("less", "smaller", "lower") else ("at", "least"))
+        for word in ("less", "smaller", "lower", "more", "greater", "larger")
+        for than in ((), ("than",))
+        for to in ((), ("to",))
+    },
     **dict.fromkeys((("longer", "than"), ("greater", "than"), ("larger", "than")), ("more", "than")),
     **dict.fromkeys((("shorter", "than"), ("smaller", "than"), ("fewer", "than")), ("less", "than")),
 }

@@ -5,9 +5,9 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
-from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser
+from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
-from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.measured import measured
 from btq_lang.near import near
 from btq_lang.scan import is_unit, line_end, path_end, unit_run
@@ -32,7 +32,7 @@ from btq_lang.syntax import (
     unquote,
 )
 from btq_lang.text import Span
-from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
+from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -53,22 +53,70 @@ class ClauseParser(ClaimParser):
         """Requirement = ReqHead { Clause };  the word QualityReq is at hand"""
         start = self.start()
         self.advance()
-        if self.at_word("ID") and self.is_operator(self.index + 1, "="):
+        self.skip_glued_colon()
+        if self.kind == OPEN and self.is_word(self.index + 1, "ID"):
+            self.skip_brackets("a requirement's ID goes after `QualityReq`, without brackets")
+        if self.at_word("ID") and (self.is_operator(self.index + 1, "=") or self.lacks_equals()):
             return self.classic_requirement(start)
         name = self.requirement_id("the requirement's ID")
         parameters = self.params() if self.kind == OPEN and name is not None else ()
-        quality = self.quality_path() if self.accept(":") else None
+        if self.at(":") and self.adjacent(self.index):
+            self.skip_last_sign()
+        quality = self.quality_path() if self.accept(":") or self.skip_key(("quality",), ":") else None
         if quality is not None:
             self.torn_quality(quality)
+        self.skip_key(_TITLES, "")
         title = self.take() if self.kind == STRING else self.bare_title(quality is not None)
         if quality is None and title is not None and self.at(":"):
-            self.complain("syntax-error", self.here(), "a requirement's quality stands before its title")
+            self.complain("syntax-error", self.here(), "a requirement's quality goes before its title")
             self.advance()
             quality = self.quality_path()
         elif quality is not None and self.at(","):
             self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
         clauses = self.clauses()
         return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
+
+    def skip_brackets(self, message: str) -> None:
+        """Report the brackets at hand, which do not belong there, and go on as if there were none."""
+        if self.kind != OPEN or CLOSE not in self.kinds[self.index :]:
+            return
+        closing = self.kinds.index(CLOSE, self.index)
+        if self.raws[closing] != ")" or OPEN in self.kinds[self.index + 1 : closing]:
+            return
+        ends = self.here(), Span(self.starts[closing], self.starts[closing] + 1)
+        fix = Fix("Remove the brackets", tuple([Change(Place(end), "") for end in ends]), safe=True)
+        self.complain("syntax-error", self.here(), message, (), (fix,))
+        for index in (closing, self.index):
+            del self.kinds[index], self.starts[index], self.raws[index]
+        self.go_to(self.index)
+
+    def skip_key(self, words: tuple[str, ...], instead: str) -> bool:
+        """Report an attribute's key where the value alone belongs, `description = "in time"`, and pass over it.
+
+        Args:
+            instead: what is written instead of the key.
+        """
+        value = self.index + 2
+        if self.kind != NAME or self.raw not in words or self.kinds[value] not in (NAME, STRING):
+            return False
+        if not (self.is_operator(self.index + 1, "=") or self.is_operator(self.index + 1, ":")):
+            return False
+        key = Span(self.here().start, self.starts[self.index + 1] + 1)
+        written = self.text[key.start : key.end]
+        if instead:
+            fix = replace_fix(f"Write `{instead}`", key, instead, safe=True)
+            message = f"expected `{instead}` before the quality, found `{written}`"
+        else:
+            fix = replace_fix(f"Remove `{written}`", Span(key.start, self.starts[value]), "", safe=True)
+            message = f"a title goes after the ID without `{written}`"
+        self.complain("syntax-error", key, message, (), (fix,))
+        self.go_to(value)
+        return True
+
+    def lacks_equals(self) -> bool:
+        """Whether the `=` after `ID` is missing: `QualityReq ID rq1 description "x"`."""
+        name = self.index + 1
+        return self.kinds[name] == NAME and self.raws[name + 1] in ("description", ",", "\n", "\r\n", "\r", "")
 
     def requirement_id(self, what: str) -> Word | None:
         """Name;  `REQ.001`, `1.2` and `4711` are told to need quotes, and taken"""
@@ -154,16 +202,31 @@ class ClauseParser(ClaimParser):
 
     def classic_requirement(self, start: int) -> Requirement:
         """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
-        self.advance()
-        self.advance()
+        lacking = [] if self.is_operator(self.index + 1, "=") else [self.index]
+        self.go_to(self.index + (1 if lacking else 2))
         name = self.name("the requirement's ID")
-        comma = 1 if self.at(",") else 0
+        key = self.index + (1 if self.at(",") else 0)
         text = None
-        if self.is_word(self.index + comma, "description") and self.is_operator(self.index + comma + 1, "="):
-            self.go_to(self.index + comma + 2)
+        if self.is_word(key, "description") and (self.is_operator(key + 1, ":") or self.kinds[key + 1] == STRING):
+            lacking.append(key)
+        if lacking:
+            self.no_equals(lacking)
+        if self.is_word(key, "description") and (lacking[-1:] == [key] or self.is_operator(key + 1, "=")):
+            self.go_to(key + (1 if self.kinds[key + 1] == STRING else 2))
             text = self.name("the description")
         clauses = self.clauses()
         return Requirement(start, self.last_end(), name, True, (), None, text, clauses)
+
+    def no_equals(self, keys: list[int]) -> None:
+        """Complain that the `=` after some words of the classic form is missing."""
+        changes: list[Change] = []
+        for key in keys:
+            end = self.starts[key] + len(self.raws[key])
+            sign = self.starts[key + 1] + 1 if self.is_operator(key + 1, ":") else end
+            changes.append(Change(Place(Span(end, sign)), " ="))
+        span = Span(self.starts[keys[0]], self.starts[keys[0]] + len(self.raws[keys[0]]))
+        fix = Fix("Write `=`", tuple(changes), safe=True)
+        self.complain("syntax-error", span, f"expected `=` after `{self.raws[keys[0]]}`", (), (fix,))
 
     def params(self) -> tuple[Parameter, ...]:
         """Params = "(" NAME ":" UNIT [ "=" Bounded ] { "," NAME ":" UNIT [ "=" Bounded ] } ")\""""
@@ -173,7 +236,7 @@ class ClauseParser(ClaimParser):
         while name := self.plain_name("a parameter's name"):
             unit = None
             if self.at("="):
-                note = "its unit stands behind `:`, and what it is by default behind that: `limit : m = 3 m`"
+                note = "write its unit after `:`, and its default after that: `limit : m = 3 m`"
                 self.expected("`:` and the parameter's unit", (note,))
             elif self.expect(":"):
                 unit = self.unit()
@@ -202,7 +265,7 @@ class ClauseParser(ClaimParser):
     def argument_name(self) -> Word | None:
         """NAME"""
         if self.kind in (NUMBER, QUANTITY):
-            self.expected("a parameter's name", (f"a value stands behind the name of its parameter: `x = {self.raw}`",))
+            self.expected("a parameter's name", (f"a value goes after the name of its parameter: `x = {self.raw}`",))
             return None
         return self.plain_name("a parameter's name")
 
@@ -240,7 +303,9 @@ class ClauseParser(ClaimParser):
             if clause is None:
                 return tuple(found)
             found.append(clause)
-        if at_least_one and not found:
+        if at_least_one and not found and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
+            self.bare_bound()
+        elif at_least_one and not found:
             self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
         return tuple(found)
 
@@ -264,9 +329,17 @@ class ClauseParser(ClaimParser):
             return self.window()
         if word == "on":
             self.advance()
-            self.expect_word("violation")
+            if not self.accept_word("violation"):
+                self.no_violation()
+            self.skip_sign("=")
             action = self.one_of(ACTIONS)
             return OnViolation(start, self.last_end(), action)
+        if word == "on_violation":
+            fix = replace_fix("Write `on violation`", self.here(), "on violation", safe=True)
+            self.complain("syntax-error", self.here(), "expected `on violation`, found `on_violation`", (), (fix,))
+            self.advance()
+            self.skip_sign("=")
+            return OnViolation(start, self.last_end(), self.one_of(ACTIONS))
         if word == "goal":
             self.advance()
             bounded = self.bounded()
@@ -294,6 +367,27 @@ class ClauseParser(ClaimParser):
             self.advance()
             return self.clause() if self.kind == NAME else None
         return self.claim()
+
+    def no_violation(self) -> None:
+        """Complain that `violation` is missing, and pass over what is meant for it: `on failure fail`."""
+        following = self.index + 1
+        if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
+            fix = replace_fix(f"Replace `{self.raw}` by `violation`", self.here(), "violation")
+            self.complain("syntax-error", self.here(), f"expected `violation`, found `{self.raw}`", (), (fix,))
+            self.advance()
+        else:
+            self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
+
+    def bare_bound(self) -> None:
+        """Complain of `<= 30 s` without a verb."""
+        sign, value = self.raw, self.index + 1
+        bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
+        fixes: tuple[Fix, ...] = ()
+        if bound is not None and self.kinds[value] == QUANTITY and is_time(self.raws[value]):
+            written = f"takes {bound} {self.raws[value]}"
+            span = Span(self.here().start, self.starts[value] + len(self.raws[value]))
+            fixes = (replace_fix(f"Write `{written}`", span, written),)
+        self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
 
     def is_no_time(self) -> bool:
         """Whether a word stands behind a number where its unit of time should be, and is nothing else."""
@@ -324,7 +418,12 @@ class ClauseParser(ClaimParser):
                 experiments = self.one_of(("activations", "runs"))
             return Odds(start, self.last_end(), relation, value, experiments)
         self.advance()
-        if self.expect_word("probability"):
+        if self.kind == QUANTITY:
+            at = self.here()
+            fix = replace_fix("Put `probability >=` before it", Span(at.start, at.start), "probability >= ")
+            self.complain("syntax-error", at, f"odds are written `with probability >= {self.raw}`", (), (fix,))
+            value = self.take()
+        elif self.expect_word("probability"):
             if self.at(">=") or self.at(">"):
                 relation = self.raw
                 self.advance()
@@ -335,9 +434,13 @@ class ClauseParser(ClaimParser):
                 self.complain("syntax-error", self.here(), message, (), (fix,))
                 value = self.take()
             else:
-                self.expected("`>=` or `>` and a percentage")
-            if self.accept_word("of"):
-                experiments = self.one_of(("activations", "runs"))
+                fixes: tuple[Fix, ...] = ()
+                if self.kind == NUMBER and 0 < float(self.raw) <= 1:
+                    written = f">= {float(self.raw) * 100:.10g} %"
+                    fixes = (replace_fix(f"Write `{written}`", self.here(), written),)
+                self.expected("`>=` or `>` and a percentage", (), fixes)
+        if value is not None and self.accept_word("of"):
+            experiments = self.one_of(("activations", "runs"))
         return Odds(start, self.last_end(), relation, value, experiments)
 
     def percentage(self, example: str) -> Word | None:
@@ -368,7 +471,7 @@ class ClauseParser(ClaimParser):
         return Window(start, self.last_end(), size, experiments)
 
     def one_of(self, words: tuple[str, ...]) -> Word | None:
-        self.skip_colon()
+        self.skip_sign(":")
         if self.kind == NAME and self.raw in words:
             return self.take()
         what = f"{', '.join(words[:-1])} or {words[-1]}"
@@ -394,13 +497,13 @@ class ClauseParser(ClaimParser):
         word = self.text[first:end]
         if self.kind == STRING and is_unit(inner := unquote(word)):
             fix = replace_fix(f"Write `{inner}`", self.here(), inner, safe=True)
-            self.complain("syntax-error", self.here(), "a unit stands without quotes", (), (fix,))
+            self.complain("syntax-error", self.here(), "a unit takes no quotes", (), (fix,))
         elif self.kind == STRING:
             self.expected("a unit: s, m/s, %, 1, bool, text, …")
             return None
         elif word in _OTHER_SORTS:
             fix = replace_fix(f"Write `{_OTHER_SORTS[word]}`", Span(first, end), _OTHER_SORTS[word])
-            message = f"`{word}` is no unit: did you mean `{_OTHER_SORTS[word]}`?"
+            message = f"unknown unit `{word}`; did you mean `{_OTHER_SORTS[word]}`?"
             self.report(Diagnostic("unknown-unit", Span(first, end), message, fixes=(fix,)))
         elif word not in UNITLESS and not is_unit(word):
             self.report(unknown_unit(self.text, first, end))
@@ -409,6 +512,7 @@ class ClauseParser(ClaimParser):
         return Word(NAME, start, self.text[first:end])
 
 
+_TITLES: Final = ("description", "title", "text")
 _OTHER_WORDS: Final = {  # for actions and methods
     **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
     **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
@@ -420,8 +524,8 @@ _OTHER_SORTS: Final = {
     **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
     **dict.fromkeys(("int", "integer", "float", "double", "number", "count"), "1"),
 }
-_A_TITLE: Final = "a title stands in quotes"
-_A_QUALITY: Final = "a quality stands behind `:`"
+_A_TITLE: Final = "a title goes in quotes"
+_A_QUALITY: Final = "a quality goes after `:`"
 _BEGIN_CLAUSES: Final = frozenset(
     (("in", "at"), ("with", "probability"), ("on", "violation"), ("over", "last"), ("verified", "by"))
 )

@@ -63,7 +63,7 @@ class ConditionParser(Cursor):
         if self._nesting == 0:
             self._operators = 0
         if self._nesting > MAX_NESTING:
-            self.too_deep(f"more than {MAX_NESTING} brackets in brackets")
+            self.too_deep(f"more than {MAX_NESTING} nested brackets")
             return None
         self._nesting += 1
         left = self.conj()
@@ -206,7 +206,7 @@ class ConditionParser(Cursor):
             if self.kind == QUANTITY or self.kind == NUMBER:
                 word = self.take()
                 return Negative(start, word.end, Operand(word))
-            self.expected("a number or a quantity behind `-`")
+            self.expected("a number or a quantity after `-`")
             return None
         if self.kind == QUANTITY or self.kind == NUMBER or self.kind == STRING:
             return Operand(self.take())

@@ -99,31 +99,38 @@ class Cursor:
 
     def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
+        self.skip_last_sign()
         if self.kind != NEWLINE:
             if not notes and self.at_name() and self.is_behind_name():
                 notes = (_QUOTES,)
             if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
-                notes = ("a name with a point in it stands in quotes",)
+                notes = ("a name that contains a point goes in quotes",)
             if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
                 notes = ("a quantity has one number and one unit: `1.5 h`, `90 min`",)
-            self.expected("the end of the line", notes, fixes or self.needless())
+            self.expected("the end of the line", notes, fixes)
         last = len(self.kinds) - 2
         end = self.starts[last] + len(self.raws[last]) if last >= 0 else self.starts[0]
         self.more = self.lexer.open_line()
         return end - self.base
 
-    def needless(self) -> tuple[Fix, ...]:
-        """The fix for `:` or `.` where neither belongs: at the end of the line, or behind its first word."""
-        if not (self.at(":") or self.at(".")) or not (self.kinds[self.index + 1] == NEWLINE or self.index == 1):
-            return ()
-        return (replace_fix(f"Remove `{self.raw}`", self.here(), "", safe=True),)
-
-    def skip_colon(self) -> None:
-        """Pass over a `:` as other languages have it behind a word: `on violation: fail`."""
-        if self.at(":"):
-            fix = replace_fix("Remove `:`", self.here(), "", safe=True)
-            self.complain("syntax-error", self.here(), "no `:` stands here", (), (fix,))
+    def skip_sign(self, *signs: str) -> None:
+        """Report a sign as other languages have it after a word, and pass over it: `on violation: fail`."""
+        if self.kind == OPERATOR and self.raw in signs:
+            at = self.here()
+            is_apart = self.text[at.start - 1] in " \t" and self.text[at.end : at.end + 1] in (" ", "\t")
+            fix = replace_fix(f"Remove `{self.raw}`", Span(at.start, at.end + is_apart), "", safe=True)
+            self.complain("syntax-error", at, f"unexpected `{self.raw}`", (), (fix,))
             self.advance()
+
+    def skip_glued_colon(self) -> None:
+        """Report a `:` right after a word that takes none, and pass over it: `QualityReq: rq1`."""
+        if self.at(":") and self.adjacent(self.index):
+            self.skip_sign(":")
+
+    def skip_last_sign(self) -> None:
+        """Report a `:` or `.` at the end of a line, and pass over it."""
+        if self.kinds[self.index + 1 :] == [NEWLINE]:
+            self.skip_sign(":", ".")
 
     def deeper(self, level: int) -> bool:
         """Whether the open line stands in a block below `level`."""
@@ -322,10 +329,10 @@ class Cursor:
         if not glued or self.kinds[following] not in (NUMBER, QUANTITY):
             return None
         place = Span(self.starts[comma], self.starts[following])
-        fixes = [replace_fix("Write a point", place, ".")]
+        fixes = [replace_fix("Write a decimal point", place, ".")]
         if number_end(self.text, self.starts[following]) - self.starts[following] == 3:  # thousands, perhaps
             fixes.append(replace_fix("Remove the comma", place, ""))
-        message = "the decimals of a number stand behind a point"
+        message = "a decimal number is written with a point"
         return Diagnostic("syntax-error", place, message, fixes=tuple(fixes))
 
     def leading_point(self) -> Diagnostic | None:
@@ -418,7 +425,7 @@ def shown(raw: str) -> str:
     return line if len(line) == len(raw) <= 40 else f"{line[:37]}…"
 
 
-_QUOTES: Final = "a name of several words stands in quotes"
+_QUOTES: Final = "a name of several words goes in quotes"
 VALUES: Final = frozenset((STRING, NAME, NUMBER, QUANTITY, BRACED))
 # Mistakes that the lexer reports and that leave something missing for the parser.
 _SAID: Final = frozenset(

@@ -14,7 +14,7 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from btq_lang.characters import HASH, SLASH
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.regex import regex
 from btq_lang.scan import (
     COMPILED,
@@ -22,6 +22,7 @@ from btq_lang.scan import (
     braced_end,
     line_end,
     line_opening,
+    line_start,
     name_end,
     number_at,
     string_end,
@@ -89,6 +90,7 @@ class Lexer:
         self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
         self.adopted = False
         self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
+        self._block_ends: set[int] = set()  # where braces close blocks whose opening ones are reported
         self._strange = False  # a character that begins nothing was reported on this line
         self._stray_until = -1  # the end of the last line of text where a `)` was reported
         self._wrong_units = 0  # how many were reported on this line
@@ -136,7 +138,7 @@ class Lexer:
         """The blanks of the open blocks, what was taken for them, and the level of an open Root's items, where they and
         the text from here on are all that tells what follows; else None."""
         searched = min(self._no_double, self._no_single, self._no_comment_end) <= self.size
-        if searched or self.problems or self.ended_early:
+        if searched or self.problems or self.ended_early or self._block_ends:
             return None
         return tuple(self.columns), tuple(self._aliases) if self.adopted else (), self._root_level
 
@@ -304,9 +306,25 @@ class Lexer:
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
+        if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
+            return self._shell_entry(start, entry.end())
+        if character == ";" and self._separates(start):
+            self._strange = True
+            fix = replace_fix("Write `,`", Span(start, start + 1), ",", safe=True)
+            message = "expected `,` between attributes, found `;`"
+            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+            return start + 1
+        if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
+            self._strange = True
+            fixes = (value_meant(text, start, square.end(), safe=self._takes_strings()),)
+            span = Span(start, square.end())
+            self.problems.append(Diagnostic("syntax-error", span, "this value needs quotes", fixes=fixes))
+            return self._add(NAME, start, square.end())
         in_value = self._brackets and (character == "[" or character not in INSTEAD)
         if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
             return self._quote_value(start)
+        if character in "{}[]" and (end := self._block_sign(start, character)) > start:
+            return end
         if character == "{" or character == "}":
             return self._half_braced(start, character)
         if self.kinds and self.kinds[-1] == STRING and _has_line_end(text, self.starts[-1], start):
@@ -319,20 +337,67 @@ class Lexer:
             self.problems.append(no_token(text, start, end, of_signal=self.raws[:1] == ["signal"]))
         return end
 
-    def _half_braced(self, start: int, character: str) -> int:
-        """A brace without the other one: `{key` or `key}`; the key is left as a word.  Alone on its line, or at the
-        end of it, it is somebody's block."""
+    def _separates(self, start: int) -> bool:
+        """Whether a sign here is between two attributes, as `,` may be."""
+        if not self._brackets or self._strange or self.raws[-1] in ("=", ",", "("):
+            return False
+        return _KEY.match(self.text, start + 1) is not None
+
+    def _shell_entry(self, start: int, end: int) -> int:
+        """A blackboard entry as shells write a variable: `$key` or `${key}`."""
+        written = f"{{{self.text[start:end].strip('${}')}}}"
+        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
+        self._strange = True
+        message = f"a blackboard entry is written `{written}`"
+        self.problems.append(Diagnostic("syntax-error", Span(start, end), message, fixes=(fix,)))
+        return self._add(NAME, start, end)
+
+    def _block_sign(self, start: int, character: str) -> int:
+        """The brace or bracket of somebody's block, at the end of a line or alone on it; both are one mistake.
+
+        Returns:
+            Where it ends, or `start` where it is none.
+        """
         behind = blanks_end(self.text, start + 1, self.size)
         ends_line = behind == self.size or self.text[behind] in "\r\n"
-        if ends_line and not self._strange and (character == "{" or not self.raws):
-            before = start
-            while self.raws and self.text[before - 1] in " \t":
-                before -= 1
-            fix = replace_fix(f"Remove `{character}`", Span(before, start + 1), "")
-            message = "a block has no braces: what stands deeper belongs to the line above"
-            self._strange = True
-            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+        is_opening = character in "{["
+        if self._brackets or not ends_line or self._strange or is_opening != bool(self.raws):
+            return start
+        if start in self._block_ends:
+            self._block_ends.remove(start)
             return start + 1
+        before = start
+        while self.raws and self.text[before - 1] in " \t":
+            before -= 1
+        changes: tuple[Change, ...] = (Change(Place(Span(before, start + 1)), ""),)
+        closing = self._block_end(start, "}" if character == "{" else "]") if is_opening else start
+        if is_opening and closing > start:
+            self._block_ends.add(closing)
+            end = line_end(self.text, closing)
+            end += 2 if self.text.startswith("\r\n", end) else end < self.size
+            changes += (Change(Place(Span(line_start(self.text, start, closing), end)), ""),)
+        fix = Fix(f"Remove `{character}`", changes)
+        self._strange = True
+        message = f"unexpected `{character}`: a block consists of indented lines"
+        self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+        return start + 1
+
+    def _block_end(self, start: int, sign: str) -> int:
+        """Where the sign that closes a block is alone on the first line that is no deeper than the one at hand; else
+        -1."""
+        text = self.text
+        at = line_end(text, start)
+        while at < self.size:
+            first, at = line_opening(text, at, "")
+            if at - first <= len(self.blanks):
+                behind = blanks_end(text, at + 1, self.size)
+                is_alone = behind >= self.size or text[behind] in "\r\n"
+                return at if text[at : at + 1] == sign and is_alone else -1
+            at = line_end(text, at)
+        return -1
+
+    def _half_braced(self, start: int, character: str) -> int:
+        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
         if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
             fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
             message = "a blackboard entry has one pair of braces"
@@ -349,7 +414,7 @@ class Lexer:
         if character == "}":
             at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
         fix = replace_fix(f"Add `{other}`", Span(at, at), other)
-        message = f"this `{character}` has no `{other}`"
+        message = f"missing `{other}` for this `{character}`"
         notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
         span = Span(start, start + 1)
         self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
@@ -405,8 +470,8 @@ class Lexer:
 
     def _unclosed_string(self, start: int, quote: str) -> int:
         end = line_end(self.text, start)
-        message = f"this string has no closing {quote}"
-        notes = ("it is read to the end of its line",)
+        message = f"missing closing {quote} for this string"
+        notes = ("btq reads it to the end of its line",)
         fixes = (close_string(self.text, start),)
         self.problems.append(Diagnostic("unclosed-string", Span(start, end), message, notes=notes, fixes=fixes))
         self._add(STRING, start, end)
@@ -423,7 +488,7 @@ class Lexer:
                         Span(start, start + 1),
                         "this string runs past a line that looks like the start of an item",
                         related=(Related(place, "this line is inside the string"),),
-                        notes=("if that is not meant, a closing quote is missing",),
+                        notes=("if you did not intend that, add the closing quote",),
                         fixes=(close_string(self.text, start),),
                     )
                 )
@@ -436,7 +501,7 @@ class Lexer:
         start, end = self._whole_word(at)
         sign = _COMMENT_SIGN.search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
-        message = f"`{sign[0]}` begins a comment only behind a blank"
+        message = f"`{sign[0]}` begins a comment only after a blank"
         insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
         in_value = bool(self.raws) and self.raws[-1] == "="
         if start == sign.start() and not in_value:
@@ -448,7 +513,9 @@ class Lexer:
         fixes = (fix,) if in_value or sign[0] == "/*" else (fix, insert)
         if sign.end() == end:  # the comment was not even begun right behind the word
             fixes = fixes[::-1]
-        self.problems.append(Diagnostic("misplaced-comment", Span(start, end), f"{message}: quote this", fixes=fixes))
+        self.problems.append(
+            Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", fixes=fixes)
+        )
         return self._add(NAME, start, end)
 
     def _quote_value(self, at: int) -> int:
@@ -515,8 +582,8 @@ class Lexer:
         self.comments.append((start, end))
         if closes:
             fix = replace_fix("Close it at the end of the line", Span(end, end), " */")
-            message = "this comment has no closing */"
-            notes = ("it is read to the end of its line",)
+            message = "missing closing `*/` for this comment"
+            notes = ("btq reads it to the end of its line",)
             span = Span(start, start + 2)
             self.problems.append(Diagnostic("unclosed-comment", span, message, notes=notes, fixes=(fix,)))
             self._close_lost(start, end)
@@ -529,7 +596,7 @@ class Lexer:
             if self.ended_early:  # it is the one that was missed
                 self.ended_early -= 1
             elif position > self._stray_until:
-                self._report("syntax-error", position, position + 1, "this `)` closes nothing")
+                self._report("syntax-error", position, position + 1, "unexpected `)`: no bracket is open")
                 self._stray_until = line_end(self.text, position)
             return position + 1
         self._brackets.pop()
@@ -538,7 +605,7 @@ class Lexer:
     def _close_square(self, position: int) -> int:
         span = Span(position, position + 1)
         fix = replace_fix("Write `)`", span, ")", safe=True)
-        self.problems.append(Diagnostic("syntax-error", span, "brackets are closed by `)`", fixes=(fix,)))
+        self.problems.append(Diagnostic("syntax-error", span, "expected `)`, found `]`", fixes=(fix,)))
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
 
@@ -600,7 +667,7 @@ class Lexer:
             self._add(CLOSE, end, end)
         missed = self._missed_at(opened) if count == 1 else end
         fix = replace_fix("Add `)`", Span(missed, missed), ")" * count)
-        message = "this `(` has no `)`"
+        message = "missing `)` for this `(`"
         span = Span(opened, opened + 1)
         self.problems.append(Diagnostic("unclosed-bracket", span, message, related=related, fixes=(fix,)))
 
@@ -622,10 +689,10 @@ class Lexer:
 
     def _report_indentation(self, blanks: str, expected: str) -> None:
         if expected.startswith(blanks) or blanks.startswith(expected):
-            message = f"no open block is indented by {_shown(blanks)}"
+            message = f"an indentation of {_shown(blanks)} matches no open block"
         else:
             message = f"tabs and blanks are mixed: {_shown(blanks)} cannot be compared with {_shown(expected)}"
-        note = f"the line is read as if indented by {_shown(expected)}"
+        note = f"btq reads the line as if indented by {_shown(expected)}"
         span = Span(self.line_start, self.line_start + len(blanks))
         fix = replace_fix(f"Indent it by {_shown(expected)}", span, expected)
         self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
@@ -670,6 +737,9 @@ _TOP_LINE: Final = regex(
 _COMMENT_SIGN: Final = regex(r"#|//|/\*")
 _WHOLE_WORD: Final = regex(r"[^\s(),\"'{}]+")
 _TWICE_BRACED: Final = regex(r"\{(\{[^{}\r\n]*\})\}")
+_SHELL_ENTRY: Final = regex(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
+_KEY: Final = regex(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
+_SQUARE: Final = regex(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
 _VALUE_END: Final = regex(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
 
 # ---- tables ----

@@ -10,11 +10,13 @@ from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.characters import SMALL_S, SMALL_T
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
+from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
 from btq_lang.regex import regex
-from btq_lang.scan import COMPILED, line_start
+from btq_lang.scan import COMPILED, line_end, line_start
+from btq_lang.slips import CHILDREN
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -110,7 +112,7 @@ class NodeParser(AttributeParser):
                     self.no_block(inner)
                 elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
                     if block.clauses:
-                        self.complain("syntax-error", self.here(), "ports stand before satisfices, satisfies and tags")
+                        self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
                     ports.append(self.port())
                     self.no_block(inner)
                 else:
@@ -132,25 +134,27 @@ class NodeParser(AttributeParser):
 
     def node(self, level: int) -> Node | None:
         """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
+        self.skip_dash()
         start = self.start()
         category: Word | None = None
         kind: Word | None = None
         if self.kind == NAME and self.raw in CATEGORIES:
             category = self.take()
+            self.skip_glued_colon()
             if self.at_label():
                 kind = self.take()
+        elif self.is_doc_string():
+            self.other_comment(self.here().start + 3)
+            self.end_line()
+            return None
         elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
             kind = self.take()
+            self.skip_last_sign()
         else:
-            notes = (XML,) if self.at("<") else ()
-            fixes = self.symbol_meant()
-            if not fixes and (self.at("-") or self.at("*")) and self.kinds[self.index + 1] in (NAME, SYMBOL, STRING):
-                notes = ("a node stands there as it is, its children deeper below it",)
-                gone = Span(self.here().start, self.starts[self.index + 1])
-                fixes = (replace_fix(f"Remove `{self.raw}`", gone, "", safe=True),)
-            self.expected("a node: its kind, or a symbol: -> ? || …", notes, fixes)
+            self.no_node()
             self.end_line()
             self.skip_block(level)
+            self.skip_xml(level)
             return None
         clauses: list[NodeClause] = []
         label = None
@@ -163,13 +167,79 @@ class NodeParser(AttributeParser):
             attributes = self.attributes(clauses)
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             clauses.append(self.node_clause())
-        bare = self.index == 1 and self.at("=")  # `key = value` behind a forgotten bracket
+        bare = self.index == 1 and self.at_bare_value()  # `key = value` after a forgotten bracket
         if self.kind != NEWLINE:
-            self.leftover(kind, clauses)
+            self.leftover(kind, label is not None, clauses)
         end = self.end_line()
         if bare and not self.deeper(level):
             return None
         return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
+
+    def skip_dash(self) -> None:
+        """Report the dash of a list as YAML and Markdown have it, and pass over it: `- Go`."""
+        following = self.index + 1
+        if not (self.at("-") or self.at("*")) or self.kinds[following] not in (NAME, SYMBOL, STRING):
+            return
+        if self.symbol_meant():
+            return
+        fix = replace_fix(f"Remove `{self.raw}`", Span(self.here().start, self.starts[following]), "", safe=True)
+        note = "a node needs no dash; its children go below it, indented"
+        self.complain("syntax-error", self.here(), f"unexpected `{self.raw}` before a node", (note,), (fix,))
+        self.advance()
+
+    def is_doc_string(self) -> bool:
+        """Whether a string of Python with three quotes is at hand, on one line."""
+        following = self.index + 1
+        return self.raw in ('""', "''") and self.kinds[following] == STRING and self.adjacent(following)
+
+    def other_comment(self, inner: int) -> None:
+        """Report a comment of another language, which begins at the token at hand; its text begins at `inner`."""
+        start = self.here().start
+        span = Span(start, line_end(self.text, start))
+        inside = self.text[inner : span.end].rstrip()
+        for sign in _COMMENT_ENDS:
+            inside = inside.removesuffix(sign)
+        fixes = (replace_fix("Write `#`", span, f"# {inside.strip()}"),) if "\n" not in self.raw else ()
+        self.complain("syntax-error", span, "a comment begins with `#`", (), fixes)
+        self.go_to(len(self.kinds) - 1)
+
+    def no_node(self) -> None:
+        """Complain of a line in a tree that begins no node."""
+        start = self.starts[self.index]
+        if self.text.startswith("<!--", start):
+            self.other_comment(start + len("<!--"))
+        elif self.at("<"):
+            self.complain("syntax-error", *self.xml_here())
+            self.go_to(len(self.kinds) - 1)
+        else:
+            is_negation = self.raw == "!" and self.kinds[self.index + 1] in (NAME, STRING)
+            notes = ("to negate a node, put an `Inverter` above it, and indent the node",) if is_negation else ()
+            self.expected("a node: its kind, or a symbol: -> ? || …", notes, self.symbol_meant())
+
+    def xml_here(self) -> tuple[Span, str, tuple[str, ...], tuple[Fix, ...]]:
+        """What to report of the line at hand, which is XML: the fix writes an element as a node."""
+        start = self.starts[self.index]
+        span = Span(start, start + len(self.text[start : line_end(self.text, start)].rstrip()))
+        tag = _TAG.fullmatch(self.text, start, span.end)
+        if tag is None or tag[1] in _NOT_NODES:
+            return span, "expected btq, found XML", (XML,), ()
+        written = f"{tag[1]} ({tag[2].strip()})" if tag[2].strip() else tag[1]
+        fixes = (replace_fix(f"Write `{written}`", span, written),) if tag[3] else ()
+        return span, f"expected btq, found XML: a node is written `{written}`", (XML,), fixes
+
+    def skip_xml(self, level: int) -> None:
+        """Pass over the lines of XML that follow one which is reported."""
+        while self.more and self.lexer.level == level and self.text.startswith("<", self.lexer.position):
+            known = len(self.lexer.problems)
+            self.scan()
+            del self.lexer.problems[known:]
+            self.go_to(len(self.kinds) - 1)
+            self.end_line()
+            self.skip_block(level)
+
+    def at_bare_value(self) -> bool:
+        """Whether `= value` or `: value` is at hand, outside brackets."""
+        return self.at("=") or (self.at(":") and self.kinds[self.index + 1] in VALUES)
 
     def symbol_meant(self) -> tuple[Fix, ...]:
         """The fix for what is probably a symbol: `-->`, `=>`, `- >`."""
@@ -177,11 +247,14 @@ class NodeParser(AttributeParser):
         run = _ARROW.match(self.text, start)
         return (replace_fix("Write `->`", Span(start, run.end()), "->"),) if run else ()
 
-    def leftover(self, kind: Word | None, clauses: list[NodeClause]) -> None:
+    def leftover(self, kind: Word | None, has_label: bool, clauses: list[NodeClause]) -> None:
         """Complain of what is left of a node's line."""
-        if kind is not None and kind.kind == NAME and (kind.raw in VERBS or kind.raw in HEADS):
-            message = f"`{kind.raw}` begins a clause, and clauses stand in a requirement"
-            note = "write `satisfies QualityReq` and an ID before it, or indent it below such a line of its own"
+        if kind is not None and kind.kind == NAME and kind.raw in _STATEMENTS and self.raws[-2] == ":":
+            message = f"expected a node, found the statement `{kind.raw}`"
+            self.complain("syntax-error", kind.span.shifted(self.base), message, (_STATEMENTS[kind.raw],))
+        elif kind is not None and kind.kind == NAME and (kind.raw in VERBS or kind.raw in HEADS):
+            message = f"unexpected clause `{kind.raw}` in a tree; clauses go in a requirement"
+            note = "write `satisfies QualityReq` and an ID before it, or indent it below a line that does"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))
         elif self.kind == SYMBOL and self.index == 1 and kind is not None and kind.raw.upper() + self.raw in SYMBOLS:
             span = Span(kind.start + self.base, self.here().end)
@@ -192,19 +265,46 @@ class NodeParser(AttributeParser):
             self.attaches_nothing(self.here(), meant)
         elif self.at(",") and kind is not None and kind.kind == NAME and (meant := meant_clause(kind.raw)):
             self.attaches_nothing(kind.span.shifted(self.base), meant)
-        elif self.at("=") and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
+        elif self.at_bare_value() and self.index > 0 and self.kinds[self.index - 1] in (NAME, STRING):
             self.bare_attributes()
+        elif self.at_name() and self.kinds[self.index - 1] == CLOSE and self.ends_label(clauses):
+            self.label_after_brackets(kind, has_label)
+        elif self.at("-") and self.text.startswith("-- ", self.here().start):
+            self.other_comment(self.here().start + 2)
         elif clauses and self.at_name():
             at = self.last_end() + self.base
             fixes = (replace_fix("Put `,` before it", Span(at, at), ","),) if self.kind in (NAME, STRING) else ()
             self.expected("`,` or the end of the line", (), fixes)
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
-            self.complain("syntax-error", self.here(), "all attributes of a node stand in one pair of brackets")
+            self.complain("syntax-error", self.here(), "all attributes of a node go in one pair of brackets")
         elif self.kind in (NUMBER, QUANTITY, BRACED):
-            self.expected("the end of the line", ("values stand in brackets, with their names: `( key = value )`",))
+            self.expected("the end of the line", ("values go in brackets, with their names: `(key = value)`",))
+        elif self.at(",") or self.kind == SYMBOL:
+            self.expected("the end of the line", (CHILDREN,))
         else:
             return
         self.go_to(len(self.kinds) - 1)
+
+    def ends_label(self, clauses: list[NodeClause]) -> bool:
+        """Whether the name at hand may be the label of a node: nothing follows it but clauses, and the brackets before
+        it are the node's own."""
+        following = self.index + 1
+        if clauses and clauses[-1].end == self.last_end():
+            return False
+        return self.kinds[following] == NEWLINE or self.raws[following] in NODE_CLAUSES
+
+    def label_after_brackets(self, kind: Word | None, has_label: bool) -> None:
+        """Complain of `Retry (num_attempts = 5) Again`, where a node's label goes before the brackets."""
+        opened = self.starts[self.kinds.index(OPEN)]
+        if has_label or kind is None:
+            self.expected("the end of the line", ("a node has one label, before its brackets",))
+            return
+        gone = Span(self.last_end() + self.base, self.here().end)
+        changes = (Change(Place(Span(opened, opened)), f"{self.raw} "), Change(Place(gone), ""))
+        if self.text[opened - 1] not in " \t":
+            changes = (Change(Place(Span(opened, opened)), f" {self.raw} "), changes[1])
+        fix = Fix(f"Move `{shown(self.raw)}` before the brackets", changes)
+        self.complain("syntax-error", self.here(), "a node's label goes before its brackets", (CHILD,), (fix,))
 
     def bare_attributes(self) -> None:
         """Complain of `MoveBase station = "charger"`, and once of several lines `key = value`."""
@@ -220,11 +320,16 @@ class NodeParser(AttributeParser):
         plain = self.index > 1
         plain = plain and not any(self.kinds[index] == OPEN or self.raws[index] in NODE_CLAUSES for index in rest)
         changes: tuple[Change, ...] = (Change(Place(Span(start, start)), "("),)
+        for index in rest:
+            if self.is_operator(index, ":"):
+                sign = self.starts[index]
+                written = "=" if self.text[sign - 1] in " \t" else " ="
+                changes += (Change(Place(Span(sign, sign + 1)), written),)
         closing = [problem for problem in lexer.problems[self.known :] if self.is_stray_bracket(problem)]
         if not closing:  # else what is missing is the `(`
             changes += (Change(Place(Span(end, end)), ")"),)
         fixes = (Fix("Put brackets around them", changes),) if plain or closing else ()
-        message = "attributes stand in brackets: `( key = value )`"
+        message = "attributes go in brackets: `(key = value)`"
         self.complain_instead(closing[-1:], Diagnostic("syntax-error", Span(start, end), message, fixes=fixes))
 
     def is_stray_bracket(self, problem: Diagnostic) -> bool:
@@ -294,9 +399,9 @@ class NodeParser(AttributeParser):
             last = children[-1]
             if isinstance(last, Node) and not last.children and "\n" not in moved.rstrip():
                 step = "\t" if moved.startswith("\t") else "    "
-                fixes += (replace_fix(f"Give it to `{last.head.text}`", Span(start, start), step),)
-            note = f'a node of this name is written in quotes: "{word}"'
-            self.complain("clause-after-children", at, "clauses stand before children", (note,), fixes)
+                fixes += (replace_fix(f"Move it to `{last.head.text}`", Span(start, start), step),)
+            note = f'a node of this name goes in quotes: "{word}"'
+            self.complain("clause-after-children", at, "clauses go before children", (note,), fixes)
         return found
 
     def is_requirement(self) -> bool:
@@ -311,7 +416,7 @@ class NodeParser(AttributeParser):
         """A requirement in the block of a node: `satisfies` is missing."""
         at = self.here()
         fix = replace_fix("Write `satisfies QualityReq`", at, "satisfies QualityReq")
-        note = "one that several nodes share stands outside the tree"
+        note = "to share it between nodes, write it outside the tree"
         self.complain("syntax-error", at, "a requirement at a node begins with `satisfies`", (note,), (fix,))
         requirement = self.requirement()
         self.end_line()
@@ -357,18 +462,24 @@ class NodeParser(AttributeParser):
         if self.kind == STRING:
             text = self.take()
         else:
-            self.expected("one XML element in quotes", ('a node of this name is written in quotes: "xml"',))
+            self.expected("one XML element in quotes", ('a node of this name goes in quotes: "xml"',))
         return Verbatim(start, self.end_line(), text)
 
-    def port(self) -> Port:
-        """( "input" | … ) [ NAME ] [ ":" Name { "::" Name } ] [ "=" Value ] [ Attributes ] [ STRING ] NL"""
+    def port(self, meant: str = "") -> Port:
+        """( "input" | … ) [ NAME ] [ ":" Name { "::" Name } ] [ "=" Value ] [ Attributes ] [ STRING ] NL
+
+        Args:
+            meant: the first letters of the word at hand, which are read instead of it.
+        """
         direction = self.take()
+        if meant:
+            direction = Word(NAME, direction.start, meant)
         name = self.take() if self.kind == NAME else None
         type_ = None
         if self.kind == STRING and name is None and self.raws[self.index + 1] == ":":
             plain = unquote(self.raw)
             fixes = (replace_fix(f"Write `{plain}`", self.here(), plain, safe=True),) if is_name(plain) else ()
-            self.complain("syntax-error", self.here(), "a port's name stands without quotes", (), fixes)
+            self.complain("syntax-error", self.here(), "a port's name takes no quotes", (), fixes)
             name = self.take()
         if self.accept(":"):
             type_ = self.name("the port's type")
@@ -385,7 +496,7 @@ class NodeParser(AttributeParser):
         default = self.value() if self.accept("=") else None
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
-        notes = ("a port's type stands behind `:`, its text in quotes",)
+        notes = ("write a port's type after `:`, and its text in quotes",)
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
 
     def goes_on(self, type_: Word) -> bool:
@@ -419,13 +530,21 @@ class NodeParser(AttributeParser):
         if not self.deeper(level):
             return
         at = self.lexer.position
-        message = "this line is indented, but the line above it opens no block"
+        message = "unexpected indentation: the line above opens no block"
         self.complain("syntax-error", Span(at, self.lexer.line_end()), message, (_MEANINGFUL,))
         self.skip_block(level)
 
 
 XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`"
+CHILD: Final = "a child goes on a line of its own below its parent, indented"
+_TAG: Final = regex(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
+_NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
+_COMMENT_ENDS: Final = ("-->", '"""', "'''")
+_STATEMENTS: Final = {
+    **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
+    **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
+}
 _ARROW: Final = regex(r"[-=~]+ ?>")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
-_TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes: the engine reads no more"
-_MEANINGFUL: Final = "indentation says what a line belongs to: give it the column of the line it belongs beside"
+_TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes, which BehaviorTree.CPP refuses"
+_MEANINGFUL: Final = "indentation shows what a line belongs to; align it with its sibling lines"

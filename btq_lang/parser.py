@@ -14,11 +14,12 @@ from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
 from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
-from btq_lang.nodes import XML, NodeParser
+from btq_lang.nodes import NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.plain_models import plain_model, plain_port
 from btq_lang.record import replace
-from btq_lang.scan import COMPILED, blanks_end, line_end, name_end, path_end
+from btq_lang.regex import regex
+from btq_lang.scan import COMPILED, blanks_end, is_name, is_unit, line_end, name_end, number_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -48,6 +49,7 @@ from btq_lang.text import Span, changed
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
+    CLOSE,
     DIRECTIONS,
     ERROR,
     NAME,
@@ -241,7 +243,7 @@ class Parser(NodeParser):
             return
         self.scan()
         if found_at > level and found_at != self.stray_level:
-            self.complain("syntax-error", self.here(), "this line is indented, but no block is open above it")
+            self.complain("syntax-error", self.here(), "unexpected indentation: no block is open above this line")
         self.stray_level = found_at if found_at > level else -1
         word = self.item_word()
         item: Item
@@ -284,10 +286,15 @@ class Parser(NodeParser):
             return self.raw
         meant = item_word_meant(self.raw)
         following = self.kinds[self.index + 1]
+        other = _OTHER_ITEMS.get(self.raw.lower())
+        if other is not None and following in (NAME, STRING) and self.raws[self.index + 1] not in VERBS:
+            message = f"unknown word `{self.raw}`; did you mean `{other}`?"
+            self.complain("syntax-error", self.here(), message, (), (self.other_item(other),))
+            return "" if other == "include" or self.raw in ("def", "class") else other
         if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
             return ""
         fix = replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant)
-        message = f"`{self.raw}` begins no item: did you mean `{meant}`?"
+        message = f"unknown word `{self.raw}`; did you mean `{meant}`?"
         self.complain("syntax-error", self.here(), message, (), (fix,))
         return read_as(self.raw)
 
@@ -316,10 +323,15 @@ class Parser(NodeParser):
     def include(self) -> Include:
         """ "include" STRING [ Attributes ] NL"""
         start = self.take().start
-        if (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
+        if self.at_word("path") and self.is_operator(self.index + 1, "=") and self.kinds[self.index + 2] == STRING:
+            gone = Span(self.here().start, self.starts[self.index + 2])
+            fix = replace_fix("Remove `path =`", gone, "", safe=True)
+            self.complain("syntax-error", self.here(), "the path of an include needs no `path =`", (), (fix,))
+            self.go_to(self.index + 2)
+        elif (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
             behind = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
             fix = self.without_sign(f"Remove `{self.raw}`", behind, "", safe=True)
-            self.complain("syntax-error", self.here(), f"no `{self.raw}` stands here", (), (fix,))
+            self.complain("syntax-error", self.here(), f"unexpected `{self.raw}`", (), (fix,))
             self.advance()
         path = self.take() if self.kind == STRING else self.unquoted_path()
         attributes = self.pairs_only()
@@ -336,7 +348,10 @@ class Parser(NodeParser):
                 end, behind = self.starts[index], self.starts[index] + 1
         title, path = "Put quotes around it", quote(self.text[start:end])
         fixes: tuple[Fix, ...] = ()
-        if end > start and first > self.index:
+        if self.at("<") and (closing := self.text.find(">", start, line_end(self.text, start))) > start + 1:
+            path = quote(self.text[start + 1 : closing].strip())
+            fixes = (replace_fix(f"Write `{path}`", Span(start, closing + 1), path),)
+        elif end > start and first > self.index:
             fixes = (self.without_sign(title, behind, path, safe=False),)
         elif end > start and not has_sign:
             fixes = (replace_fix(title, Span(start, behind), path),)
@@ -358,10 +373,11 @@ class Parser(NodeParser):
     def quality_decl(self) -> QualityDecl:
         """ "quality" Name [ ":" QualityPath ] [ STRING ] NL"""
         start = self.take().start
+        self.skip_glued_colon()
         name = self.name("the name of the quality")
         parent = self.quality_path() if self.accept(":") else None
         text = self.take() if self.kind == STRING else None
-        notes = ("the quality it belongs to stands behind `:`, its definition in quotes",)
+        notes = ("write the quality it belongs to after `:`, and its definition in quotes",)
         return QualityDecl(start, self.end_line(notes), name, parent, text)
 
     def models(self, level: int) -> Models:
@@ -386,7 +402,12 @@ class Parser(NodeParser):
     def model(self, level: int) -> Model:
         """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ] NL [ INDENT { Port | … } DEDENT ]"""
         category = self.take()
+        self.skip_glued_colon()
         name = self.name("the node's ID")
+        if self.kind == OPEN and self.kinds[self.index + 1] in (NAME, CLOSE) and self.is_operator(self.index + 2, ":"):
+            note = "a port goes on a line of its own below the node, indented: `input name : type`"
+            self.complain("syntax-error", self.here(), "ports do not go in brackets", (note,))
+            self.go_to(len(self.kinds) - 1)
         attributes = self.pairs_only()
         text = self.take() if self.kind == STRING else None
         end = self.end_line()
@@ -405,6 +426,11 @@ class Parser(NodeParser):
             self.scan()
             if self.kind == NAME and self.raw in DIRECTIONS:
                 body.append(self.port())
+            elif self.kind == NAME and (direction := self.raw.removesuffix("_port")) in DIRECTIONS:
+                fix = replace_fix(f"Write `{direction}`", self.here(), direction, safe=True)
+                message = f"unknown word `{self.raw}`; did you mean `{direction}`?"
+                self.complain("syntax-error", self.here(), message, (), (fix,))
+                body.append(self.port(direction))
             elif self.kind == NAME and self.raw == "metadata":
                 body.append(self.meta())
             elif self.kind == NAME and self.raw == "xml":
@@ -430,11 +456,12 @@ class Parser(NodeParser):
     def signal(self) -> Signal:
         """ "signal" NAME ":" UNIT [ "from" BRACED ] [ "level" | … ] [ "fresh" … ] [ "initially" … ] NL"""
         start = self.take().start
+        self.skip_glued_colon()
         name = self.plain_name("the signal's name")
-        unit = self.unit() if self.expect(":", " and the signal's unit") else None
+        unit = self.unit() if self.at_unit() else None
         source = behaviour = fresh = initially = None
         if self.accept_word("from"):
-            source = self.take() if self.kind == BRACED else self.missing_word("a blackboard entry: {key}")
+            source = self.entry_key()
         if self.kind == NAME and self.raw in _BEHAVIOURS:
             behaviour = self.take()
         if self.accept_word("fresh"):
@@ -445,9 +472,40 @@ class Parser(NodeParser):
         end = self.end_line((_SIGNAL_ORDER,), self.replaced_by(_SIGNAL_WORDS))
         return Signal(start, end, name, unit, source, behaviour, fresh, initially)
 
+    def at_unit(self) -> bool:
+        """ ":" before the unit of a signal, whose absence is reported"""
+        if self.accept(":"):
+            return True
+        unit = self.index + 1
+        fixes: tuple[Fix, ...] = ()
+        if self.at("=") and self.kinds[unit] == QUANTITY and self.kinds[unit + 1] == NEWLINE:
+            raw = self.raws[unit]
+            symbol = raw[number_end(raw, 0) :].strip()
+            span = Span(self.here().start, self.starts[unit] + len(raw))
+            fixes = (replace_fix(f"Write `: {symbol} initially {raw}`", span, f": {symbol} initially {raw}"),)
+        elif self.kind == OPEN and CLOSE in self.kinds[unit:]:
+            closing = self.kinds.index(CLOSE, unit)
+            inside = self.text[self.here().end : self.starts[closing]].strip()
+            span = Span(self.here().start, self.starts[closing] + len(self.raws[closing]))
+            fixes = (replace_fix(f"Write `: {inside}`", span, f": {inside}"),) if is_unit(inside) else ()
+        elif self.at("=") or self.at_word("in") or self.at_word("is"):
+            fixes = (replace_fix("Write `:`", self.here(), ":"),)
+        self.expected("`:` and the signal's unit", (), fixes)
+        return False
+
+    def entry_key(self) -> Word | None:
+        """BRACED"""
+        if self.kind == BRACED:
+            return self.take()
+        key = unquote(self.raw).strip("{}") if self.kind == STRING else self.raw
+        fixes = (replace_fix(f"Write `{{{key}}}`", self.here(), f"{{{key}}}"),) if is_name(key) else ()
+        self.expected("a blackboard entry: `{key}`", (), fixes)
+        return None
+
     def context(self) -> Context:
         """ "context" NAME ":" Cond NL"""
         start = self.take().start
+        self.skip_glued_colon()
         name = self.plain_name("the context's name")
         condition = self.cond() if self.expect(":", " and a condition") else None
         return Context(start, self.end_line(), name, condition)
@@ -484,6 +542,7 @@ class Parser(NodeParser):
         start = self.start()
         if not (self.accept_word("every") or self.every_meant()):
             path = self.path("a node, or `every` and a node")
+            self.blank_in_path(path, _END_SELECTORS)
             return Selector(path.span.start, path.span.end, path=path) if path else None
         if self.at_word("node") and self.is_word(self.index + 1, "tagged"):
             self.advance()
@@ -492,7 +551,9 @@ class Parser(NodeParser):
             return Selector(start, self.last_end(), tag=tag)
         if self.at_word("tagged") and self.kinds[self.index + 1] == NAME:
             fix = replace_fix("Put `node` before it", Span(self.here().start, self.here().start), "node ")
-            self.complain("syntax-error", self.here(), "nodes with a tag are `every node tagged …`", (), (fix,))
+            self.complain(
+                "syntax-error", self.here(), "nodes with a tag are selected with `every node tagged …`", (), (fix,)
+            )
             self.advance()
             return Selector(start, self.last_end(), tag=self.name("a tag"))
         every = self.name("a node's ID or kind")
@@ -502,11 +563,13 @@ class Parser(NodeParser):
     def root(self, level: int, in_root: bool) -> None:
         """ "Root" [ Name ] [ Attributes ] NL [ INDENT { Item } DEDENT ]: at most one, none inside a Root"""
         word = self.take()
+        self.skip_sign(":", "=")
+        self.skip_root_key()
         name = self.take() if self.kind == NAME or self.kind == STRING else None
         bracketed = self.kind == OPEN
         attributes = self.pairs_only()
         if self.has_root:
-            where = "a Root inside another" if in_root else "a second Root in this file"
+            where = "unexpected Root inside another Root" if in_root else "unexpected second Root in this file"
             note = "a mission begins in one place: keep the Root that names its main tree, or move one to another file"
             self.complain("second-root", word.span.shifted(self.base), where, (note,))
         self.has_root = True
@@ -515,6 +578,16 @@ class Parser(NodeParser):
         self.entry(item, in_root)
         self.roots.append(level)
 
+    def skip_root_key(self) -> None:
+        """Report the attribute of XML before the name of the main tree, and pass over it: `Root ID = Main`."""
+        value = self.index + 2
+        if not self.at_key() or self.kinds[value] not in (NAME, STRING):
+            return
+        fix = replace_fix(f"Remove `{self.raw} =`", Span(self.here().start, self.starts[value]), "")
+        message = "expected the main tree's name after `Root`"
+        self.complain("syntax-error", self.here(), message, ("attributes go in brackets: `(key = value)`",), (fix,))
+        self.go_to(value)
+
     def tree(self, level: int) -> Tree:
         """ "BehaviorTree" [ [ "ID" "=" ] Name ] [ Attributes ] NL [ INDENT { Port } { ClauseLine } { Node } DEDENT ]"""
         start = self.take().start
@@ -522,7 +595,13 @@ class Parser(NodeParser):
             self.advance()
             self.advance()
             name = self.name("the tree's ID")
+        elif self.at_word("ID") and self.kinds[self.index + 1] in (NAME, STRING):
+            fix = replace_fix("Put `=` after it", Span(self.here().end, self.here().end), " =")
+            self.complain("syntax-error", self.here(), "expected `=` after `ID`", (), (fix,))
+            self.advance()
+            name = self.take()
         else:
+            self.skip_glued_colon()
             name = self.take() if self.kind == NAME or self.kind == STRING else None
         attributes = self.pairs_only()
         end = self.end_line()
@@ -553,24 +632,24 @@ class Parser(NodeParser):
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        fixes: tuple[Fix, ...] = ()
-        meant = _OTHER_ITEMS.get(self.raw.lower()) if self.kind == NAME else None
-        following = self.index + 1
-        if meant is not None and self.kinds[following] in (NAME, STRING) and self.raws[following] not in VERBS:
-            fixes = (replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant),)
+        if self.at_word("from") and self.is_word(self.index + 2, "import"):
+            notes = ('another file is read with `include "stations.btq"`',)
         elif self.kind == NAME and self.raw in NODE_CLAUSES:
-            notes = ("it stands at a node, or in the block of a node or BehaviorTree, indented",)
+            notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
         elif self.kind == NAME and (self.raw in VERBS or self.raw in HEADS):
-            notes = ("a clause stands in the block of a QualityReq, indented",)
+            notes = ("a clause goes in the block of a QualityReq, indented",)
         elif self.kind == NAME and self.raw in DIRECTIONS:
-            notes = ("a port stands in the block of a model or BehaviorTree, indented",)
+            notes = ("a port goes in the block of a model or BehaviorTree, indented",)
         elif self.kind == STRING and unquote(self.raw) in ITEM_WORDS:
-            notes = ("a word in quotes is a name and begins no item",)
+            notes = ("a word in quotes is a name, not a keyword; remove the quotes",)
+        elif self.text.startswith("<!--", self.here().start):
+            self.other_comment(self.here().start + len("<!--"))
         elif self.at("<"):
-            notes = (XML,)
+            self.complain("syntax-error", *self.xml_here())
         elif self.kind == SYMBOL or (self.at_name() and self.kinds[self.index + 1] in (NEWLINE, OPEN)):
-            notes = ("a node stands in the block of a BehaviorTree, indented",)
-        self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes, fixes)
+            notes = ("a node goes in the block of a BehaviorTree, indented",)
+        if self.kind != NEWLINE:
+            self.expected("an item: BehaviorTree, QualityReq, include, signal, …", notes)
         end = self.end_line()
         while self.more and not self.ends_skipping(level):
             known = len(self.lexer.problems)
@@ -580,22 +659,39 @@ class Parser(NodeParser):
             end = self.end_line()
         return Skipped(start, end)
 
+    def other_item(self, meant: str) -> Fix:
+        """The fix for an item as another language writes it: `import stations`, `def main():`."""
+        at = self.here()
+        rest = Span(self.starts[self.index + 1], line_end(self.text, at.start))
+        title = f"Replace `{self.raw}` by `{meant}`"
+        if meant == "include" and self.kinds[self.index + 1] == NAME and self.kinds[self.index + 2] == NEWLINE:
+            end = path_end(self.text, rest.start)
+            name = self.text[rest.start : end]
+            return replace_fix(title, Span(at.start, end), f"include {quote(name if '.' in name else f'{name}.btq')}")
+        if meant == "BehaviorTree" and (head := _PYTHON_HEAD.match(self.text, rest.start)):
+            return replace_fix(title, Span(at.start, head.end()), f"BehaviorTree {head[1]}")
+        return replace_fix(title, at, meant)
+
     def ends_skipping(self, level: int) -> bool:
         """Whether the open line is an item again, or what is meant for one, or stands further left."""
         if self.lexer.level > level:
             return self.begins_item()
         word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
-        return self.lexer.level < level or word in ITEM_WORDS or bool(item_word_meant(word))
+        if self.lexer.level < level or word in ITEM_WORDS:
+            return True
+        return not word.startswith("<") and bool(item_word_meant(word))
 
 
 _ALONE: Final = ("BehaviorTree", "Root", "TreeNodesModel")  # items that may go without a name
 _OTHER_ITEMS: Final = {  # what people write for them, in small letters
     **dict.fromkeys(("import", "require", "use"), "include"),
     **dict.fromkeys(("requirement", "req", "qualityrequirement"), "QualityReq"),
-    **dict.fromkeys(("mission", "tree", "behaviourtree", "bt"), "BehaviorTree"),
+    **dict.fromkeys(("mission", "tree", "behaviourtree", "bt", "def", "class"), "BehaviorTree"),
     **dict.fromkeys(("sensor", "variable", "var", "measure", "metric"), "signal"),
     **dict.fromkeys(("mode", "situation"), "context"),
 }
+_PYTHON_HEAD: Final = regex(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
+_END_SELECTORS: Final = frozenset((",", "except", "\n", "\r\n", "\r", ""))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
 
@@ -612,7 +708,7 @@ def _root_causes(found: list[Diagnostic], inside_out: int) -> tuple[Diagnostic, 
             break
         if problem.rule == "string-over-items":
             if any(other.rule in ("syntax-error", "unclosed-string") for other in found[index + 1 :]):
-                notes = ("a closing quote is missing",)
+                notes = ("add the closing quote",)
                 return (*kept, replace(problem, rule="unclosed-string", notes=notes))
             return (*found[: index + 1], *(other for other in found[index + 1 :] if other.rule != problem.rule))
         kept.append(problem)

@@ -58,10 +58,10 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     )
     notes: tuple[str, ...] = ()
     if wanted == "s" and not symbols:
-        notes = ("what is measured here is a time: ms, s, min, h",)
+        notes = ("expected a unit of time: ms, s, min, h",)
     elif glued and (not symbols or word[:1].isupper()):
-        notes = ("a name that begins with a digit is written in quotes",)
-    message = f"`{word}` is no unit" + (f": did you mean `{symbols[0]}`?" if symbols else "")
+        notes = ("a name that begins with a digit goes in quotes",)
+    message = f"unknown unit `{word}`" + (f"; did you mean `{symbols[0]}`?" if symbols else "")
     return Diagnostic("unknown-unit", Span(start, end), message, notes=notes, fixes=fixes)
 
 
@@ -78,7 +78,7 @@ def unknown_escapes(start: int, raw: str) -> tuple[Diagnostic, ...]:
     shown = unknown[0][0] if unknown[0][0].isprintable() else "\\"
     places = [start + escape.start() for escape in unknown]
     fix = Fix("Write `\\\\`", tuple(Change(Place(Span(at, at + 1)), "\\\\") for at in places), safe=True)
-    message = f"`{shown}` is no escape: the backslash stands for itself"
+    message = f"unknown escape `{shown}`; the backslash is kept"
     notes = ("the escapes are \\\" \\' \\\\ \\n and \\t",)
     span = Span(places[0], places[0] + len(shown))
     return (Diagnostic("unknown-escape", span, message, notes=notes, fixes=(fix,)),)
@@ -93,10 +93,26 @@ def no_token(text: str, start: int, end: int, *, of_signal: bool) -> Diagnostic:
     character = text[start]
     instead = _NO_END_SIGN if character == ";" else INSTEAD.get(character)
     instead = _UNITS_OF_SIGNALS if character == "[" and of_signal else instead
+    fixes = _look_alikes(text, start)
+    if character == "[" and not of_signal:
+        instead, fixes = _square_brackets(text, start)
     notes = (instead,) if instead is not None else ()
     shown = repr(character) if not character.isprintable() or character.isspace() else f"`{character}`"
-    message = f"{shown} means nothing here"
-    return Diagnostic("syntax-error", Span(start, end), message, notes=notes, fixes=_look_alikes(text, start))
+    return Diagnostic("syntax-error", Span(start, end), f"unexpected {shown}", notes=notes, fixes=fixes)
+
+
+def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
+    """What square brackets are probably meant for, and the fix: attributes, a list of requirements, or children."""
+    closing = text.find("]", start, line_end(text, start))
+    if closing < 0:
+        return _ATTRIBUTES, ()
+    ends = Span(start, start + 1), Span(closing, closing + 1)
+    if "=" in text[start:closing]:
+        changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
+        return _ATTRIBUTES, (Fix("Write `(` and `)`", changes),)
+    if text[line_start(text, 0, start) : start].rstrip().endswith(("satisfies", "satisfices", "tags")):
+        return "a list needs no brackets", (Fix("Remove the brackets", tuple(Change(Place(end), "") for end in ends)),)
+    return CHILDREN, ()
 
 
 def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
@@ -127,14 +143,15 @@ _LOOKS_LIKE: Final = {
     **dict.fromkeys("“”„‟«»", '"'),
     **dict.fromkeys("‘’", "'"),
 }
+CHILDREN: Final = "children go on lines of their own below their parent, indented"
+_ATTRIBUTES: Final = "attributes go in round brackets: `(key = value)`"
 _NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
-_UNITS_OF_SIGNALS: Final = "a signal's unit stands behind `:`: `signal distance : m`"
+_UNITS_OF_SIGNALS: Final = "a signal's unit goes after `:`: `signal distance : m`"
 # What to write instead of characters that are part of no value either.
 INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
-    "[": "attributes stand in `( … )`",
-    **dict.fromkeys(_OTHER_QUOTES, "strings stand in straight quotes"),
+    **dict.fromkeys(_OTHER_QUOTES, "strings go in straight quotes"),
     "\xa0": "this is a no-break space: use an ordinary blank",
     "\ufeff": "a byte order mark belongs at the start of a file",
 }

@@ -135,5 +135,5 @@ def test_without_children_that_is_the_mistake() -> None:
 def test_nothing_is_said_of_children_that_forgotten_brackets_may_have_swallowed(parent: str) -> None:
     assert_problems(
         f"BehaviorTree Main\n    {parent}\n        X (x = 1\n        Y\n        Z\n",
-        "3:11 error unclosed-bracket «(» this `(` has no `)`",
+        "3:11 error unclosed-bracket «(» missing `)` for this `(`",
     )

@@ -278,7 +278,7 @@ def test_a_node_may_be_called_as_a_clause() -> None:
 def test_a_clause_that_the_parser_has_told_is_not_told_again() -> None:
     assert_problems(
         tree("takes at most 30 s"),
-        "3:9 error syntax-error «takes» `takes` begins a clause, and clauses stand in a requirement",
+        "3:9 error syntax-error «takes» unexpected clause `takes` in a tree; clauses go in a requirement",
     )
 
 

@@ -79,7 +79,7 @@ def test_a_dimension_that_does_not_fit() -> None:
 
 
 def test_a_unit_that_nobody_knows_is_told_as_such_only() -> None:
-    assert_problems(timeout("30sek"), "2:23 error unknown-unit «sek» `sek` is no unit: did you mean `s`?")
+    assert_problems(timeout("30sek"), "2:23 error unknown-unit «sek» unknown unit `sek`; did you mean `s`?")
 
 
 def test_the_unit_of_a_node_of_ones_own_is_not_known() -> None:

@@ -91,7 +91,7 @@ def test_a_file_without_any_tree_is_for_others() -> None:
 def test_a_number_with_an_unknown_unit_is_told_once() -> None:
     assert_problems(
         'QualityReq rq1 "t"\n    takes at most 45 sek\nBehaviorTree Main\n    Action X satisfies rq1\n',
-        "2:22 error unknown-unit «sek» `sek` is no unit: did you mean `s`?",
+        "2:22 error unknown-unit «sek» unknown unit `sek`; did you mean `s`?",
     )
 
 

@@ -84,7 +84,7 @@ def test_a_comment_that_can_silence_nothing_is_told() -> None:
 
 
 def test_errors_after_which_a_file_is_not_read_as_it_stands_are_not_silenced() -> None:
-    error = "3:13 error syntax-error «)» this `)` closes nothing"
+    error = "3:13 error syntax-error «)» unexpected `)`: no bracket is open"
     assert_problems(tree("Foo )  # btq: ignore"), error)
     assert_problems(
         tree("Foo )  # btq: ignore[syntax-error]"),

@@ -340,7 +340,7 @@ def test_a_mission_includes_xml(btq: Run, tmp_path: Path) -> None:
 def test_an_error_in_an_included_file_is_told_once(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "lib.btq").write_text("BehaviorTree Lib\n    Pick (\n")
     (tmp_path / "main.btq").write_text('include "lib.btq"\nBehaviorTree Main\n    SubTree Lib\n')
-    message = "this `(` has no `)`"
+    message = "missing `)` for this `(`"
     at_include = f"main.btq:1:9: error[include-with-errors] `lib.btq` has 1 error: {message}\n"
     itself = f"lib.btq:2:10: error[unclosed-bracket] {message}\n"
     for paths, told in ((["main.btq"], at_include), (["."], itself), (["main.btq", "lib.btq"], itself)):

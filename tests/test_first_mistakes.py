@@ -6,12 +6,16 @@ it, and the mission is clean afterwards.
 
 from __future__ import annotations
 
+from typing import Final
+
 import pytest
 from check_asserts import MAIN, after, show
 
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.workspace import Workspace
+
+Case = tuple[str, str, str | None]  # a mission, its diagnostic with the notes, and the mission after the fix
 
 
 def tree(*lines: str) -> str:
@@ -24,25 +28,28 @@ def requirement(*lines: str) -> str:
 
 def condition(text: str) -> str:
     signals = "signal lit : bool from {lit}\nsignal far : m from {far}\n"
-    return f"{signals}context c : {text}\n" + tree("Go satisfies r") + "QualityReq r\n    keeps c\n"
+    requirement = "QualityReq r\n    keeps c or lit\n"
+    return f"{signals}context c : far > 1 m and {text}\n" + tree("Go satisfies r") + requirement
 
 
-R = 'QualityReq r "in time"\n'
-OTHER = "BehaviorTree Other\n    Go\n"
-FROM_XML = [
+R: Final = 'QualityReq r "in time"\n'
+S: Final = 'QualityReq s "in order"\n'
+OTHER: Final = "BehaviorTree Other\n    Go\n"
+
+FROM_XML: Final[list[Case]] = [
     (
         tree('SubTree ID="Other"') + OTHER,
-        '2:13 error syntax-error «ID="Other"» attributes stand in brackets: `( key = value )`',
+        '2:13 error syntax-error «ID="Other"» attributes go in brackets: `(key = value)`',
         tree('SubTree (ID="Other")') + OTHER,
     ),
     (
         tree('Retry num_attempts="3"', "    Go"),
-        '2:11 error syntax-error «num_attempts="3"» attributes stand in brackets: `( key = value )`',
+        '2:11 error syntax-error «num_attempts="3"» attributes go in brackets: `(key = value)`',
         tree('Retry (num_attempts="3")', "    Go"),
     ),
     (
         tree('-> name="all"', "    Go"),
-        '2:8 error syntax-error «name="all"» attributes stand in brackets: `( key = value )`',
+        '2:8 error syntax-error «name="all"» attributes go in brackets: `(key = value)`',
         tree('-> (name="all")', "    Go"),
     ),
     (
@@ -50,51 +57,344 @@ FROM_XML = [
         "2:26 warning misspelt-entry «True» in a script `True` is the name of an entry: the engine's word is `true`",
         tree('Script (code = "a := true")'),
     ),
-]
-FROM_PYTHON = [
     (
-        tree("Sequence:", "    Go"),
-        "2:13 error syntax-error «:» expected the end of the line, found `:`",
+        tree("<Sequence>", "    Go", "</Sequence>"),
+        "2:5 error syntax-error «<Sequence>» expected btq, found XML: a node is written `Sequence` | "
+        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
+        "`#`",
+        None,
+    ),
+    (
+        tree('<MoveBase station="charger"/>'),
+        '2:5 error syntax-error «<MoveBase station="charger"/>» expected btq, found XML: a node is written '
+        '`MoveBase (station="charger")` | '
+        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
+        "`#`",
+        tree('MoveBase (station="charger")'),
+    ),
+    (
+        tree("->", "    <!-- to the charger -->", "    Go"),
+        "3:9 error syntax-error «<!-- to the charger -->» a comment begins with `#`",
+        tree("->", "    # to the charger", "    Go"),
+    ),
+    (
+        '<?xml version="1.0"?>\n<root BTCPP_format="4">\n  <BehaviorTree ID="Main"/>\n</root>\n',
+        '1:1 error syntax-error «<?xml version="1.0"?>» expected btq, found XML | '
+        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
+        "`#`",
+        None,
+    ),
+    (
+        'Root main_tree_to_execute="Main"\n' + tree("Go"),
+        "1:6 error syntax-error «main_tree_to_execute» expected the main tree's name after `Root` | "
+        "attributes go in brackets: `(key = value)`",
+        'Root "Main"\n' + tree("Go"),
+    ),
+    (
+        "TreeNodesModel\n    Action Go\n        output_port done\n" + tree("Go (done = {d})"),
+        "3:9 error syntax-error «output_port» unknown word `output_port`; did you mean `output`?",
+        "TreeNodesModel\n    Action Go\n        output done\n" + tree("Go (done = {d})"),
+    ),
+    (
+        'include path="stations.btq"\n' + tree("Go"),
+        "1:9 error syntax-error «path» the path of an include needs no `path =`",
+        'include "stations.btq"\n' + tree("Go"),
+    ),
+    (
+        "include <stations.btq>\n" + tree("Go"),
+        "1:9 error syntax-error «<» expected a file in quotes, found `<`",
+        'include "stations.btq"\n' + tree("Go"),
+    ),
+    (
+        tree("Retry (num_attempts = 5) Again", "    Go"),
+        "2:30 error syntax-error «Again» a node's label goes before its brackets | "
+        "a child goes on a line of its own below its parent, indented",
+        tree("Retry Again (num_attempts = 5)", "    Go"),
+    ),
+    (
+        tree('Go(a = 5) "Again" satisfies r') + R,
+        '2:15 error syntax-error «"Again"» a node\'s label goes before its brackets | '
+        "a child goes on a line of its own below its parent, indented",
+        tree('Go "Again" (a = 5) satisfies r') + R,
+    ),
+    (
+        tree("Go (a = 1; b = 2)"),
+        "2:14 error syntax-error «;» expected `,` between attributes, found `;`",
+        tree("Go (a = 1, b = 2)"),
+    ),
+    (tree("Go (a = /map)"), "2:13 error syntax-error «/map» this value needs quotes", tree('Go (a = "/map")')),
+    (
+        tree("SubTree (Other)") + OTHER,
+        "2:14 error syntax-error «Other» expected an attribute: key = value, found `Other`",
+        tree("SubTree Other") + OTHER,
+    ),
+]
+
+FROM_PYTHON: Final[list[Case]] = [
+    (tree("Sequence:", "    Go"), "2:13 error syntax-error «:» unexpected `:`", tree("Sequence", "    Go")),
+    ("BehaviorTree Main:\n    Go\n", "1:18 error syntax-error «:» unexpected `:`", tree("Go")),
+    (tree("Action: Go"), "2:11 error syntax-error «:» unexpected `:`", tree("Action Go")),
+    (
+        tree("- Go"),
+        "2:5 error syntax-error «-» unexpected `-` before a node | "
+        "a node needs no dash; its children go below it, indented",
+        tree("Go"),
+    ),
+    (
+        tree("- Sequence", "    Go"),
+        "2:5 error syntax-error «-» unexpected `-` before a node | "
+        "a node needs no dash; its children go below it, indented",
         tree("Sequence", "    Go"),
     ),
     (
         tree('Go (station: "charger")'),
-        "2:16 error syntax-error «:» key and value are joined by `=`",
+        "2:16 error syntax-error «:» expected `=` between key and value, found `:`",
         tree('Go (station = "charger")'),
     ),
-    (tree("Go (a == 3)"), "2:11 error syntax-error «==» key and value are joined by `=`", tree("Go (a = 3)")),
+    (
+        tree('Go station: "charger"'),
+        '2:8 error syntax-error «station: "charger"» attributes go in brackets: `(key = value)`',
+        tree('Go (station = "charger")'),
+    ),
+    (
+        tree("Go", "    station: charger"),
+        "3:9 error syntax-error «station: charger» attributes go in brackets: `(key = value)`",
+        None,
+    ),
+    (
+        tree("Go (a == 3)"),
+        "2:11 error syntax-error «==» expected `=` between key and value, found `==`",
+        tree("Go (a = 3)"),
+    ),
+    (
+        tree("Go (a := 3)"),
+        "2:11 error syntax-error «:=» expected `=` between key and value, found `:=`",
+        tree("Go (a = 3)"),
+    ),
+    (tree("Go (a = [1, 2])"), "2:13 error syntax-error «[1, 2]» this value needs quotes", tree('Go (a = "[1, 2]")')),
+    (tree("Go (a = ${b})"), "2:13 error syntax-error «${b}» a blackboard entry is written `{b}`", tree("Go (a = {b})")),
+    (
+        tree("Go [a = 3]"),
+        "2:8 error syntax-error «[» unexpected `[` | attributes go in round brackets: `(key = value)`",
+        tree("Go (a = 3)"),
+    ),
+    (
+        tree("Sequence [Go, Turn]"),
+        "2:14 error syntax-error «[» unexpected `[` | children go on lines of their own below their parent, indented",
+        None,
+    ),
+    (
+        tree("Sequence(Go, Turn)"),
+        "2:14 error syntax-error «Go» expected an attribute: key = value, found `Go` | "
+        "children go on lines of their own below their parent, indented",
+        None,
+    ),
+    (
+        tree("Sequence Go, Turn"),
+        "2:16 error syntax-error «,» expected the end of the line, found `,` | "
+        "children go on lines of their own below their parent, indented",
+        None,
+    ),
+    (
+        tree("Sequence [", "    Go", "]"),
+        "2:14 error syntax-error «[» unexpected `[`: a block consists of indented lines",
+        tree("Sequence", "    Go"),
+    ),
+    (
+        tree("Sequence {", "    Go", "}"),
+        "2:14 error syntax-error «{» unexpected `{`: a block consists of indented lines",
+        tree("Sequence", "    Go"),
+    ),
     (
         tree("Retry (attempts=3)", "    Go"),
-        "2:12 error unknown-port «attempts» `Retry` has no port `attempts`",
+        "2:12 error unknown-port «attempts» `Retry` has no port `attempts` | it has `num_attempts`",
         tree("Retry (num_attempts=3)", "    Go"),
     ),
     (
+        tree("Retry 3", "    Go"),
+        "2:11 error syntax-error «3» expected the end of the line, found `3` | "
+        "values go in brackets, with their names: `(key = value)`",
+        None,
+    ),
+    (
+        tree("Retry (3)", "    Go"),
+        "2:12 error syntax-error «3» expected an attribute: key = value, found `3` | "
+        "a value goes after the name of its port: `port = 3`",
+        None,
+    ),
+    (
+        "def main():\n    Go\n",
+        "1:1 error syntax-error «def» unknown word `def`; did you mean `BehaviorTree`?",
+        "BehaviorTree main\n    Go\n",
+    ),
+    (
+        "import stations\n" + tree("Go"),
+        "1:1 error syntax-error «import» unknown word `import`; did you mean `include`?",
+        'include "stations.btq"\n' + tree("Go"),
+    ),
+    (
+        "from stations import charger\n" + tree("Go"),
+        "1:1 error syntax-error «from» expected an item: BehaviorTree, QualityReq, include, signal, …, found "
+        "`from` | "
+        'another file is read with `include "stations.btq"`',
+        None,
+    ),
+    (tree('"""Goes"""', "Go"), '2:5 error syntax-error «"""Goes"""» a comment begins with `#`', tree("# Goes", "Go")),
+    (
+        tree("Go -- to the charger"),
+        "2:8 error syntax-error «-- to the charger» a comment begins with `#`",
+        tree("Go # to the charger"),
+    ),
+    (
+        tree("if far < 2 m:", "    Go"),
+        "2:5 error syntax-error «if» expected a node, found the statement `if` | "
+        "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node",
+        None,
+    ),
+    (
+        tree("while True:", "    Go"),
+        "2:5 error syntax-error «while» expected a node, found the statement `while` | "
+        "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`",
+        None,
+    ),
+    (
+        tree("->", "    !BatteryLow", "    Go"),
+        "3:9 error syntax-error «!» expected a node: its kind, or a symbol: -> ? || …, found `!` | "
+        "to negate a node, put an `Inverter` above it, and indent the node",
+        None,
+    ),
+    (
         condition("lit && far > 2 m"),
-        "3:17 error syntax-error «&&» in conditions `&&` is written `and`",
+        "3:31 error syntax-error «&&» in conditions `&&` is written `and`",
         condition("lit and far > 2 m"),
     ),
     (
-        condition("lit || far > 2 m"),
-        "3:17 error syntax-error «||» in conditions `||` is written `or`",
-        condition("lit or far > 2 m"),
+        condition("(lit || far > 2 m)"),
+        "3:32 error syntax-error «||» in conditions `||` is written `or`",
+        condition("(lit or far > 2 m)"),
     ),
-    (condition("!lit"), "3:13 error syntax-error «!» in conditions `!` is written `not`", condition("not lit")),
+    (condition("!lit"), "3:27 error syntax-error «!» in conditions `!` is written `not`", condition("not lit")),
+    (condition("far = 2 m"), "3:31 error syntax-error «=» values are compared with `==`", condition("far == 2 m")),
     (
-        condition("far = 2 m"),
-        "3:17 error syntax-error «=» values are compared with `==`",
-        condition("far == 2 m"),
+        condition("lit == True"),
+        "3:34 error unknown-signal «True» no signal `True` is declared | "
+        "did you mean `true`? or declare it: `signal True : bool from {True}`",
+        condition("lit == true"),
+    ),
+    (
+        "BehaviorTree Main\n    ->\n        Go\n\t\tTurn\n",
+        "4:1 error inconsistent-indentation «\t\t» tabs and blanks are mixed: 2 tabs cannot be compared with 8 "
+        "blanks | "
+        "btq reads the line as if indented by 8 blanks",
+        tree("->", "    Go", "    Turn"),
+    ),
+    (
+        "Action Go (station : string)\n" + tree("Go"),
+        "1:11 error syntax-error «(» ports do not go in brackets | "
+        "a port goes on a line of its own below the node, indented: `input name : type`",
+        None,
     ),
 ]
-FROM_THE_PUBLISHED_SYNTAX = [
+
+FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
     (
         tree("Go satisfy r") + R,
-        "2:8 error syntax-error «satisfy» `satisfy` attaches nothing to a node: did you mean `satisfies`?",
+        "2:8 error syntax-error «satisfy» unknown word `satisfy`; did you mean `satisfies`?",
         tree("Go satisfies r") + R,
     ),
     (
-        tree("Go satisfies: r") + R,
-        "2:17 error syntax-error «:» no `:` stands here",
+        tree("Go satisfied by r") + R,
+        "2:8 error syntax-error «satisfied» unknown word `satisfied`; did you mean `satisfies`?",
         tree("Go satisfies r") + R,
+    ),
+    (tree("Go satisfies: r") + R, "2:17 error syntax-error «:» unexpected `:`", tree("Go satisfies r") + R),
+    (tree("Go satisfies = r") + R, "2:18 error syntax-error «=» unexpected `=`", tree("Go satisfies r") + R),
+    (
+        tree("Go satisfies (r, s)") + R + S,
+        "2:18 error syntax-error «(» requirements of a node need no brackets",
+        tree("Go satisfies r, s") + R + S,
+    ),
+    (
+        tree("Go satisfies [r, s]") + R + S,
+        "2:18 error syntax-error «[» unexpected `[` | a list needs no brackets",
+        tree("Go satisfies r, s") + R + S,
+    ),
+    (
+        tree("Go satisfies r s") + R + S,
+        "2:20 error syntax-error «s» expected `,` or the end of the line, found `s`",
+        tree("Go satisfies r, s") + R + S,
+    ),
+    (
+        tree("Go (satisfices Quality safety)"),
+        "2:28 error syntax-error «safety» expected `=` after `Quality`, found `safety`",
+        tree("Go (satisfices Quality = safety)"),
+    ),
+    (
+        tree("Go (satisfices Quality: safety)"),
+        "2:27 error syntax-error «:» expected `=` after `Quality`, found `:`",
+        tree("Go (satisfices Quality = safety)"),
+    ),
+    (
+        tree('Go (satisfices safety (QualityReq ID = r description = "calm"))'),
+        "2:27 error syntax-error «(» expected an attribute: key = value, found `(`",
+        tree('Go (satisfices Quality = safety (QualityReq ID = r description = "calm"))'),
+    ),
+    (
+        tree("Go (satisfices Quality = safety"),
+        "2:8 error unclosed-bracket «(» missing `)` for this `(`",
+        tree("Go (satisfices Quality = safety)"),
+    ),
+    (
+        'requirement r "in time"\n' + tree("Go satisfies r"),
+        "1:1 error syntax-error «requirement» unknown word `requirement`; did you mean `QualityReq`?",
+        R + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq: r "in time"\n' + tree("Go satisfies r"),
+        "1:11 error syntax-error «:» unexpected `:`",
+        R + tree("Go satisfies r"),
+    ),
+    (
+        "QualityReq r:\n    takes at most 30 s\n" + tree("Go satisfies r"),
+        "1:13 error syntax-error «:» unexpected `:`",
+        "QualityReq r\n    takes at most 30 s\n" + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq (ID = r description = "in time")\n' + tree("Go satisfies r"),
+        "1:12 error syntax-error «(» a requirement's ID goes after `QualityReq`, without brackets",
+        'QualityReq ID = r description = "in time"\n' + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq ID r description "in time"\n' + tree("Go satisfies r"),
+        "1:12 error syntax-error «ID» expected `=` after `ID`",
+        'QualityReq ID = r description = "in time"\n' + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq ID = r, description: "in time"\n' + tree("Go satisfies r"),
+        "1:20 error syntax-error «description» expected `=` after `description`",
+        'QualityReq ID = r, description = "in time"\n' + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq r description = "in time"\n' + tree("Go satisfies r"),
+        "1:14 error syntax-error «description =» a title goes after the ID without `description =`",
+        R + tree("Go satisfies r"),
+    ),
+    (
+        'QualityReq r quality = safety "in time"\n' + tree("Go satisfies r"),
+        "1:14 error syntax-error «quality =» expected `:` before the quality, found `quality =`",
+        'QualityReq r : safety "in time"\n' + tree("Go satisfies r"),
+    ),
+    ("Root = Main\n" + tree("Go"), "1:6 error syntax-error «=» unexpected `=`", "Root Main\n" + tree("Go")),
+    (
+        "Root ID = Main\n" + tree("Go"),
+        "1:6 error syntax-error «ID» expected the main tree's name after `Root` | "
+        "attributes go in brackets: `(key = value)`",
+        "Root Main\n" + tree("Go"),
+    ),
+    (
+        "BehaviorTree ID Main\n    Go\n",
+        "1:14 error syntax-error «ID» expected `=` after `ID`",
+        "BehaviorTree ID = Main\n    Go\n",
     ),
     (
         requirement("takes <= 30 s"),
@@ -102,35 +402,139 @@ FROM_THE_PUBLISHED_SYNTAX = [
         requirement("takes at most 30 s"),
     ),
     (
-        requirement("takes at most 30 Sekunden"),
-        "4:22 error unknown-unit «Sekunden» `Sekunden` is no unit: did you mean `s`?",
+        requirement("<=30s"),
+        "4:5 error syntax-error «<=» expected a clause: takes, keeps, in at least, on violation, …, found "
+        "`<=` | "
+        "a bound goes after its verb: `takes at most 30 s`",
+        requirement("takes at most 30s"),
+    ),
+    (
+        requirement("at most 30 s"),
+        "4:8 error syntax-error «most» expected a verb before `at most`, found `most` | "
+        "a bound goes after its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
         requirement("takes at most 30 s"),
     ),
     (
-        tree("Go (satisfices Quality = safety"),
-        "2:8 error unclosed-bracket «(» this `(` has no `)`",
-        tree("Go (satisfices Quality = safety)"),
+        requirement("takes 30 s"),
+        "4:11 error syntax-error «30 s» expected a bound: at most, at least, less than, more than or "
+        "between, found `30 s` | "
+        "write the kind of bound before the value: `at most 30 s`",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("time <= 30 s"),
+        "4:5 error syntax-error «time <=» expected a verb before the condition: `keeps`, `never`, `needs` or "
+        "`leaves` | "
+        "`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("takes less or equal 30 s"),
+        "4:11 error syntax-error «less or equal» this bound is written `at most`",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("takes less than or equal to 30 s"),
+        "4:11 error syntax-error «less than or equal to» this bound is written `at most`",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("takes at most 30 Sekunden"),
+        "4:22 error unknown-unit «Sekunden» unknown unit `Sekunden`; did you mean `s`?",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("takes at most 30"),
+        "4:19 error number-without-unit «30» a time is expected, `30` has no unit",
+        requirement("takes at most 30 s"),
+    ),
+    (
+        requirement("takes at most 3 s", "on failure fail"),
+        "5:8 error syntax-error «failure» expected `violation`, found `failure`",
+        requirement("takes at most 3 s", "on violation fail"),
+    ),
+    (
+        requirement("takes at most 3 s", "on_violation fail"),
+        "5:5 error syntax-error «on_violation» expected `on violation`, found `on_violation`",
+        requirement("takes at most 3 s", "on violation fail"),
+    ),
+    (
+        requirement("takes at most 3 s", "on violation = fail"),
+        "5:18 error syntax-error «=» unexpected `=`",
+        requirement("takes at most 3 s", "on violation fail"),
+    ),
+    (
+        requirement("succeeds with 98 %"),
+        "4:19 error syntax-error «98 %» odds are written `with probability >= 98 %`",
+        requirement("succeeds with probability >= 98 %"),
+    ),
+    (
+        requirement("succeeds with probability 0.98"),
+        "4:31 error syntax-error «0.98» expected `>=` or `>` and a percentage, found `0.98`",
+        requirement("succeeds with probability >= 98 %"),
+    ),
+    (
+        tree("SubTree Inspect") + "BehaviorTree Inspect\n    Dock\nQualityReq r\n    Inspect Dock succeeds\n",
+        "6:5 error syntax-error «Inspect Dock» a path is written with `/`: `Inspect/Dock` | "
+        'a name of several words goes in quotes: "Inspect Dock"',
+        tree("SubTree Inspect") + "BehaviorTree Inspect\n    Dock\nQualityReq r\n    Inspect/Dock succeeds\n",
+    ),
+    (
+        tree("SubTree Inspect") + "BehaviorTree Inspect\n    Dock\napply r to Inspect Dock\n" + R,
+        "5:12 error syntax-error «Inspect Dock» a path is written with `/`: `Inspect/Dock` | "
+        'a name of several words goes in quotes: "Inspect Dock"',
+        tree("SubTree Inspect") + "BehaviorTree Inspect\n    Dock\napply r to Inspect/Dock\n" + R,
+    ),
+    (
+        tree("->", "    Go satisfies r", "    Turn") + "QualityReq r\n    ends within 3 s after Main Turn fails\n",
+        "6:27 error syntax-error «Main Turn» a path is written with `/`: `Main/Turn` | "
+        'a name of several words goes in quotes: "Main Turn"',
+        tree("->", "    Go satisfies r", "    Turn") + "QualityReq r\n    ends within 3 s after Main/Turn fails\n",
+    ),
+    (
+        "signal far (m)\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
+        "1:12 error syntax-error «(» expected `:` and the signal's unit, found `(`",
+        "signal far : m\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
+    ),
+    (
+        "signal far = 3 m\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
+        "1:12 error syntax-error «=» expected `:` and the signal's unit, found `=`",
+        "signal far : m initially 3 m\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
+    ),
+    (
+        "signal far : m from far\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
+        "1:21 error syntax-error «far» expected a blackboard entry: `{key}`, found `far`",
+        "signal far : m from {far}\n" + tree("Go satisfies r") + "QualityReq r\n    keeps far > 1 m\n",
     ),
 ]
 
 
-@pytest.mark.parametrize(("text", "problem", "mended"), FROM_XML + FROM_PYTHON + FROM_THE_PUBLISHED_SYNTAX)
-def test_one_mistake_is_one_diagnostic(text: str, problem: str, mended: str | None) -> None:
+@pytest.mark.parametrize(("text", "said", "mended"), FROM_XML + FROM_PYTHON + FROM_THE_PUBLISHED_SYNTAX)
+def test_one_mistake_is_one_diagnostic(text: str, said: str, mended: str | None) -> None:
     found = mistakes(text)
-    assert show(text, found) == [problem]
+    assert [" | ".join((line, *found[0].notes)) for line in show(text, found)] == [said]
     assert [after(text, fix) for fix in found[0].fixes] == ([mended] if mended else [])
     assert mistakes(mended or "") == []
 
 
-def test_two_mistakes_are_mended_one_after_the_other() -> None:
-    text = tree("Retry attempts=3", "    Go")
-    for _ in range(2):
-        (fix,) = mistakes(text)[0].fixes
+@pytest.mark.parametrize(
+    ("text", "mended"),
+    [
+        (tree("Retry attempts=3", "    Go"), tree("Retry (num_attempts=3)", "    Go")),
+        (tree("- Action: Go"), tree("Action Go")),
+        (tree("->", "    <Go/>", "    <Turn/>"), tree("->", "    Go", "    Turn")),
+        ("tree Main:\n    Sequence:\n        Go\n", tree("Sequence", "    Go")),
+    ],
+)
+def test_several_mistakes_are_mended_one_after_another(text: str, mended: str) -> None:
+    while found := mistakes(text):
+        (fix,) = found[0].fixes
+        assert after(text, fix) != text
         text = after(text, fix)
-    assert text == tree("Retry (num_attempts=3)", "    Go")
-    assert mistakes(text) == []
+    assert text == mended
 
 
 def mistakes(text: str) -> list[Diagnostic]:
     """What is wrong with a mission, but that its nodes have no models."""
-    return [found for found in check(Workspace.of({MAIN: text}), MAIN) if found.rule != "no-models"]
+    workspace = Workspace.of({MAIN: text, "stations.btq": "Action Go\n"})
+    return [found for found in check(workspace, MAIN) if found.rule != "no-models"]

@@ -54,7 +54,7 @@ def test_a_line_ends_with_any_of_the_three_line_ends(end: str) -> None:
 @pytest.mark.parametrize("character", ["\f", "\v", "\x1c", "\x85", "\u2028", "\u2029"])
 def test_nothing_else_ends_a_line(character: str) -> None:
     shown = repr(character)
-    problem = f"1:3 syntax-error «{character}» {shown} means nothing here"
+    problem = f"1:3 syntax-error «{character}» unexpected {shown}"
     lexer = Lexer(f"a {character} b")
     assert lexer.open_line()
     lexer.scan()
@@ -71,7 +71,7 @@ def test_a_comment_may_follow_a_byte_order_mark() -> None:
 
 
 def test_a_byte_order_mark_inside_a_file_is_an_error() -> None:
-    assert_lex("a\n\ufeffb", "NAME a | NL | NAME b | NL", "2:1 syntax-error «\ufeff» '\\ufeff' means nothing here")
+    assert_lex("a\n\ufeffb", "NAME a | NL | NAME b | NL", "2:1 syntax-error «\ufeff» unexpected '\\ufeff'")
 
 
 def test_the_last_line_needs_no_line_end() -> None:
@@ -122,9 +122,9 @@ def test_a_dedent_to_a_column_of_no_block_is_one_diagnostic() -> None:
             E
           F
     """
-    problem = "5:1 inconsistent-indentation «      » no open block is indented by 6 blanks"
+    problem = "5:1 inconsistent-indentation «      » an indentation of 6 blanks matches no open block"
     parsed = assert_parse(text, tree, problem)
-    assert parsed.diagnostics[0].notes == ("the line is read as if indented by 8 blanks",)
+    assert parsed.diagnostics[0].notes == ("btq reads the line as if indented by 8 blanks",)
     assert_fix(
         "BehaviorTree t\n    A\n  B\n",
         "Indent it by 4 blanks",
@@ -157,7 +157,7 @@ def test_the_adopted_column_may_open_blocks() -> None:
               C
             D
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «      » no open block is indented by 6 blanks")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «      » an indentation of 6 blanks matches no open block")
 
 
 def test_tabs_and_spaces_that_cannot_be_compared_are_one_diagnostic() -> None:
@@ -189,7 +189,7 @@ def test_an_item_at_a_column_of_no_block_is_still_an_item() -> None:
         tree u
           B
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «  » no open block is indented by 2 blanks")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «  » an indentation of 2 blanks matches no open block")
 
 
 def test_an_item_at_a_column_of_no_block_in_a_root() -> None:
@@ -207,7 +207,7 @@ def test_an_item_at_a_column_of_no_block_in_a_root() -> None:
           tree u
             B
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «        » no open block is indented by 8 blanks")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «        » an indentation of 8 blanks matches no open block")
 
 
 # ---- brackets -------------------------------------------------------------------------------------------------------
@@ -224,7 +224,7 @@ def test_line_ends_and_indentation_mean_nothing_in_brackets() -> None:
     assert_lex(text, "NAME a | OPEN ( | NAME b | NAME c | CLOSE ) | NL | NAME d | NL")
 
 
-UNCLOSED = "unclosed-bracket «(» this `(` has no `)`"
+UNCLOSED = "unclosed-bracket «(» missing `)` for this `(`"
 
 
 @pytest.mark.parametrize(
@@ -387,7 +387,7 @@ def test_forgotten_brackets_can_be_closed() -> None:
 
 def test_a_closing_bracket_too_many_is_one_diagnostic() -> None:
     assert_parse("BehaviorTree a\n  X (b = 1))\n  Y\n", "tree a\n  X (b=1)\n  Y",
-                 "2:12 syntax-error «)» this `)` closes nothing")  # fmt: skip
+                 "2:12 syntax-error «)» unexpected `)`: no bracket is open")  # fmt: skip
 
 
 # ---- symbols and names ----------------------------------------------------------------------------------------------
@@ -587,13 +587,13 @@ def test_no_word_of_the_grammar_is_a_unit() -> None:
 @pytest.mark.parametrize(
     ("source", "expected", "wrong", "message"),
     [
-        ("30sek", "QUANTITY 30sek", "sek", "`sek` is no unit: did you mean `s`?"),
-        ("30Xyzzy", "QUANTITY 30Xyzzy", "Xyzzy", "`Xyzzy` is no unit"),
-        ("30_a", "QUANTITY 30_a", "_a", "`_a` is no unit"),
-        ("0x1F", "QUANTITY 0x1F", "x1F", "`x1F` is no unit"),
-        ("30m²", "QUANTITY 30m²", "m²", "`m²` is no unit: did you mean `m^2`?"),
-        ("30 °C", "QUANTITY 30 °C", "°C", "`°C` is no unit: did you mean `degC`?"),
-        ("3 degC/s", "QUANTITY 3 degC/s", "degC/s", "`degC/s` is no unit: did you mean `K/s`?"),
+        ("30sek", "QUANTITY 30sek", "sek", "unknown unit `sek`; did you mean `s`?"),
+        ("30Xyzzy", "QUANTITY 30Xyzzy", "Xyzzy", "unknown unit `Xyzzy`"),
+        ("30_a", "QUANTITY 30_a", "_a", "unknown unit `_a`"),
+        ("0x1F", "QUANTITY 0x1F", "x1F", "unknown unit `x1F`"),
+        ("30m²", "QUANTITY 30m²", "m²", "unknown unit `m²`; did you mean `m^2`?"),
+        ("30 °C", "QUANTITY 30 °C", "°C", "unknown unit `°C`; did you mean `degC`?"),
+        ("3 degC/s", "QUANTITY 3 degC/s", "degC/s", "unknown unit `degC/s`; did you mean `K/s`?"),
     ],
 )
 def test_an_unknown_unit_is_one_diagnostic(source: str, expected: str, wrong: str, message: str) -> None:
@@ -637,14 +637,14 @@ def test_what_a_string_says(source: str, text: str) -> None:
 def test_an_unknown_escape_stands_for_itself_with_one_hint_a_string() -> None:
     text = r'include "a\d\n\\\e"'
     parsed = assert_parse(text, r'include "a\d\n\\\e"',
-                          r"1:11 unknown-escape «\d» `\d` is no escape: the backslash stands for itself")  # fmt: skip
+                          r"1:11 unknown-escape «\d» unknown escape `\d`; the backslash is kept")  # fmt: skip
     (include,) = (entry.item for entry in parsed.entries)
     assert getattr(include, "path").text == "a\\d\n\\\\e"  # noqa: B009  # whatever item it is
     assert_fix(text, "Write `\\\\`", r'include "a\\d\n\\\\e"', safe=True)
 
 
 def test_a_backslash_at_the_end_of_a_line_is_no_escape() -> None:
-    problem = "1:11 unknown-escape «\\» `\\` is no escape: the backslash stands for itself"
+    problem = "1:11 unknown-escape «\\» unknown escape `\\`; the backslash is kept"
     assert_parse('include "a\\\nb"', 'include "a\\\\nb"', problem)
 
 
@@ -670,7 +670,7 @@ def test_a_string_without_a_closing_quote_ends_at_the_end_of_its_line() -> None:
             X "b c
             Y
     """
-    problem = '2:7 unclosed-string «"b c» this string has no closing "'
+    problem = '2:7 unclosed-string «"b c» missing closing " for this string'
     assert_parse(text, 'tree a\n  X as "b c\n  Y', problem)
     assert_fix(text, 'Close it with "', 'BehaviorTree a\n    X "b c"\n    Y\n')
 
@@ -681,17 +681,17 @@ def test_a_bracket_that_an_unclosed_string_swallowed_is_closed() -> None:
             X (a = "b)
             Y
     """
-    assert_parse(text, 'tree a\n  X (a="b))\n  Y', '2:12 unclosed-string «"b)» this string has no closing "')
+    assert_parse(text, 'tree a\n  X (a="b))\n  Y', '2:12 unclosed-string «"b)» missing closing " for this string')
     assert_fix(text, 'Close it with "', 'BehaviorTree a\n    X (a = "b")\n    Y\n')
 
 
 def test_each_kind_of_quote_is_looked_for_alone() -> None:
     assert_lex("a 'b\nc \"d\ne\n\"", "NAME a | STRING 'b | NL | NAME c | STRING \"d\\ne\\n\" | NL",
-               "1:3 unclosed-string «'b» this string has no closing '")  # fmt: skip
+               "1:3 unclosed-string «'b» missing closing ' for this string")  # fmt: skip
 
 
 def test_an_escaped_quote_does_not_close() -> None:
-    assert_lex(r'a "b\"', r'NAME a | STRING "b\" | NL', r'1:3 unclosed-string «"b\"» this string has no closing "')
+    assert_lex(r'a "b\"', r'NAME a | STRING "b\" | NL', r'1:3 unclosed-string «"b\"» missing closing " for this string')
 
 
 def test_a_string_over_items_shows_both_places() -> None:
@@ -717,7 +717,7 @@ def test_blackboard_entries(braced: str) -> None:
 @pytest.mark.parametrize("source", ["{a\n      b}", "{a'b'}", '{"a"}', "{a"])
 def test_what_is_no_blackboard_entry(source: str) -> None:
     (problem, *_) = parse(f"BehaviorTree t\n  X (a = {source})").diagnostics
-    assert (problem.span, problem.message) == ((24, 25), "this `{` has no `}`")
+    assert (problem.span, problem.message) == ((24, 25), "missing `}` for this `{`")
     assert problem.notes == ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
 
 
@@ -767,13 +767,13 @@ def test_comments(text: str, expected: str) -> None:
 )
 def test_a_comment_sign_inside_a_word_is_an_error_that_says_quote_this(text: str, word: str, sign: str) -> None:
     column = len(text) - len(word) + 1
-    message = f"`{sign}` begins a comment only behind a blank: quote this"
+    message = f"`{sign}` begins a comment only after a blank; put this in quotes"
     assert_lex(text, f"NAME {word} | NL", f"1:{column} misplaced-comment «{word}» {message}")
 
 
 @pytest.mark.parametrize(("source", "sign"), [("#ff0000", "#"), ("//a", "//"), ("/*a*/", "/*")])
 def test_a_comment_sign_behind_an_equals_sign_is_an_error_too(source: str, sign: str) -> None:
-    message = f"`{sign}` begins a comment only behind a blank: quote this"
+    message = f"`{sign}` begins a comment only after a blank; put this in quotes"
     assert_value(source, f"NAME {source}", f"1:1 misplaced-comment «{source}» {message}")
     text = f"BehaviorTree a\n  X (color = {source} b = 1)"
     problem = f"2:14 misplaced-comment «{source}» {message}"
@@ -783,7 +783,7 @@ def test_a_comment_sign_behind_an_equals_sign_is_an_error_too(source: str, sign:
 
 def test_a_word_with_a_comment_sign_can_be_quoted_or_parted() -> None:
     text = "BehaviorTree a\n  X Weed#2\n  Y"
-    problem = "2:5 misplaced-comment «Weed#2» `#` begins a comment only behind a blank: quote this"
+    problem = "2:5 misplaced-comment «Weed#2» `#` begins a comment only after a blank; put this in quotes"
     assert_parse(text, "tree a\n  X as Weed#2\n  Y", problem)
     assert_fix(text, "Put quotes around it", 'BehaviorTree a\n  X "Weed#2"\n  Y')
     assert_fix(text, "Put a blank before `#`", "BehaviorTree a\n  X Weed #2\n  Y")
@@ -794,7 +794,7 @@ def test_behind_what_is_no_word_a_blank_is_missing(word: str) -> None:
     kind = {"->": "SYMBOL", "'a'": "STRING", "{a}": "BRACED"}[word]
     at = len(word) + 1
     assert_lex(f"{word}#b c", f"{kind} {word} | COMMENT #b c | NL",
-               f"1:{at} misplaced-comment «#» `#` begins a comment only behind a blank")  # fmt: skip
+               f"1:{at} misplaced-comment «#» `#` begins a comment only after a blank")  # fmt: skip
     assert_fix(
         "BehaviorTree a\n  ->// b\n    X", "Put a blank before `//`", "BehaviorTree a\n  -> // b\n    X", safe=True
     )
@@ -806,7 +806,7 @@ def test_an_unclosed_comment_ends_at_the_end_of_its_line() -> None:
             X /* b
             Y
     """
-    assert_parse(text, "tree a\n  X\n  Y", "2:7 unclosed-comment «/*» this comment has no closing */")
+    assert_parse(text, "tree a\n  X\n  Y", "2:7 unclosed-comment «/*» missing closing `*/` for this comment")
     assert_fix(text, "Close it at the end of the line", "BehaviorTree a\n    X /* b */\n    Y\n")
 
 
@@ -816,7 +816,7 @@ def test_a_bracket_that_an_unclosed_comment_swallowed_is_closed() -> None:
             X (a = 1 /* (b))
             Y
     """
-    assert_parse(text, "tree a\n  X (a=1)\n  Y", "2:14 unclosed-comment «/*» this comment has no closing */")
+    assert_parse(text, "tree a\n  X (a=1)\n  Y", "2:14 unclosed-comment «/*» missing closing `*/` for this comment")
 
 
 def test_comments_are_tokens_wherever_they_stand() -> None:
@@ -833,7 +833,7 @@ def test_comments_are_tokens_wherever_they_stand() -> None:
     [
         ("&", "write `and`"),
         ("|", "write `or`; `||` is the symbol of Parallel"),
-        ("[", "attributes stand in `( … )`"),
+        ("[", "attributes go in round brackets: `(key = value)`"),
         ("\xa0", "this is a no-break space: use an ordinary blank"),
     ],
 )
@@ -841,11 +841,11 @@ def test_a_character_that_begins_nothing_is_left_out_with_one_diagnostic_a_line(
     shown = repr(character) if character == "\xa0" else f"`{character}`"
     text = f"context a : b {character} {character} < 3\ncontext d : e"
     parsed = assert_parse(text, "context a : (b < 3)\ncontext d : e",
-                          f"1:15 syntax-error «{character}» {shown} means nothing here")  # fmt: skip
+                          f"1:15 syntax-error «{character}» unexpected {shown}")  # fmt: skip
     assert parsed.diagnostics[0].notes == (note,)
 
 
-@pytest.mark.parametrize("source", ["1;2;3", ";", "$x", "a@b", "~/maps", "C:\\maps", "50€", "a;b"])
+@pytest.mark.parametrize("source", ["1;2;3", ";", "$1", "a@b", "~/maps", "C:\\maps", "50€", "a;b"])
 def test_such_a_character_in_a_value_needs_quotes(source: str) -> None:
     text = f"BehaviorTree a\n  X (a = {source} b = 1)"
     parsed = parse(text)

@@ -131,14 +131,14 @@ def test_behind_the_first_node_a_port_word_is_a_node(word: str) -> None:
         ("X ->", "X", "1:3 syntax-error «->» expected the end of the line, found `->`"),
         ("-> ->", "->", "1:4 syntax-error «->» expected the end of the line, found `->`"),
         ("X {a}", "X", "1:3 syntax-error «{a}» expected the end of the line, found `{a}`"),
-        ("X (a = 1) b", "X (a=1)", "1:11 syntax-error «b» expected the end of the line, found `b`"),
-        ("X a = 1", "X as a", "1:3 syntax-error «a = 1» attributes stand in brackets: `( key = value )`"),
-        ("X = 1", "", "1:1 syntax-error «X = 1» attributes stand in brackets: `( key = value )`"),
-        ("X (a) = 1)", "X", "1:10 syntax-error «)» this `)` closes nothing"),
+        ("X (a = 1) b", "X (a=1)", "1:11 syntax-error «b» a node's label goes before its brackets"),
+        ("X a = 1", "X as a", "1:3 syntax-error «a = 1» attributes go in brackets: `(key = value)`"),
+        ("X = 1", "", "1:1 syntax-error «X = 1» attributes go in brackets: `(key = value)`"),
+        ("X (a) = 1)", "X", "1:10 syntax-error «)» unexpected `)`: no bracket is open"),
         (
             "X (a = 1) (b = 2)",
             "X (a=1)",
-            "1:11 syntax-error «(» all attributes of a node stand in one pair of brackets",
+            "1:11 syntax-error «(» all attributes of a node go in one pair of brackets",
         ),
         (
             "X satisfies a (b = 1) c",
@@ -153,14 +153,14 @@ def test_behind_the_first_node_a_port_word_is_a_node(word: str) -> None:
         (
             "takes at most 3 s",
             "takes as at",
-            "1:1 syntax-error «takes» `takes` begins a clause, and clauses stand in a requirement",
+            "1:1 syntax-error «takes» unexpected clause `takes` in a tree; clauses go in a requirement",
         ),
         (
             "on violation fail",
             "on as violation",
-            "1:1 syntax-error «on» `on` begins a clause, and clauses stand in a requirement",
+            "1:1 syntax-error «on» unexpected clause `on` in a tree; clauses go in a requirement",
         ),
-        ("X: a", "X", "1:2 syntax-error «:» expected the end of the line, found `:`"),
+        ("X: a", "", "1:1 syntax-error «X: a» attributes go in brackets: `(key = value)`"),
         ("X, Y", "X", "1:2 syntax-error «,» expected the end of the line, found `,`"),
         ("Action Action", "Action Action", None),
         ("X.Y", "X", "1:2 syntax-error «.» expected the end of the line, found `.`"),
@@ -208,8 +208,8 @@ def test_clauses_behind_children_belong_to_the_node_around_them(clause: str) -> 
             Z
     """
     word = clause.split(" ", maxsplit=1)[0]
-    parsed = assert_parse(text, tree, f"5:9 clause-after-children «{word}» clauses stand before children")
-    assert parsed.diagnostics[0].notes == (f'a node of this name is written in quotes: "{word}"',)
+    parsed = assert_parse(text, tree, f"5:9 clause-after-children «{word}» clauses go before children")
+    assert parsed.diagnostics[0].notes == (f'a node of this name goes in quotes: "{word}"',)
     fixed = f"""
         BehaviorTree t
             ->
@@ -223,15 +223,15 @@ def test_clauses_behind_children_belong_to_the_node_around_them(clause: str) -> 
 
 def test_a_clause_behind_the_node_of_a_tree() -> None:
     text = "BehaviorTree t\n  X\n  tags a"
-    assert_parse(text, "tree t\n  tags a\n  X", "3:3 clause-after-children «tags» clauses stand before children")
+    assert_parse(text, "tree t\n  tags a\n  X", "3:3 clause-after-children «tags» clauses go before children")
     assert_fix(text, "Move it before the children", "BehaviorTree t\n  tags a\n  X\n")
-    assert_fix(text, "Give it to `X`", "BehaviorTree t\n  X\n      tags a")
+    assert_fix(text, "Move it to `X`", "BehaviorTree t\n  X\n      tags a")
 
 
 def test_a_clause_line_moves_with_its_requirement() -> None:
     text = "BehaviorTree t\n  X\n    Y\n    satisfies QualityReq a\n      keeps b\n      # c\n      keeps d\n    Z\n"
     tree = "tree t\n  X\n    satisfies {a; keeps b; keeps d}\n    Y\n    Z"
-    assert_parse(text, tree, "4:5 clause-after-children «satisfies» clauses stand before children")
+    assert_parse(text, tree, "4:5 clause-after-children «satisfies» clauses go before children")
     fixed = "BehaviorTree t\n  X\n    satisfies QualityReq a\n      keeps b\n      # c\n      keeps d\n    Y\n    Z\n"
     assert_fix(text, "Move it before the children", fixed)
 
@@ -240,7 +240,7 @@ def test_xml_is_no_node() -> None:
     assert_parse("BehaviorTree t\n  X\n    xml '<a/>'\n    Y\n", "tree t\n  X\n    xml '<a/>'\n    Y")
     parsed = assert_parse("BehaviorTree t\n  X\n    xml\n    Y\n", "tree t\n  X\n    xml MISSING\n    Y",
                           f"3:8 syntax-error «» expected one XML element in quotes, {END}")  # fmt: skip
-    assert parsed.diagnostics[0].notes == ('a node of this name is written in quotes: "xml"',)
+    assert parsed.diagnostics[0].notes == ('a node of this name goes in quotes: "xml"',)
 
 
 def test_a_requirement_without_satisfies() -> None:
@@ -267,7 +267,7 @@ def test_a_requirement_without_satisfies() -> None:
 def test_a_clause_line_without_a_definition_has_no_block(line: str) -> None:
     text = f"BehaviorTree t\n  X\n    {line}\n      Action Y\n      Z\n    V\n"
     tree = f"tree t\n  X\n    {line}\n    V"
-    problem = "4:7 syntax-error «Action Y» this line is indented, but the line above it opens no block"
+    problem = "4:7 syntax-error «Action Y» unexpected indentation: the line above opens no block"
     assert_parse(text, tree, problem)
 
 
@@ -325,7 +325,7 @@ def test_value(value: str, shown: str) -> None:
 
 
 EXPECTED_ATTRIBUTE = "expected an attribute: key = value"
-SATISFYS = "`satisfys` attaches nothing to a node: did you mean `satisfies`?"
+SATISFYS = "unknown word `satisfys`; did you mean `satisfies`?"
 EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {key}"
 
 
@@ -339,7 +339,7 @@ EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {k
         ("X (, b = 1)", "X (b=1)", f"1:4 syntax-error «,» {EXPECTED_ATTRIBUTE}, found `,`"),
         ("X (a = 1,, b = 1)", "X (a=1 b=1)", f"1:10 syntax-error «,» {EXPECTED_ATTRIBUTE}, found `,`"),
         ("X ((a = 1) b = 1)", "X (b=1)", f"1:4 syntax-error «(» {EXPECTED_ATTRIBUTE}, found `(`"),
-        ("X (a : 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «:» key and value are joined by `=`"),
+        ("X (a : 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «:» expected `=` between key and value, found `:`"),
         (
             "X (a = charging station b = 1)",
             "X (a=charging b=1)",
@@ -349,25 +349,25 @@ EXPECTED_VALUE = "expected a value: a string, a name, a number, a quantity or {k
         ("X (a =, b = 1)", "X (a=MISSING b=1)", f"1:7 syntax-error «,» {EXPECTED_VALUE}, found `,`"),
         ("X (a = = 1 b = 1)", "X (a=MISSING b=1)", f"1:8 syntax-error «=» {EXPECTED_VALUE}, found `=`"),
         ("X (a = (1) b = 1)", "X (a=MISSING b=1)", f"1:8 syntax-error «(» {EXPECTED_VALUE}, found `(`"),
-        ("X (a == 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «==» key and value are joined by `=`"),
-        ("X (a: 1)", "X (a=1)", "1:5 syntax-error «:» key and value are joined by `=`"),
+        ("X (a == 1 b = 1)", "X (a=1 b=1)", "1:6 syntax-error «==» expected `=` between key and value, found `==`"),
+        ("X (a: 1)", "X (a=1)", "1:5 syntax-error «:» expected `=` between key and value, found `:`"),
         ("X (a = 1 satisfys r)", "X (a=1)\n  satisfies r", f"1:10 syntax-error «satisfys» {SATISFYS}"),
         ("X satisfys r, s", "X\n  satisfies r, s", f"1:3 syntax-error «satisfys» {SATISFYS}"),
-        ("X (a = {@b)", "X (a={@b)", "1:8 syntax-error «{» this `{` has no `}`"),
-        ("X (a = {b c = {d)", "X (a={b c={d)", "1:8 syntax-error «{» this `{` has no `}`"),
+        ("X (a = {@b)", "X (a={@b)", "1:8 syntax-error «{» missing `}` for this `{`"),
+        ("X (a = {b c = {d)", "X (a={b c={d)", "1:8 syntax-error «{» missing `}` for this `{`"),
         ("X 3", "X", "1:3 syntax-error «3» expected the end of the line, found `3`"),
         ("X {b}", "X", "1:3 syntax-error «{b}» expected the end of the line, found `{b}`"),
         ("X (a = b = 1)", "X (a=b)", f"1:10 syntax-error «=» {EXPECTED_ATTRIBUTE}, found `=`"),
-        ("X (parameters)", "X", "1:14 syntax-error «)» expected `key = value` behind `parameters`, found `)`"),
+        ("X (parameters)", "X", "1:14 syntax-error «)» expected `key = value` after `parameters`, found `)`"),
         (
             "X (parameters a b = 1)",
             "X (b=1)",
-            "1:15 syntax-error «a» expected `key = value` behind `parameters`, found `a`",
+            "1:15 syntax-error «a» expected `key = value` after `parameters`, found `a`",
         ),
         (
             "X (parameters satisfies a, b = 1)",
             "X (b=1)",
-            "1:15 syntax-error «satisfies» expected `key = value` behind `parameters`, found `satisfies`",
+            "1:15 syntax-error «satisfies» expected `key = value` after `parameters`, found `satisfies`",
         ),
     ],
 )
@@ -401,7 +401,7 @@ def test_what_is_only_the_start_of_a_value_has_no_fix() -> None:
 
 
 def test_brackets_that_a_square_one_closes() -> None:
-    assert_node("X (a = 4]", "X (a=4)", "1:9 syntax-error «]» brackets are closed by `)`")
+    assert_node("X (a = 4]", "X (a=4)", "1:9 syntax-error «]» expected `)`, found `]`")
     assert_fix("BehaviorTree t\n  X (a = 4] tags b", "Write `)`", "BehaviorTree t\n  X (a = 4) tags b", safe=True)
 
 
@@ -429,9 +429,9 @@ def test_a_string_is_closed_before_the_bracket_behind_it(before: str, after: str
 
 
 def test_an_unknown_compound_unit_in_a_value() -> None:
-    problem = "1:10 unknown-unit «m/sek» `m/sek` is no unit: did you mean `m/s`?"
+    problem = "1:10 unknown-unit «m/sek» unknown unit `m/sek`; did you mean `m/s`?"
     assert_node("X (a = 3 m/sek b = 1)", "X (a=3 m/sek b=1)", problem)
-    assert_node("X (a = 3 sek b = 1)", "X (a=3 b=1)", "1:10 unknown-unit «sek» `sek` is no unit: did you mean `s`?")
+    assert_node("X (a = 3 sek b = 1)", "X (a=3 b=1)", "1:10 unknown-unit «sek» unknown unit `sek`; did you mean `s`?")
     assert_fix("BehaviorTree t\n  X (a = 3 sek)", "Replace `sek` by `s`", "BehaviorTree t\n  X (a = 3 s)")
 
 
@@ -450,7 +450,7 @@ def test_each_line_of_brackets_has_its_own_diagnostic() -> None:
         text,
         "tree t\n  X (a=MISSING b=30sek e=1)\n  Y",
         f"3:13 syntax-error «,» {EXPECTED_VALUE}, found `,`",
-        "4:15 unknown-unit «sek» `sek` is no unit: did you mean `s`?",
+        "4:15 unknown-unit «sek» unknown unit `sek`; did you mean `s`?",
         f"5:9 syntax-error «c» {EXPECTED_ATTRIBUTE}, found `c`",
     )
 
@@ -464,7 +464,7 @@ def test_forgotten_brackets_are_one_diagnostic_whatever_they_swallow() -> None:
                 Z c
             V
     """
-    assert_parse(text, "tree t\n  ->\n    X (a=1)\n  V", "3:11 unclosed-bracket «(» this `(` has no `)`")
+    assert_parse(text, "tree t\n  ->\n    X (a=1)\n  V", "3:11 unclosed-bracket «(» missing `)` for this `(`")
 
 
 # ---- NodeClause -----------------------------------------------------------------------------------------------------
@@ -531,7 +531,7 @@ def test_node_clause(clause: str, shown: str) -> None:
         ("satisfices a <b", "satisfices a.b", 16, "expected `>`"),
         ("satisfices Quality =", "satisfices MISSING", 21, "expected a quality"),
         ("satisfies", "satisfies MISSING", 10, "expected a requirement: its ID, or QualityReq and a definition"),
-        ("satisfies a,", "satisfies a", 13, "expected another requirement behind the comma"),
+        ("satisfies a,", "satisfies a", 13, "expected another requirement after the comma"),
         ("satisfies QualityReq", "satisfies {MISSING}", 21, "expected the requirement's ID"),
         ("satisfies QualityReq ID =", "satisfies {classic MISSING}", 26, "expected the requirement's ID"),
         ("satisfies QualityReq a :", "satisfies {a}", 25, "expected a quality"),
@@ -552,8 +552,8 @@ def test_broken_node_clause(clause: str, shown: str, column: int, message: str) 
         ("X (satisfices a b)", "X\n  satisfices a", f"1:17 syntax-error «b» {EXPECTED_ATTRIBUTE}, found `b`"),
         (
             "X (satisfices Quality a, b = 1)",
-            "X (b=1)\n  satisfices MISSING",
-            "1:23 syntax-error «a» expected `=` behind `Quality`, found `a`",
+            "X (b=1)\n  satisfices a",
+            "1:23 syntax-error «a» expected `=` after `Quality`, found `a`",
         ),
         (
             "X (satisfices Quality = a (b) c = 1)",
@@ -620,8 +620,8 @@ def test_a_clause_block_with_a_mistake() -> None:
         text,
         "tree t\n  X\n    satisfies {a; keeps MISSING; never b}",
         f"4:18 syntax-error «» expected a condition: a signal, a context, a value, …, {END}",
-        f"5:14 syntax-error «» expected a verb behind `Y` (takes, succeeds, needs, keeps, …), {END}",
-        "6:17 syntax-error «Z» this line is indented, but the line above it opens no block",
+        f"5:14 syntax-error «» expected a verb after `Y` (takes, succeeds, needs, keeps, …), {END}",
+        "6:17 syntax-error «Z» unexpected indentation: the line above opens no block",
     )
 
 
@@ -634,7 +634,7 @@ def nested(levels: int) -> str:
 
 def test_as_many_levels_as_the_engine_reads_and_more() -> None:
     assert_parse(nested(256))
-    problem = "258:258 nested-too-deep «->» more than 256 levels of nodes: the engine reads no more"
+    problem = "258:258 nested-too-deep «->» more than 256 levels of nodes, which BehaviorTree.CPP refuses"
     parsed = assert_parse(nested(300), None, problem)
     assert len(list(parsed.trees[0].walk())) == 300
     assert parsed.diagnostics[0].notes == (

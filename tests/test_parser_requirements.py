@@ -105,16 +105,16 @@ def test_clauses_on_the_line_and_in_the_block() -> None:
         ("QualityReq", "MISSING", f"1:11 syntax-error «» expected the requirement's ID, {END}"),
         ("QualityReq : a", "MISSING", "1:12 syntax-error «:» expected the requirement's ID, found `:`"),
         ("QualityReq a :", "a", f"1:15 syntax-error «» expected a quality, {END}"),
-        ("QualityReq a 'b' : c", "a : c 'b'", "1:18 syntax-error «:» a requirement's quality stands before its title"),
+        ("QualityReq a 'b' : c", "a : c 'b'", "1:18 syntax-error «:» a requirement's quality goes before its title"),
         (
             "QualityReq a 'b' 'c'",
             "a 'b'",
-            f"1:21 syntax-error «» expected a verb behind `'c'` (takes, succeeds, needs, keeps, …), {END}",
+            f"1:21 syntax-error «» expected a verb after `'c'` (takes, succeeds, needs, keeps, …), {END}",
         ),
         (
             "QualityReq a b",
             "a b",
-            "1:14 syntax-error «b» a title stands in quotes, and a quality stands behind `:`",
+            "1:14 syntax-error «b» a title goes in quotes, and a quality goes after `:`",
         ),
         ("QualityReq ID =", "classic MISSING", f"1:16 syntax-error «» expected the requirement's ID, {END}"),
         ("QualityReq ID = a description =", "classic a", f"1:32 syntax-error «» expected the description, {END}"),
@@ -130,7 +130,7 @@ def test_clauses_on_the_line_and_in_the_block() -> None:
         (
             "QualityReq a(b : foot/sek)",
             "a(b : foot/sek)",
-            "1:18 unknown-unit «foot/sek» `foot/sek` is no unit: did you mean `ft/s`?",
+            "1:18 unknown-unit «foot/sek» unknown unit `foot/sek`; did you mean `ft/s`?",
         ),
         ("QualityReq a(b : m c : s)", "a(b : m)", "1:20 syntax-error «c» expected `,` or `)`, found `c`"),
         ("QualityReq a(b : m,)", "a(b : m)", "1:20 syntax-error «)» expected a parameter's name, found `)`"),
@@ -240,8 +240,8 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
         ("takes at most '3'", "takes <= MISSING", f"1:15 syntax-error «'3'» expected {A_VALUE}, found `'3'`"),
         ("takes at most {a}", "takes <= MISSING", f"1:15 syntax-error «{{a}}» expected {A_VALUE}, found `{{a}}`"),
         ("takes at most -a", "takes <= MISSING", f"1:16 syntax-error «a» expected {A_VALUE}, found `a`"),
-        ("takes at most 30 sek", "takes <= 30", "1:18 unknown-unit «sek» `sek` is no unit: did you mean `s`?"),
-        ("takes at most 30 m/sek", "takes <= 30m", "1:18 unknown-unit «m/sek» `m/sek` is no unit"),
+        ("takes at most 30 sek", "takes <= 30", "1:18 unknown-unit «sek» unknown unit `sek`; did you mean `s`?"),
+        ("takes at most 30 m/sek", "takes <= 30m", "1:18 unknown-unit «m/sek» unknown unit `m/sek`"),
         ("takes between 3 s", "takes between 3s MISSING", f"1:18 syntax-error «» expected `and`, {END}"),
         ("takes between 3 s or 4 s", "takes between 3s MISSING", "1:19 syntax-error «or» expected `and`, found `or`"),
         ("takes at most 3 s if", "takes <= [3s if MISSING]", f"1:21 syntax-error «» expected {A_CONDITION}, {END}"),
@@ -293,12 +293,12 @@ def test_a_verb_is_no_subject_without_quotes(verb: str) -> None:
             "follows MISSING",
             "1:11 syntax-error «begins» expected starts, succeeds, fails, finishes or halts, found `begins`",
         ),
-        ("X", "", f"1:2 syntax-error «» expected a verb behind `X` (takes, succeeds, needs, keeps, …), {END}"),
+        ("X", "", f"1:2 syntax-error «» expected a verb after `X` (takes, succeeds, needs, keeps, …), {END}"),
         ("X/", "", f"1:3 syntax-error «» expected a node, {END}"),
         (
             "X at most 3 s",
             "",
-            "1:3 syntax-error «at» expected a verb behind `X` (takes, succeeds, needs, keeps, …), found `at`",
+            "1:3 syntax-error «at» expected a verb after `X` (takes, succeeds, needs, keeps, …), found `at`",
         ),
         ("3 s", "", f"1:1 syntax-error «3 s» expected {A_CLAUSE}, found `3 s`"),
         ("mission", "", f"1:8 syntax-error «» expected {A_VERB}, {END}"),
@@ -335,7 +335,7 @@ def test_broken_claim(clause: str, shown: str, problem: str) -> None:
     ],
 )
 def test_a_misspelt_clause(clause: str, word: str, likely: str) -> None:
-    problem = f"1:{clause.index(word) + 1} syntax-error «{word}» `{word}` begins no clause: did you mean `{likely}`?"
+    problem = f"1:{clause.index(word) + 1} syntax-error «{word}» unknown word `{word}`; did you mean `{likely}`?"
     assert_clause(clause, "", problem)
     text = f"QualityReq a\n    {clause}\n"
     assert_fix(text, f"Replace `{word}` by `{likely}`", text.replace(word, likely))
@@ -422,7 +422,7 @@ def test_clause(clause: str, shown: str) -> None:
             "on violation MISSING\n  goal 3s",
             "1:14 syntax-error «fails» expected fail, halt, warn or log, found `fails`",
         ),
-        ("on failure warn", "on violation MISSING", "1:4 syntax-error «failure» expected `violation`, found `failure`"),
+        ("on failure warn", "on violation warn", "1:4 syntax-error «failure» expected `violation`, found `failure`"),
         ("goal", "goal MISSING", f"1:5 syntax-error «» expected {A_VALUE}, {END}"),
         ("because", "because MISSING", f"1:8 syntax-error «» expected the reason in quotes, {END}"),
         ("because it moves", "because MISSING", "1:9 syntax-error «it» expected the reason in quotes, found `it`"),
@@ -520,7 +520,7 @@ def test_condition(condition: str, shown: str) -> None:
         ("!a", "(not a)", "1:1 syntax-error «!» in conditions `!` is written `not`"),
         ("a +", "a", f"1:4 syntax-error «» expected {A_CONDITION}, {END}"),
         ("a * / b", "a", f"1:5 syntax-error «/» expected {A_CONDITION}, found `/`"),
-        ("-a", "MISSING", "1:2 syntax-error «a» expected a number or a quantity behind `-`, found `a`"),
+        ("-a", "MISSING", "1:2 syntax-error «a» expected a number or a quantity after `-`, found `a`"),
         ("{a} > 3", "MISSING", f"1:1 syntax-error «{{a}}» expected {A_CONDITION}, found `{{a}}`"),
         ("()", "MISSING", f"1:2 syntax-error «)» expected {A_CONDITION}, found `)`"),
         ("(a b) or c", "(or a c)", "1:4 syntax-error «b» expected `)`, found `b`"),
@@ -529,7 +529,7 @@ def test_condition(condition: str, shown: str) -> None:
         ("max(a b)", "(max a)", "1:7 syntax-error «b» expected `)`, found `b`"),
         ("node a/", "(node a)", f"1:8 syntax-error «» expected a node, {END}"),
         ("a b", "a", "1:3 syntax-error «b» expected the end of the line, found `b`"),
-        ("a > 3 sek", "(a > 3)", "1:7 unknown-unit «sek» `sek` is no unit: did you mean `s`?"),
+        ("a > 3 sek", "(a > 3)", "1:7 unknown-unit «sek» unknown unit `sek`; did you mean `s`?"),
     ],
 )
 def test_broken_condition(condition: str, shown: str, problem: str) -> None:
@@ -562,12 +562,12 @@ def test_a_word_of_few_that_is_misspelt() -> None:
 
 
 def test_brackets_in_brackets_have_an_end() -> None:
-    problem = "1:52 nested-too-deep «(» more than 50 brackets in brackets"
+    problem = "1:52 nested-too-deep «(» more than 50 nested brackets"
     assert_condition("(" * 50 + "a" + ")" * 50, "a")
     assert_condition("(" * 51 + "a" + ")" * 51, "MISSING", problem.replace("(", "a"))
     assert_condition("(" * 5000 + "a" + ")" * 5000, "MISSING", problem)
     assert_condition("not (" * 5000 + "a" + ")" * 5000, "MISSING",
-                     "1:256 nested-too-deep «not» more than 50 brackets in brackets")  # fmt: skip
+                     "1:256 nested-too-deep «not» more than 50 nested brackets")  # fmt: skip
 
 
 @pytest.mark.parametrize("operator", ["and", "or", "+", "*", "-"])

@@ -195,29 +195,29 @@ DEEP = 5_000
     [
         (
             "BehaviorTree t\n" + "".join(f"{' ' * level}->\n" for level in range(1, DEEP)),
-            "258:258 nested-too-deep «->» more than 256 levels of nodes: the engine reads no more",
+            "258:258 nested-too-deep «->» more than 256 levels of nodes, which BehaviorTree.CPP refuses",
         ),
         (
             "BehaviorTree t\n  X " + "(" * DEEP + ")" * DEEP + "\n  Y\n",
             "2:6 syntax-error «(» expected an attribute: key = value, found `(`",
         ),
-        ("BehaviorTree t\n  X " + "(" * DEEP + "\n", "2:5 unclosed-bracket «(» this `(` has no `)`"),
+        ("BehaviorTree t\n  X " + "(" * DEEP + "\n", "2:5 unclosed-bracket «(» missing `)` for this `(`"),
         (
             "BehaviorTree t\n  X (satisfies a" + "(b = " * DEEP + ")" * DEEP + ")",
             "2:22 syntax-error «(» expected a value with its unit: 30 s, found `(`",
         ),
         (
             "context a : " + "(" * DEEP + "b" + ")" * DEEP,
-            "1:64 nested-too-deep «(» more than 50 brackets in brackets",
+            "1:64 nested-too-deep «(» more than 50 nested brackets",
         ),
         (
             "QualityReq a keeps " + "not (" * DEEP + "b" + ")" * DEEP,
-            "1:275 nested-too-deep «not» more than 50 brackets in brackets",
+            "1:275 nested-too-deep «not» more than 50 nested brackets",
         ),
         ("context a : " + "not " * DEEP + "b", "1:21 syntax-error «not» expected the end of the line, found `not`"),
         (
             "context a : " + "-" * DEEP + "b",
-            "1:14 syntax-error «-» expected a number or a quantity behind `-`, found `-`",
+            "1:14 syntax-error «-» expected a number or a quantity after `-`, found `-`",
         ),
     ],
 )

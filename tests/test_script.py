@@ -206,7 +206,7 @@ REFUSED: list[tuple[str, str, str, str | None]] = [
     ("(a > 3", "(", "this `(` is never closed", None),
     ("(a; b)", ";", "a `;` cannot stand inside brackets", None),
     ("(a : b)", "(", "this `(` is not closed before the `:`", None),
-    ("a)", ")", "this `)` closes nothing", None),
+    ("a)", ")", "unexpected `)`: no bracket is open", None),
     ("a ? b", "?", "a `?` needs both values", None),
     ("a ? b : c : d", ":", "a `:` stands only behind a `?`", None),
     ("x : 3", ":", "a `:` stands only behind a `?`", None),

@@ -378,7 +378,7 @@ def test_why_a_file_is_not_formatted(editor: Editor) -> None:
     editor.open("main.btq", "BehaviorTree Main\n  Dock )\n")
     options = {"tabSize": 4, "insertSpaces": True}
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 2, "character": 0}}
-    said = f"{editor.root / 'main.btq'}:2:8: not formatted, for there is an error: this `)` closes nothing"
+    said = f"{editor.root / 'main.btq'}:2:8: not formatted, for there is an error: unexpected `)`: no bracket is open"
     for method, more in (("formatting", {}), ("rangeFormatting", {"range": whole})):
         asked = {**editor.document("main.btq"), "options": options, **more}
         assert editor.request(f"textDocument/{method}", **asked) is None

@@ -213,7 +213,7 @@ class Reader(PathReader):
             return
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
             return  # told as a subtraction without blanks
-        meant = near(word.text, self.names(*kinds))
+        meant = near(word.text, self.names(*kinds)) if word.text not in _OF_PYTHON else (word.text.lower(),)
         fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
@@ -599,6 +599,7 @@ def _measures(dimension: Dimension) -> str:
     return dimension_name(Unit("", dimension, 1.0))
 
 
+_OF_PYTHON: Final = ("True", "False")
 _ONE: Final = Unit("1", NO_DIMENSION, 1.0)
 
 

@@ -178,7 +178,7 @@ def leading_semicolon(span: Span) -> Diagnostic:
 
 
 def unopened_bracket(span: Span) -> Diagnostic:
-    return error(span, "this `)` closes nothing")
+    return error(span, "unexpected `)`: no bracket is open")
 
 
 def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:

@@ -356,7 +356,7 @@ def test_make_runs_the_program_that_is_set(neovim: Neovim, setting: str) -> None
     text = "BehaviorTree Main\n    Dock (t = 30 sek)\n"
     (found, *_) = neovim.run({"main.txt": "", "main.btq": text}, script, lsp=False)
     assert found[:3] == [2, 18, "e"]
-    assert re.match(r"\[unknown-unit\] `sek` is no unit", found[3])
+    assert re.match(r"\[unknown-unit\] unknown unit `sek`", found[3])
 
 
 def test_every_kind_of_word_has_its_colour(neovim: Neovim) -> None:
