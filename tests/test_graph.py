@@ -358,6 +358,30 @@ def test_an_edit_elsewhere_leaves_a_fold_where_it_is() -> None:
     assert shown(after, "Main/->/?#2")[-1] == "Main/->/?#2: ?, … 1 node"
 
 
+def test_folded_notes_are_one_line_that_names_the_first() -> None:
+    text = "QualityReq soon\n    takes at most 30 s\nBehaviorTree Main\n    ->\n"
+    text += "        A satisfies soon\n        B satisfices safety.fail-safe, security satisfies soon\n        C\n"
+
+    def notes(*chosen: str, more: int = 0) -> list[tuple[str, ...]]:
+        workspace = Workspace.of({"main.btq": text + "        Wait\n" * more})
+        root = ElementTree.fromstring(picture(workspace, "main.btq", chosen).svg)
+        groups = (group for group in root.iter(f"{SVG}g") if "note" in (group.get("class") or "").split())
+        return [tuple(line.text or "" for line in group if line.tag != f"{SVG}rect") for group in groups]
+
+    shown = [
+        ("soon; takes at most 30 s", "soon", "takes at most 30 s"),
+        ("satisfices safety.fail-safe", "safety.fail-safe"),
+        ("satisfices security", "security"),
+        ("soon; takes at most 30 s", "soon", "takes at most 30 s"),
+    ]
+    folded = [
+        ("soon; takes at most 30 s", "soon"),
+        ("satisfices safety.fail-safe; satisfices security; soon; takes at most 30 s", "fail-safe +2"),
+    ]
+    assert (notes(), notes(more=56), notes("+notes", more=57)) == (shown, shown, shown)
+    assert (notes("-notes"), notes(more=57)) == (folded, folded)
+
+
 def test_a_picture_tells_where_its_nodes_stand() -> None:
     workspace = Workspace.of({"main.btq": MISSION})
     whole = places(workspace, "main.btq")

@@ -1,4 +1,5 @@
-"""Folded figures: a subtree becomes the one box at its top, which says how much is below it.
+"""Folded figures: a subtree becomes the one box at its top, which says how much is below it; the notes of a node become
+the name of the first.
 
 One invariant: a fold names its node by the names on the way to it, so an edit elsewhere in the mission neither opens
 it nor folds another.  Nothing is known of pages and keys.
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 
-from btq_lang.graph.figure import Box, Figure
+from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.record import replace
 
 
@@ -33,6 +34,21 @@ def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:
     kept = [number for number, hiding in enumerate(top) if hiding is None]
     now = {number: place for place, number in enumerate(kept)}
     return replace(figure, boxes=tuple(_kept(figure.boxes[each], names[each], below[each], now) for each in kept))
+
+
+def with_folded_notes(figure: Figure) -> Figure:
+    """A figure with one line for all notes of a node."""
+    return replace(figure, boxes=tuple(replace(box, notes=_folded(box.notes)) for box in figure.boxes))
+
+
+def _folded(notes: tuple[Note, ...]) -> tuple[Note, ...]:
+    if not notes:
+        return ()
+    first = notes[0]
+    name = first.key.rpartition(".")[2] if first.kind == "quality" else first.key
+    title = name if len(notes) == 1 else f"{name} +{len(notes) - 1}"
+    text = "; ".join(note.text or note.title for note in notes)
+    return (replace(first, title=title, lines=(), text=text, state="folded"),)
 
 
 def _kept(box: Box, name: str, below: list[Box], now: dict[int, int]) -> Box:

@@ -8,11 +8,15 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 
 from btq_lang.graph import draw
-from btq_lang.graph.folding import foldable
+from btq_lang.graph.folding import foldable, with_folded_notes
 from btq_lang.graph.missions import figures, keyed
 from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
 
 
 class Picture(Record):
@@ -26,13 +30,17 @@ def picture(workspace: Workspace, path: str, folded: Container[str] = ()) -> Pic
     """The trees of a file.
 
     Args:
-        folded: the names of the nodes whose subtrees are not shown, as `data-name` in the SVG has them.
+        folded: the names of the nodes whose subtrees are not shown, as `data-name` in the SVG has them; with `+notes`
+            among them all notes are shown, with `-notes` they are folded.  Without either they are folded where more
+            than 60 nodes are shown.
 
     Raises:
         KeyError: there is no such file.
     """
     shown = [foldable(figure, folded) for figure in figures(workspace, path, with_qualities=True)]
     keys = {box.key for figure in shown for box in figure.boxes}
+    if "-notes" in folded or (len(keys) > _MOST_WITH_NOTES and "+notes" not in folded):
+        shown = [with_folded_notes(figure) for figure in shown]
     return Picture(draw(shown), {key: span for key, span in places(workspace, path).items() if key in keys})
 
 
@@ -46,3 +54,6 @@ def places(workspace: Workspace, path: str) -> dict[str, Span]:
         key: node.node.head.span.shifted(workspace.files[path].start_of(node.item))
         for key, node in keyed(workspace, path)
     }
+
+
+_MOST_WITH_NOTES: Final = 60  # nodes: with the notes of more, a tree that fits a window has no readable names

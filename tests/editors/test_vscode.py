@@ -319,6 +319,43 @@ def test_the_tree_beside_follows_the_text_and_the_cursor_and_leads_back(code: Wo
     assert symbol.evaluate("e => getComputedStyle(e).color") == keyword.evaluate("e => getComputedStyle(e).color")
 
 
+def test_the_tree_beside_is_fitted_and_zoomed_at_the_pointer(code: Workbench) -> None:
+    leaves = "".join(f"        Act{number} satisfices safety\n" for number in range(70))
+    code.write("tree.btq", f"BehaviorTree Main\n    -> Root\n{leaves}")
+    code.open("tree.btq")
+    code.command("btq: Show Tree Beside")
+    frame = code.page.frame_locator("iframe.webview.ready").frame_locator("#active-frame")
+    frame.locator(".box", has_text="Act69").wait_for(state="attached")
+
+    def rectangle(selector: str) -> tuple[float, float, float, float]:
+        box = frame.locator(selector).first.bounding_box()
+        assert box is not None
+        return box["x"], box["y"], box["width"], box["height"]
+
+    def middle(selector: str) -> float:
+        x, _, width, _ = rectangle(selector)
+        return x + width / 2
+
+    (x, _, width, _), view = rectangle("#tree svg"), rectangle("#view")
+    assert width == pytest.approx(view[2] - 16, abs=2)
+    assert middle("#tree svg") == pytest.approx(middle("#view"), abs=1)
+    assert middle(".box .outline") == pytest.approx(middle("#view"), abs=1)
+    assert frame.locator(".note.folded").count() == 70
+    at = frame.locator(".box", has_text="Act9").first.bounding_box()
+    assert at is not None
+    place = at["x"] + at["width"] / 2, at["y"] + at["height"] / 2
+    code.page.mouse.move(*place)
+    code.page.mouse.wheel(0, -125)
+    code.until(lambda: rectangle("#tree svg")[2] > 1.3 * width, lambda: str(rectangle("#tree svg")))
+    assert rectangle("#tree svg")[2] == pytest.approx(width * 2**0.5, abs=2)
+    at = frame.locator(".box", has_text="Act9").first.bounding_box()
+    assert at is not None
+    assert (at["x"] + at["width"] / 2, at["y"] + at["height"] / 2) == pytest.approx(place, abs=2)
+    frame.locator("#search").click()
+    code.keys("Tab", "f")
+    assert rectangle("#tree svg")[:3:2] == pytest.approx((x, width), abs=1)
+
+
 def test_the_tree_beside_is_folded_and_saved_as_it_is_shown(code: Workbench) -> None:
     code.write("tree.btq", "BehaviorTree Main\n    ->\n        ? Way\n            Dock\n        Charge\n")
     code.open("tree.btq")
@@ -336,6 +373,45 @@ def test_the_tree_beside_is_folded_and_saved_as_it_is_shown(code: Workbench) -> 
     saved = (code.folder / "tree.svg").read_text(encoding="utf-8")
     assert (saved.count('class="box'), "… 1 node" in saved) == (3, True)
     (code.folder / "tree.svg").unlink()
+
+
+COLUMNS = """[...document.querySelectorAll(".editor-group-container")].map(column =>
+  [column.clientWidth, ...[...column.querySelectorAll(".tab")].map(tab => tab.innerText.replaceAll("\\n", ""))])"""
+
+
+def test_the_overview_takes_at_most_half_of_the_pane_and_no_text_away(code: Workbench) -> None:
+    def columns(count: int) -> list[list[object]]:
+        code.page.wait_for_function(f"count => {COLUMNS}.length === count", arg=count)
+        return code.page.evaluate(COLUMNS)  # type: ignore[no-any-return]  # whatever a page's script gives
+
+    def see_halves() -> None:
+        code.page.wait_for_function(f"(columns => columns.length === 2 && columns[1][0] <= columns[0][0])({COLUMNS})")
+        assert [names for _, *names in columns(2)] == [["visit.btq"], ["Overview of visit.btq"]]
+
+    code.write("demands.btq", REQUIREMENTS)
+    code.write("visit.btq", MISSION)
+    code.open("visit.btq")
+    code.command("btq: Open Requirements Overview Beside")
+    see_halves()
+    sash = code.see(".split-view-container > .monaco-sash.vertical, .grid-view-container .monaco-sash.vertical")
+    column = code.page.locator(".editor-group-container").nth(1).bounding_box()
+    assert sash
+    assert column is not None
+    code.page.mouse.move(column["x"], 400)
+    code.page.mouse.down()
+    code.page.mouse.move(column["x"] - 200, 400, steps=5)
+    code.page.mouse.up()
+    (text, *_), (overview, *_) = columns(2)
+    assert overview > text
+    code.focus()
+    code.command("btq: Open Requirements Overview Beside")
+    see_halves()
+    code.focus()
+    code.command("View: Join All Editor Groups")
+    assert [sorted(names) for _, *names in columns(1)] == [["Overview of visit.btq", "visit.btq"]]
+    code.open("visit.btq")
+    code.command("btq: Open Requirements Overview Beside")
+    see_halves()
 
 
 def test_the_overview_beside_follows_what_is_saved_and_leads_to_the_text(code: Workbench) -> None:

@@ -26,7 +26,8 @@ export class OverviewView {
 
   /** The overview of the active editor's mission, beside it; rejects with the reason why there is none. */
   async show(): Promise<void> {
-    const document = vscode.window.activeTextEditor?.document;
+    const editor = vscode.window.activeTextEditor;
+    const document = editor?.document;
     if (document?.languageId !== "btq") {
       void vscode.window.showInformationMessage("Open a mission first: its overview is shown beside it.");
       return;
@@ -47,7 +48,10 @@ export class OverviewView {
     }
     this.panel.title = `Overview of ${document.uri.path.split("/").pop()}`;
     this.panel.webview.html = inEditor(page);
-    this.panel.reveal(undefined, true);
+    // Never over the text: both may have come into one column.
+    const isOverText = this.panel.viewColumn === editor?.viewColumn;
+    this.panel.reveal(isOverText ? vscode.ViewColumn.Beside : undefined, true);
+    await leaveHalf(this.panel.viewColumn);
   }
 
   private async draw(): Promise<void> {
@@ -75,6 +79,20 @@ export class OverviewView {
     const viewColumn = vscode.window.visibleTextEditors[0]?.viewColumn ?? vscode.ViewColumn.One;
     await vscode.window.showTextDocument(uri, { selection: new vscode.Range(at, at), viewColumn });
   }
+}
+
+/** Share the pane evenly where a column has more than half of it. */
+async function leaveHalf(column: vscode.ViewColumn | undefined): Promise<void> {
+  const { orientation, groups } = (await vscode.commands.executeCommand("vscode.getEditorLayout")) as Layout;
+  const [own, whole] = [groups[(column ?? 0) - 1]?.size ?? 0, groups.reduce((sum, { size }) => sum + (size ?? 0), 0)];
+  const isFlat = orientation === 0 && groups.every(({ groups }) => groups === undefined);
+  if (isFlat && own > whole / 2) await vscode.commands.executeCommand("workbench.action.evenEditorWidths");
+}
+
+interface Layout {
+  /** 0: columns beside each other. */
+  readonly orientation: number;
+  readonly groups: readonly { readonly size?: number; readonly groups?: unknown }[];
 }
 
 /** The page in the editor's theme, with places that can be followed, and as it was scrolled and filtered before. */

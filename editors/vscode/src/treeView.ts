@@ -13,7 +13,7 @@ interface Picture {
   readonly nodes: Record<string, { readonly line: number; readonly character: number }>;
 }
 
-/** The names of the nodes that are folded; the key of a node; a picture. */
+/** The names of the nodes that are folded, and whether notes are; the key of a node; a picture. */
 type FromPage = { readonly draw: string[] } | { readonly go: string } | { readonly save: string };
 
 /** What stands on the tab of a page beside a mission: the mission's own icon. */
@@ -78,7 +78,7 @@ export class TreeView {
   async save(): Promise<void> {
     const document = vscode.window.activeTextEditor?.document ?? this.document;
     if (document?.languageId !== "btq") return;
-    const folded = document === this.document && this.panel ? this.folded : [];
+    const folded = document === this.document && this.panel ? this.folded : ["+notes"];
     await this.write(document, (await this.asked(document, folded)).svg);
   }
 
