@@ -12,7 +12,7 @@ from btq_lang.record import Record
 
 
 class Severity(Enum):
-    """How bad a finding is, worst first.  ERROR: the file cannot be built or the engine refuses it."""
+    """The severity of a finding, most severe first.  ERROR: the file cannot be built, or the engine refuses it."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -21,14 +21,14 @@ class Severity(Enum):
 
 
 class Tag(Enum):
-    """How an editor may show the place besides underlining it (LSP's DiagnosticTag)."""
+    """How an editor may mark the place besides underlining it (LSP's DiagnosticTag)."""
 
     UNNECESSARY = 1
     DEPRECATED = 2
 
 
 class Rule(Record):
-    """A rule's name, its severity where nobody configured another, and what it finds in one line."""
+    """A rule's name, its default severity, and a one-line summary of what it finds."""
 
     name: str
     severity: Severity
@@ -39,7 +39,7 @@ def page(rule: str) -> str:
     """The page of a rule, in Markdown.
 
     Raises:
-        KeyError: there is no such rule.
+        KeyError: the rule does not exist.
     """
     with open(page_path(rule), encoding="utf-8") as file:
         return file.read()
@@ -49,7 +49,7 @@ def page_path(rule: str) -> str:
     """The file of a rule's page.
 
     Raises:
-        KeyError: there is no such rule.
+        KeyError: the rule does not exist.
     """
     return f"{os.path.abspath(os.path.dirname(__file__))}/{RULES[rule].name}.md"
 
@@ -58,126 +58,126 @@ _E, _W, _H = Severity.ERROR, Severity.WARNING, Severity.HINT
 
 _TABLE = (
     # What the lexer and the parser find.
-    Rule("syntax-error", _E, "something else was expected here"),
-    Rule("inconsistent-indentation", _E, "indentation that fits no open block, or mixes tabs and blanks"),
+    Rule("syntax-error", _E, "text that the grammar does not allow at this place"),
+    Rule("inconsistent-indentation", _E, "indentation that matches no open block, or mixes tabs and spaces"),
     Rule("unclosed-bracket", _E, "a `(` without its `)`"),
     Rule("unclosed-string", _E, "a string without its closing quote"),
     Rule("unclosed-comment", _E, "a `/*` without its `*/`"),
     Rule("misplaced-comment", _E, "a comment sign inside a word or value that should be quoted"),
-    Rule("unknown-escape", _H, "a backslash that escapes nothing"),
-    Rule("string-over-items", _H, "a string that runs past the start of another item: a quote is probably missing"),
-    Rule("unknown-unit", _E, "a unit that is in no table"),
-    Rule("nested-too-deep", _E, "more levels than the engine reads"),
-    Rule("clause-after-children", _E, "satisfices, satisfies or tags behind a node's children"),
-    Rule("clause-as-node", _W, "a word that begins a requirement's clause stands as a node"),
+    Rule("unknown-escape", _H, "a backslash before a character that it does not escape"),
+    Rule("string-over-items", _H, "a string that continues past the start of another item: a quote is probably missing"),
+    Rule("unknown-unit", _E, "a unit that btq does not know"),
+    Rule("nested-too-deep", _E, "more nested levels than the engine reads"),
+    Rule("clause-after-children", _E, "satisfices, satisfies or tags after a node's children"),
+    Rule("clause-as-node", _W, "the first word of a requirement clause, used as a node"),
     Rule("second-root", _E, "a Root beside or inside another"),
     Rule("duplicate-attribute", _E, "two values for one attribute"),
     Rule("tree-root-count", _E, "a tree without exactly one node at its top"),
-    Rule("useless-ignore", _W, "a comment `btq: ignore` that can silence nothing"),
-    # What is wrong with XML as XML.
+    Rule("useless-ignore", _W, "a comment `btq: ignore` that cannot silence anything"),
+    # XML syntax.
     Rule("xml-syntax", _E, "XML that the engine cannot read"),
     Rule("xml-root", _E, "a document element that is not `root`"),
-    Rule("xml-not-well-formed", _W, "XML that the engine reads and other tools refuse"),
-    Rule("xml-ignored", _W, "text or trees in XML where the engine looks for none"),
+    Rule("xml-not-well-formed", _W, "XML that the engine reads although it is not well-formed"),
+    Rule("xml-ignored", _W, "text or trees in XML that the engine ignores"),
     # Nodes and their ports.
-    Rule("unknown-node", _W, "a node kind that neither the engine nor any model knows"),
-    Rule("no-models", _H, "many nodes with ports, and no model of any of them"),
-    Rule("not-an-engine-node", _W, "a word of the published language that is no node of the engine"),
-    Rule("newer-engine-node", _E, "a built-in that the target version of the engine does not have"),
+    Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
+    Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
+    Rule("not-an-engine-node", _W, "a word of the published language that the engine does not register as a node"),
+    Rule("newer-engine-node", _E, "a built-in node that the project's engine version does not have"),
     Rule("category-mismatch", _W, "a node used as another category than its model declares"),
-    Rule("unknown-port", _E, "a port that the node does not provide"),
-    Rule("missing-port", _E, "a port that must be given and is not"),
+    Rule("unknown-port", _E, "a port that the node does not have"),
+    Rule("missing-port", _E, "a required port without a value"),
     Rule("unknown-attribute", _W, "an `_attribute` that the engine ignores silently"),
-    Rule("invalid-literal", _E, "a value that the port's type refuses"),
-    Rule("trailing-text-in-number", _W, "text behind a number that the engine drops silently"),
-    Rule("number-for-text", _E, "a number that a SubTree gives to a port of text below it"),
-    Rule("entry-with-two-types", _E, "a blackboard entry that ports of two types are given"),
-    Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or of another dimension"),
-    Rule("misspelt-type", _W, "a port's type that is nearly one of C++"),
-    Rule("literal-for-output", _W, "a value where a node puts something out"),
-    Rule("count-of-nothing", _W, "a count or a time with which a Repeat, a Retry or a Timeout does nothing"),
-    Rule("child-count", _E, "more or fewer children than the node takes"),
+    Rule("invalid-literal", _E, "a value that the port's type does not accept"),
+    Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
+    Rule("number-for-text", _E, "a number that a SubTree passes to a text port below it"),
+    Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),
+    Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or has another dimension"),
+    Rule("misspelt-type", _W, "a port type that is very close to a C++ type"),
+    Rule("literal-for-output", _W, "a literal value at an output port"),
+    Rule("count-of-nothing", _W, "a count or a time that makes a Repeat, a Retry or a Timeout do nothing"),
+    Rule("child-count", _E, "more or fewer children than the node accepts"),
     Rule("switch-cases", _E, "a Switch whose cases and children do not match"),
     Rule("parallel-threshold", _E, "a Parallel threshold that its children cannot reach"),
     Rule("duplicate-instance-name", _H, "two nodes of one tree with the same name"),
     Rule("forbidden-name", _E, "a name that the engine refuses"),
-    Rule("classic-placeholder", _H, "a ScriptAction or ScriptCondition without code that stands for a skill"),
-    Rule("placeholder-clash", _E, "a placeholder whose name becomes a node ID that is taken"),
+    Rule("classic-placeholder", _H, "a ScriptAction or ScriptCondition without code, used as a placeholder for a skill"),
+    Rule("placeholder-clash", _E, "a placeholder whose node ID is already in use"),
     # Trees and files.
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),
     Rule("duplicate-tree", _E, "two trees with one ID"),
     Rule("recursive-tree", _E, "a tree that contains itself"),
-    Rule("unused-tree", _W, "a tree that nothing refers to"),
+    Rule("unused-tree", _W, "a tree without any reference"),
     Rule("unreachable-tree", _H, "a tree that only unused trees refer to"),
-    Rule("unknown-main-tree", _W, "no way to tell which tree is the mission"),
+    Rule("unknown-main-tree", _W, "several trees that could be the main tree"),
     Rule("tree-named-like-node", _E, "a tree whose ID is the name of a node"),
-    Rule("missing-include", _E, "an included file that cannot be found"),
-    Rule("include-with-errors", _E, "an included file that cannot be read"),
+    Rule("missing-include", _E, "an included file that does not exist"),
+    Rule("include-with-errors", _E, "an included file that has errors"),
     Rule("cyclic-include", _E, "a file that includes itself: the engine crashes"),
     Rule("duplicate-definition", _E, "two definitions of one name"),
     # Scripts.
     Rule("script-error", _E, "a script that the engine refuses"),
     Rule("empty-script", _E, "a script without any statement"),
-    Rule("script-version", _W, "a script that means different things in versions of the engine"),
-    Rule("misspelt-entry", _W, "a blackboard entry named once, with nearly the name of another one"),
+    Rule("script-version", _W, "a script that engine versions read differently"),
+    Rule("misspelt-entry", _W, "a blackboard entry that appears once, with a name very close to another one"),
     # Requirements and qualities.
-    Rule("unknown-requirement", _E, "a requirement that is defined nowhere"),
+    Rule("unknown-requirement", _E, "a reference to a requirement that is not defined"),
     Rule("conflicting-requirement", _E, "one requirement ID with two different texts"),
-    Rule("unused-requirement", _W, "a requirement that nothing refers to"),
+    Rule("unused-requirement", _W, "a requirement without any reference"),
     Rule("named-twice", _H, "a requirement, a quality or a tag that one node has twice"),
-    Rule("empty-text", _W, "a name that is empty"),
+    Rule("empty-text", _W, "an empty name"),
     Rule("unused-parameter", _W, "a parameter that no clause of its requirement names"),
-    Rule("requirement-without-text", _W, "a requirement that says nothing, or nothing that could be violated"),
-    Rule("duplicate-clause", _E, "a second clause of a kind that can be said once only"),
-    Rule("clause-without-odds", _W, "a confidence or a window where nothing says how often"),
-    Rule("unknown-quality", _W, "a quality name that no model of ISO/IEC 25010 has"),
+    Rule("requirement-without-text", _W, "a requirement that demands nothing, or nothing that can be violated"),
+    Rule("duplicate-clause", _E, "a second clause of a kind that a requirement may contain only once"),
+    Rule("clause-without-odds", _W, "a confidence or a window in a requirement without odds"),
+    Rule("unknown-quality", _W, "a quality name that no edition of ISO/IEC 25010 defines"),
     Rule("old-quality-name", _H, "an alias or a name of another edition"),
-    Rule("ambiguous-quality", _W, "a quality name that means several things"),
-    Rule("prose-constraint", _H, "SuccessIf or FailureIf in prose that no tool can check"),
+    Rule("ambiguous-quality", _W, "a quality name that has several meanings"),
+    Rule("prose-constraint", _H, "SuccessIf or FailureIf followed by prose that no tool can check"),
     Rule("subtraction-without-blanks", _H, "`a-b` read as one name where `a` and `b` exist"),
     # What requirements demand.
     Rule("unit-mismatch", _E, "two values that measure different things"),
-    Rule("number-without-unit", _E, "a bare number where a quantity is needed"),
-    Rule("unknown-signal", _E, "a name in a condition or a bound that nothing declares"),
-    Rule("cyclic-context", _E, "a context that speaks of itself"),
-    Rule("unmatched-path", _E, "a subject or a selector that names no node"),
-    Rule("ambiguous-path", _E, "a path that names several nodes"),
-    Rule("wrong-argument", _E, "an argument that the requirement does not take, or one that is missing"),
-    Rule("ambiguous-application", _E, "two values of one requirement for one node, and none more specific"),
-    Rule("impossible-odds", _E, "a probability or a number of experiments that is none"),
-    Rule("impossible-bound", _W, "a bound that nothing can keep, or nothing can break"),
+    Rule("number-without-unit", _E, "a number without a unit where a quantity is required"),
+    Rule("unknown-signal", _E, "an undeclared name in a condition or a bound"),
+    Rule("cyclic-context", _E, "a context that refers to itself"),
+    Rule("unmatched-path", _E, "a subject or a selector that matches no node"),
+    Rule("ambiguous-path", _E, "a path that matches several nodes"),
+    Rule("wrong-argument", _E, "an argument that the requirement does not accept, or a missing one"),
+    Rule("ambiguous-application", _E, "two values of one requirement for one node, and neither is more specific"),
+    Rule("impossible-odds", _E, "an impossible probability or number of experiments"),
+    Rule("impossible-bound", _W, "a bound that nothing can keep, or nothing can violate"),
     Rule("uses-of-gauge", _W, "`uses` of a signal that is neither a counter nor a level"),
-    Rule("requirement-without-subject", _W, "a claim that is about no node"),
-    Rule("limit-too-small", _E, "a limit that the engine takes for none"),
+    Rule("requirement-without-subject", _W, "a claim that concerns no node"),
+    Rule("limit-too-small", _E, 'a limit that the engine reads as "no limit"'),
     Rule("limit-on-synchronous-node", _W, "a limit on a node that nothing can interrupt"),
-    Rule("dead-bound", _W, "a bound that a Timeout around the node, or a tighter bound, makes void"),
+    Rule("dead-bound", _W, "a bound that a Timeout around the node, or a tighter bound, makes ineffective"),
     Rule("timeout-never-succeeds", _W, "a Timeout shorter than its child's shortest success"),
-    Rule("budget-exceeded", _W, "children that may take more time than their parent"),
+    Rule("budget-exceeded", _W, "children that may take more time than their parent allows"),
     Rule("goal-beyond-bound", _W, "a goal that is worse than the bound"),
-    Rule("attempts-mismatch", _W, "`tries at most` against the attempts that Retry and Repeat make"),
+    Rule("attempts-mismatch", _W, "`tries at most` that does not match the attempts of Retry and Repeat"),
     Rule("contradicting-bounds", _W, "two bounds on one node that cannot both hold"),
-    Rule("odds-beyond-children", _W, "odds that what is demanded of the children does not ensure"),
-    Rule("window-too-small", _W, "odds that no such window can show"),
-    Rule("swallowed-failure", _W, "`on violation fail` where a parent goes on after the failure"),
-    Rule("not-enforced", _W, "`on violation fail` or `halt` where the engine cannot be made to do it"),
-    Rule("guard-never-renewed", _W, "a guard on what no node writes while the guarded one runs"),
+    Rule("odds-beyond-children", _W, "odds that the requirements of the children do not ensure"),
+    Rule("window-too-small", _W, "odds that a window of this size cannot show"),
+    Rule("swallowed-failure", _W, "`on violation fail` where a parent continues after the failure"),
+    Rule("not-enforced", _W, "`on violation fail` or `halt` where the engine cannot enforce it"),
+    Rule("guard-never-renewed", _W, "a guard on a value that no node writes while the guarded node runs"),
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
-    Rule("unused-signal", _H, "a signal that nothing asks for"),
+    Rule("unused-signal", _H, "a signal that no clause uses"),
     Rule("unused-context", _H, "a context that no condition names"),
-    Rule("signal-may-be-unset", _W, "a guard on a signal without a first value"),
+    Rule("signal-may-be-unset", _W, "a guard on a signal without an initial value"),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
-    Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine wants the node's own tag"),
+    Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine requires the node's own tag"),
     Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
-    Rule("while-skip-is-success", _W, "`_while` halts the node and the parent goes on as if it had succeeded"),
+    Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
-    Rule("condition-without-recheck", _H, "a condition behind a memory Fallback that cannot interrupt what runs"),
+    Rule("condition-without-recheck", _H, "a condition below a memory Fallback that cannot interrupt a running node"),
 )
 
 RULES = {rule.name: rule for rule in _TABLE}
 
-# After these mistakes a file is not read as it stands, so nothing silences them: no selection, no comment.
+# btq cannot read a file reliably after these mistakes, so neither a selection nor a comment silences them.
 UNREADABLE = frozenset(
     (
         *("syntax-error", "inconsistent-indentation", "unclosed-bracket", "unclosed-string", "unclosed-comment"),
