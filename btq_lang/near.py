@@ -40,6 +40,14 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     return tuple(name for edits, _, name in found if edits <= found[0][0] + 1)[:limit]
 
 
+def did_you_mean(names: Iterable[str]) -> str:
+    """The end of a message that names what was probably meant; empty without a name."""
+    shown = [f"`{name}`" for name in names]
+    if not shown:
+        return ""
+    return f"; did you mean {' or '.join(filter(None, (', '.join(shown[:-1]), shown[-1])))}?"
+
+
 def distance(a: str, b: str, enough: int | None = None) -> int:
     """How many letters must be put in, left out, replaced or swapped with their neighbour to turn `a` into `b`.
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 import os.path
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
-from btq_lang.near import near
+from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record, replace
 from btq_lang.regex import regex
 from btq_lang.rules import RULES, UNREADABLE, Severity
@@ -249,7 +249,7 @@ _DIGITS = regex(r"\d+")
 
 
 def _meant(name: str, names: Iterable[str]) -> str:
-    return "".join(f": did you mean `{other}`?" for other in near(name, names, 1))
+    return did_you_mean(near(name, names, 1))
 
 
 def _quoted(word: str) -> str:

@@ -145,6 +145,14 @@ def dimension_name(unit: Unit) -> str:
     return f"{above or '1'}{below}"
 
 
+def a_dimension(unit: Unit) -> str:
+    """What a unit measures, with an article: `a time`, `an angle`, `a plain number`; a formula has none."""
+    name = dimension_name(unit)
+    if name.startswith("a ") or not name.replace(" ", "").isalpha():
+        return name
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
 def _factors(text: str) -> Iterator[tuple[str, str, str]]:
     """The factors of a compound: the operator in front ("" for the first), the word, and the text behind its `^`."""
     operator = ""

@@ -176,7 +176,7 @@ def test_a_bundle_with_two_trees_of_one_name_is_refused(btq: Btq) -> None:
     code, _, messages = btq.build("a.btq", "--bundle", "--verbatim")
     assert (code, messages) == (
         1,
-        "a.btq:2:14: error: there are two trees `Main`: a bundle holds one\nnothing was written\n",
+        "a.btq:2:14: error: duplicate tree `Main`: a bundle holds one\nnothing was written\n",
     )
     assert btq.files == ["a.btq", "b.btq"]
 
@@ -232,7 +232,7 @@ OLD = '<root BTCPP_format="4">\n  <BehaviorTree ID="Old">{}</BehaviorTree>\n</ro
 def test_an_error_in_included_xml_counts_and_is_told_on_its_own_lines_alone(btq: Btq, how: tuple[str, ...]) -> None:
     btq.write(m='include "old.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Old\n')
     btq.write(**{"old.xml": OLD.format("<Sequence/>")})
-    told = "error[child-count]: `Sequence` takes 1 or more children, it has none\n --> old.xml:2:27\n"
+    told = "error[child-count]: `Sequence` requires 1 or more children, found none\n --> old.xml:2:27\n"
     code, report, messages = btq.build("m.btq", *how)
     assert (code, report.startswith(told), messages) == (1, True, "nothing was written\n")
     assert report.endswith("\nFound 1 error\n")

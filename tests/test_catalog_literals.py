@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS, VERSIONS, port_type
 
-INT_RANGE = "is out of range: int is -2147483648 to 2147483647"
+INT_RANGE = "expected an integer from -2147483648 to 2147483647"
 VECTOR = "std::vector<int, std::allocator<int> >"
 STRINGS = (
     "std::vector<std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >, "
@@ -51,39 +51,46 @@ def test_good_literals(port_type: str, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("port_type", "text", "reason"),
+    ("port_type", "text", "message"),
     [
-        *(("int", text, "is no int") for text in ("", "abc", "+5", " 5", "-", "{}", " {k} ", "json:5", "٣")),
+        *(("int", text, "expected an integer") for text in ("", "abc", "-", "{}", " {k} ", "json:5", "٣")),
+        *(("int", text, "expected an integer without a leading `+` or space") for text in ("+5", " 5")),
         ("int", "2147483648", INT_RANGE),
         ("int", "9" * 6000, INT_RANGE),
         ("int", "-" + "9" * 6000, INT_RANGE),
         ("int32_t", "-99999999999", INT_RANGE),
-        ("unsigned int", "-1", "is out of range: unsigned int is 0 to 4294967295"),
-        ("unsigned long", "-1", "is no unsigned long"),
-        ("long", "9223372036854775808", "is out of range: long is -9223372036854775808 to 9223372036854775807"),
-        ("uint8_t", "256", "is out of range: unsigned char is 0 to 255"),
-        *(("double", text, "is no double") for text in ("", "abc", "+1.5", " 1.5", "-.", "e3", ",5")),
-        *(("double", text, "is out of range for double") for text in ("1e999", "-1e999", "1e-999")),
-        *(("float", text, "is out of range for float") for text in ("1e39", "1e-50")),
-        *(("bool", text, "is no bool: true, false, 1 or 0") for text in ("", "yes", "tRUE", "2", "true ", "01")),
-        ("BT::NodeStatus", "success", "is no status: SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE"),
-        ("std::vector<int>", "1;;3", "has an item that is refused: `` is no int"),
-        ("std::vector<int>", "1; 2", "has an item that is refused: ` 2` is no int"),
-        ("std::vector<double>", "1;x", "has an item that is refused: `x` is no double"),
-        ("std::vector<int>", "json:[1", "is not well-formed behind `json:`"),
-        ("std::vector<double>", "json:[NaN]", "is not well-formed behind `json:`"),
-        ("std::vector<int>", "json:5", "is no list behind `json:`"),
-        ("std::vector<int>", 'json:["1"]', 'has an item that is no int: `"1"`'),
-        ("std::vector<double>", "json:[true]", "has an item that is no double: `true`"),
-        ("std::vector<bool>", "json:[1]", "has an item that is no bool: `1`"),
-        ("std::vector<std::string>", "json:[1]", "has an item that is no std::string: `1`"),
-        ("std::deque<int>", "json:[1]", "has an item that is refused: `json:[1]` is no int"),
+        ("unsigned int", "-1", "expected an integer from 0 to 4294967295"),
+        ("unsigned long", "-1", "expected an integer of 0 or more"),
+        ("long", "9223372036854775808", "expected an integer from -9223372036854775808 to 9223372036854775807"),
+        ("uint8_t", "256", "expected an integer from 0 to 255"),
+        *(("double", text, "expected a number") for text in ("", "abc", "-.", "e3", ",5")),
+        *(("double", text, "expected a number without a leading `+` or space") for text in ("+1.5", " 1.5")),
+        *(("double", text, "expected a number in the range of double") for text in ("1e999", "-1e999", "1e-999")),
+        *(("float", text, "expected a number in the range of float") for text in ("1e39", "1e-50")),
+        *(("bool", text, "expected true, false, 1 or 0") for text in ("", "yes", "tRUE", "2", "true ", "01")),
+        ("BT::NodeStatus", "success", "expected SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE"),
+        ("std::vector<int>", "1;;3", "expected an integer as each item, found an empty item"),
+        (
+            "std::vector<int>",
+            "1; 2",
+            "expected an integer without a leading `+` or space as each item, found the item ` 2`",
+        ),
+        ("std::vector<double>", "1;x", "expected a number as each item, found the item `x`"),
+        ("std::vector<int>", "json:[1", "expected well-formed JSON after `json:`"),
+        ("std::vector<double>", "json:[NaN]", "expected well-formed JSON after `json:`"),
+        ("std::vector<int>", "json:5", "expected a JSON list after `json:`"),
+        ("std::vector<int>", 'json:["1"]', 'expected a number, true or false as each item, found the item `"1"`'),
+        ("std::vector<double>", "json:[true]", "expected a number as each item, found the item `true`"),
+        ("std::vector<bool>", "json:[1]", "expected true or false as each item, found the item `1`"),
+        ("std::vector<std::string>", "json:[1]", "expected a string as each item, found the item `1`"),
+        ("std::deque<int>", "json:[1]", "expected an integer as each item, found the item `json:[1]`"),
     ],
 )
-def test_refused_literals(port_type: str, text: str, reason: str) -> None:
+def test_refused_literals(port_type: str, text: str, message: str) -> None:
     problem = check_literal(port_type, text)
     assert problem is not None
-    assert (problem.kind, problem.reason, problem.reads) == ("refused", reason, None)
+    found = f", found {problem.found}" if problem.found is not None else ""
+    assert (problem.kind, f"expected {problem.expected}{found}", problem.reads) == ("refused", message, None)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +115,6 @@ def test_trailing_text(port_type: str, text: str, reads: str) -> None:
     problem = check_literal(port_type, text)
     assert problem is not None
     assert (problem.kind, problem.reads) == ("trailing-text", reads)
-    assert problem.reason == f"is read as {reads}: the rest is dropped"
 
 
 @pytest.mark.parametrize(

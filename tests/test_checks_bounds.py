@@ -11,21 +11,30 @@ NODE = "BehaviorTree Main\n    Action X satisfies r\n"
 @pytest.mark.parametrize(
     ("clause", "found"),
     [
-        ("tries at most -1", "3:20 warning impossible-bound «1» `-1` is no number of attempts"),
-        ("tries at most 2.5 times", "3:19 warning impossible-bound «2.5 times» `2.5 times` is no number of attempts"),
-        ("tries between 1 and 2.5", "3:25 warning impossible-bound «2.5» `2.5` is no number of attempts"),
-        ("runs at least 1.5 per 2 s", "3:19 warning impossible-bound «1.5» `1.5` is no number of starts"),
-        ("runs every 0 s", "3:16 warning impossible-bound «0 s» every time is more than `0 s`"),
-        ("succeeds within 0 s", "3:21 warning impossible-bound «0 s» every time is more than `0 s`"),
+        ("tries at most -1", "3:20 warning impossible-bound «1» expected a whole number of attempts, found `-1`"),
+        (
+            "tries at most 2.5 times",
+            "3:19 warning impossible-bound «2.5 times» expected a whole number of attempts, found `2.5 times`",
+        ),
+        (
+            "tries between 1 and 2.5",
+            "3:25 warning impossible-bound «2.5» expected a whole number of attempts, found `2.5`",
+        ),
+        (
+            "runs at least 1.5 per 2 s",
+            "3:19 warning impossible-bound «1.5» expected a whole number of starts, found `1.5`",
+        ),
+        ("runs every 0 s", "3:16 warning impossible-bound «0 s» every duration exceeds `0 s`"),
+        ("succeeds within 0 s", "3:21 warning impossible-bound «0 s» every duration exceeds `0 s`"),
         (
             "tries at most 0",
-            "3:19 warning impossible-bound «0» a node that is tried at all is tried once: nothing keeps this but a "
-            "node that never starts",
+            "3:19 warning impossible-bound «0» a node that starts makes at least one attempt, so only a node "
+            "that never starts keeps this bound",
         ),
         (
             "mission runs every 5 s",
-            "3:5 warning impossible-bound «mission runs every 5 s» a mission starts once in a run, so `runs` says "
-            "nothing of it",
+            "3:5 warning impossible-bound «mission runs every 5 s» a mission starts only once in a run, so "
+            "`runs` does not apply to it",
         ),
     ],
 )
@@ -50,8 +59,8 @@ def test_what_is_meant_so(clauses: str, signal: str) -> None:
 def test_a_limit_is_told_as_one() -> None:
     assert_problems(
         f'QualityReq r "t"\n    takes at most 0 s\n    on violation fail\n{NODE}',
-        "2:5 error limit-too-small «takes at most 0 s» the engine cannot hold anything to `0 s`: it counts whole "
-        "milliseconds, and 0 is no limit",
+        "2:5 error limit-too-small «takes at most 0 s» the engine cannot enforce `0 s`: it counts whole "
+        "milliseconds, and 0 disables the limit",
     )
 
 

@@ -15,35 +15,36 @@ def test_numbers_of_children() -> None:
     assert_clean(tree("IfThenElse", "    X", "    Y", "    Z"))
     assert_clean(tree("Own", "    X", "    Y"))  # whose category nobody knows
     assert_clean(tree("->", '    xml "<X/>"'))
-    assert_problems(tree("->"), "2:5 error child-count «->» `->` takes 1 or more children, it has none")
+    assert_problems(tree("->"), "2:5 error child-count «->» `->` requires 1 or more children, found none")
     assert_problems(
         tree("Inverter", "    X", "    Y"),
-        "2:5 error child-count «Inverter» `Inverter` takes exactly 1 child, it has 2",
+        "2:5 error child-count «Inverter» `Inverter` requires exactly 1 child, found 2",
     )
     assert_problems(
         tree("WhileDoElse", "    W", "    X", "    Y", "    Z"),
-        "2:5 error child-count «WhileDoElse» `WhileDoElse` takes 2 to 3 children, it has 4",
+        "2:5 error child-count «WhileDoElse» `WhileDoElse` requires 2 to 3 children, found 4",
     )
     assert_problems(
         tree("SubTree Pick", "    X") + "BehaviorTree Pick\n    X\n",
-        "2:13 error child-count «Pick» `Pick` takes no children, it has 1",
+        "2:13 error child-count «Pick» `Pick` requires no children, found 1",
     )
 
 
 def test_what_the_category_says() -> None:
     assert_problems(
-        tree("Decorator Slow"), "2:15 error child-count «Slow» the Decorator `Slow` takes exactly 1 child, it has none"
+        tree("Decorator Slow"),
+        "2:15 error child-count «Slow» the Decorator `Slow` requires exactly 1 child, found none",
     )
     assert_problems(
         "Action Move\n" + tree("Move", "    X"),
-        "3:5 error child-count «Move» the Action `Move` takes no children, it has 1",
+        "3:5 error child-count «Move» the Action `Move` requires no children, found 1",
     )
 
 
 def test_where_two_categories_disagree_only_that_is_told() -> None:
     assert_problems(
         "Decorator Slow\n" + tree("Action Slow", "    X"),
-        "3:5 warning category-mismatch «Action» `Slow` is written as Action, its model says Decorator",
+        "3:5 warning category-mismatch «Action» `Slow` is written as Action, but its model declares Decorator",
     )
 
 
@@ -54,7 +55,7 @@ def test_a_child_that_could_not_be_read_is_not_missed() -> None:
     )
     assert_problems(
         tree("->", "    Inverter", "    Y", "    = X"),
-        "3:9 error child-count «Inverter» `Inverter` takes exactly 1 child, it has none",
+        "3:9 error child-count «Inverter» `Inverter` requires exactly 1 child, found none",
         "5:9 error syntax-error «=» expected a node: its kind, or a symbol: -> ? || …, found `=`",
     )
 
@@ -73,7 +74,7 @@ def test_a_switch_by_its_children() -> None:
     )
     assert_problems(
         tree(f"Switch ({CASES})", *["    X"] * 5),
-        "2:5 warning switch-cases «Switch» `Switch` has no `case_3` and no `case_4`",
+        "2:5 warning switch-cases «Switch» `Switch` lacks `case_3` and `case_4`",
     )
 
 
@@ -88,7 +89,7 @@ def test_a_case_too_many_is_told_once(switch: str) -> None:
 def test_a_numbered_switch_counts_its_children() -> None:
     assert_problems(
         tree(f"Switch2 ({CASES})", "    X", "    Y"),
-        "2:5 error child-count «Switch2» `Switch2` takes exactly 3 children, it has 2",
+        "2:5 error child-count «Switch2» `Switch2` requires exactly 3 children, found 2",
     )
 
 
@@ -115,17 +116,17 @@ def test_thresholds_that_can_be_reached(ports: str) -> None:
 
 def test_thresholds_out_of_reach() -> None:
     text = tree("|| (success_count = 2)", "    X")
-    assert_problems(text, "2:25 error parallel-threshold «2» `success_count` is 2, but there is only 1 child")
-    assert_fix(text, "Write `-1`: all children", text.replace("= 2", "= -1"))
+    assert_problems(text, "2:25 error parallel-threshold «2» `success_count` is 2, but the node has only 1 child")
+    assert_fix(text, "Write `-1` for all children", text.replace("= 2", "= -1"))
     assert_problems(
         tree("All|| (max_failures = 3)", "    X", "    Y"),
-        "2:27 error parallel-threshold «3» `max_failures` is 3, but there are only 2 children",
+        "2:27 error parallel-threshold «3» `max_failures` is 3, but the node has only 2 children",
     )
 
 
 def test_without_children_that_is_the_mistake() -> None:
     assert_problems(
-        tree("|| (success_count = 2)"), "2:5 error child-count «||» `||` takes 1 or more children, it has none"
+        tree("|| (success_count = 2)"), "2:5 error child-count «||» `||` requires 1 or more children, found none"
     )
 
 

@@ -28,13 +28,13 @@ def budget(limit: str, *others: str) -> list[str]:
 
 def test_the_sum_is_shown_with_each_share() -> None:
     assert budget("takes at most 20 s", "c C takes at most 3500 ms") == [
-        "2 warning «Work takes at most 20 s» `-> Work` may take 20.5 s, more than `20 s`: "
+        "2 warning «Work takes at most 20 s» `-> Work` may take 20.5 s, more than `20 s` allows: "
         "`A` 5 s + `Retry` 12 s + `Sub` 3.5 s"
     ]
     assert budget("takes at most 20.5 s", "c C takes at most 3500 ms") == []
     text = mission("Retry (num_attempts = 3)\n    Action B", "main Main takes at most 10 s", "b B takes at most 4 s")
     (found,) = problems(text, "budget-exceeded")
-    assert found.message == "`Retry` may take 12 s, more than `10 s`: 3 × `B` 4 s"
+    assert found.message == "`Retry` may take 12 s, more than `10 s` allows: 3 × `B` 4 s"
     assert [related.message for related in found.related] == ["up to 4 s, 3 times"]
 
 
@@ -44,7 +44,7 @@ def test_the_time_from_one_node_to_another_is_that_of_its_sequence() -> None:
             "->\n    Action A\n    Action B",
             [
                 "2 warning «from A starts to B succeeds takes at most 5 s» "
-                "`->` may take 7 s, more than `5 s`: `A` 4 s + `B` 3 s"
+                "`->` may take 7 s, more than `5 s` allows: `A` 4 s + `B` 3 s"
             ],
         ),
         ("?\n    Action A\n    Action B", []),
@@ -58,24 +58,24 @@ def test_the_time_from_one_node_to_another_is_that_of_its_sequence() -> None:
 def test_a_step_without_a_bound_counts_as_none() -> None:
     assert budget("takes at most 17 s") == []
     assert budget("takes at most 1 s") == [
-        "2 warning «Work takes at most 1 s» `-> Work` may take 17 s, more than `1 s`: "
-        "`A` 5 s + `Retry` 12 s, and that without what has no bound"
+        "2 warning «Work takes at most 1 s» `-> Work` may take 17 s, more than `1 s` allows: "
+        "`A` 5 s + `Retry` 12 s, not counting steps without a bound"
     ]
 
 
-NO_BOUND = ", and that without what has no bound"
+NO_BOUND = ", not counting steps without a bound"
 
 
 @pytest.mark.parametrize(
     ("tree", "may_take"),
     [
-        ("->\n    Action A\n    Action X", "`->` may take 60 s, more than `30 s`: `A` 60 s"),
-        ("->\n    Action X\n    Action A", "`->` may take 60 s, more than `30 s`: `A` 60 s"),
-        ("->\n    Action Y\n    Action A", "`->` may take 65 s, more than `30 s`: `Y` 5 s + `A` 60 s"),
-        ("->\n    ->\n        Action A\n        Action X", "`->` may take 60 s, more than `30 s`: `->` 60 s"),
-        ("?\n    Action X\n    Action A", "`?` may take 60 s, more than `30 s`: `A` 60 s"),
-        ("All||\n    Action X\n    Action A", "`All||` may take 60 s, more than `30 s`: `A` 60 s"),
-        ("||\n    Action X\n    Action A", "`||` may take 60 s, more than `30 s`: `A` 60 s"),
+        ("->\n    Action A\n    Action X", "`->` may take 60 s, more than `30 s` allows: `A` 60 s"),
+        ("->\n    Action X\n    Action A", "`->` may take 60 s, more than `30 s` allows: `A` 60 s"),
+        ("->\n    Action Y\n    Action A", "`->` may take 65 s, more than `30 s` allows: `Y` 5 s + `A` 60 s"),
+        ("->\n    ->\n        Action A\n        Action X", "`->` may take 60 s, more than `30 s` allows: `->` 60 s"),
+        ("?\n    Action X\n    Action A", "`?` may take 60 s, more than `30 s` allows: `A` 60 s"),
+        ("All||\n    Action X\n    Action A", "`All||` may take 60 s, more than `30 s` allows: `A` 60 s"),
+        ("||\n    Action X\n    Action A", "`||` may take 60 s, more than `30 s` allows: `A` 60 s"),
         ("R->\n    Condition X\n    Action A\n    SubTree Nobody", None),  # A is begun again and again
         ("|| (success_count = 2)\n    Action X\n    Action Z\n    Action A", None),  # X and Z are enough
         ("Repeat (num_cycles = -1)\n    ->\n        Action A\n        Action X", None),  # it has no end anyway
@@ -101,7 +101,7 @@ def test_what_can_never_hold_is_told_with_odds_too() -> None:
     odds = "|in at least 90 % of activations"
     assert budget(f"takes at most 20 s{odds}", "c C takes at least 30 s") == []
     assert budget(f"succeeds within 20 s{odds}", "c C takes at least 30 s") == [
-        "2 warning «Work succeeds within 20 s» `-> Work` takes at least 30 s, so it can never keep to `20 s`"
+        "2 warning «Work succeeds within 20 s» `-> Work` takes at least 30 s, so it always violates `20 s`"
     ]
 
 
@@ -121,7 +121,7 @@ def test_success_alone_counts_for_succeeds() -> None:
     tree = "?\n    Action A\n    Action B"
     bounds = ("a A takes at most 5 s", "b B takes at most 9 s")
     assert findings(mission(tree, "main Main succeeds within 12 s", *bounds), "budget-exceeded") == [
-        "2 warning «Main succeeds within 12 s» `?` may take 14 s, more than `12 s`: `A` 5 s + `B` 9 s"
+        "2 warning «Main succeeds within 12 s» `?` may take 14 s, more than `12 s` allows: `A` 5 s + `B` 9 s"
     ]
 
 
@@ -144,7 +144,7 @@ def test_timeouts() -> None:
 def test_synchronous_nodes() -> None:
     rules = ("limit-on-synchronous-node",)
     tree = "->\n    -> Checks\n        Condition C\n        Script (code = x)\n    Action A"
-    told = "completes within one tick, so nothing can stop it after `5 s`"
+    told = "completes within one tick, so the engine cannot stop it after `5 s`"
     for subject, found in (
         ("C", f"«C takes at most 5 s» `C` {told}"),
         ("Checks", f"«Checks takes at most 5 s» `-> Checks` {told}"),
@@ -171,7 +171,7 @@ def test_small_limits() -> None:
 def test_attempts() -> None:
     tree = "-> Work\n    Repeat (num_cycles = 2)\n        Retry (num_attempts = 3)\n            Action A"
     assert findings(mission(tree, "q A tries at most 3 per Work"), "attempts-mismatch") == [
-        "2 warning «A tries at most 3 per Work» `A` may be tried 6 times, 3 are allowed"
+        "2 warning «A tries at most 3 per Work» `A` may be tried 6 times, but the requirement allows 3"
     ]
     assert findings(mission(tree, "q A tries at most 6 per Work"), "attempts-mismatch") == []
     assert findings(mission(tree.replace("3)", "{n})"), "q A tries at most 1 per Work"), "attempts-mismatch") == []
@@ -180,10 +180,22 @@ def test_attempts() -> None:
 @pytest.mark.parametrize(
     ("first", "second", "message"),
     [
-        ("A takes at least 5 s", "A takes at most 4 s", "`A` cannot keep both: at least `5 s`, at most `4 s`"),
-        ("A takes between 5 s and 3 s", "A succeeds", "`A` cannot keep both: at least `5 s`, at most `3 s`"),
-        ("A keeps n <= 3", "A keeps 5 < n", "`A` cannot keep both: at least `5`, at most `3`"),
-        ("A uses at least 2 of n", "A uses at most 1 of n", "`A` cannot keep both: at least `2`, at most `1`"),
+        (
+            "A takes at least 5 s",
+            "A takes at most 4 s",
+            "`A` cannot satisfy both bounds: at least `5 s` and at most `4 s`",
+        ),
+        (
+            "A takes between 5 s and 3 s",
+            "A succeeds",
+            "`A` cannot satisfy both bounds: at least `5 s` and at most `3 s`",
+        ),
+        ("A keeps n <= 3", "A keeps 5 < n", "`A` cannot satisfy both bounds: at least `5` and at most `3`"),
+        (
+            "A uses at least 2 of n",
+            "A uses at most 1 of n",
+            "`A` cannot satisfy both bounds: at least `2` and at most `1`",
+        ),
     ],
 )
 def test_contradictions(first: str, second: str, message: str) -> None:
@@ -219,8 +231,8 @@ def test_odds() -> None:
     )
     text = mission(tree, "q Work takes at most 9 s|in at least 96 % of activations", *steps)
     (found,) = problems(text, "odds-beyond-children")
-    assert found.message == "`-> Work` is to do so in 96 %; what is demanded below it ensures 95 %"
-    assert [related.message for related in found.related] == ["misses in up to 1 %", "misses in up to 4 %"]
+    assert found.message == "`-> Work` must do so in 96 %, but the requirements below it ensure only 95 %"
+    assert [related.message for related in found.related] == ["fails in up to 1 %", "fails in up to 4 %"]
     for clauses in (
         "takes at most 9 s|in at least 95 % of activations",
         "takes at most 9 s|in at least 99 % of runs",
@@ -239,20 +251,20 @@ def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
 ) -> None:
     text = mission(f"{root}\n    Action A", f"q {subject} succeeds", "a A succeeds|in at least 99 % of activations")
     (found,) = problems(text, "odds-beyond-children")
-    assert found.message == f"{called} is to do so in 100 %; what is demanded below it ensures 99 %"
+    assert found.message == f"{called} must do so in 100 %, but the requirements below it ensure only 99 %"
 
 
 @pytest.mark.parametrize(
     ("tree", "ensured"),
     [
-        ("->\n    Action A\n    Action X", "90 %, even if all else succeeds"),
-        ("->\n    Action X\n    ->\n        Action A\n        Action X", "90 %, even if all else succeeds"),
-        ("->\n    Action A\n    Action A\n    Action X", "80 %, even if all else succeeds"),
+        ("->\n    Action A\n    Action X", "90 %, even if every other step succeeds"),
+        ("->\n    Action X\n    ->\n        Action A\n        Action X", "90 %, even if every other step succeeds"),
+        ("->\n    Action A\n    Action A\n    Action X", "80 %, even if every other step succeeds"),
         (
             "Repeat (num_cycles = 2)\n    ->\n        Action A\n        SubTree Nobody",
-            "80 %, even if all else succeeds",
+            "80 %, even if every other step succeeds",
         ),
-        ("||\n    Action A\n    Action X", "90 %, even if all else succeeds"),
+        ("||\n    Action A\n    Action X", "90 %, even if every other step succeeds"),
         ("->\n    Action A\n    Action A", "80 %"),
         ("->\n    Action X\n    Action X", None),
         ("?\n    Action A\n    Action X", None),  # X may succeed where A does not
@@ -266,7 +278,7 @@ def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
 )
 def test_odds_of_a_child_that_are_lower_than_its_parents(tree: str, ensured: str | None) -> None:
     steps = ("a every A succeeds|in at least 90 % of activations", "b every B succeeds|in at least 95 % of activations")
-    told = [f"`Main` is to do so in 95 %; what is demanded below it ensures {ensured}"] if ensured else []
+    told = [f"`Main` must do so in 95 %, but the requirements below it ensure only {ensured}"] if ensured else []
     text = mission(tree, "q Main succeeds|in at least 95 % of activations", *(s for s in steps if f"n {s[8]}" in tree))
     assert [found.message for found in problems(text, "odds-beyond-children")] == told
 
@@ -277,12 +289,12 @@ def test_windows() -> None:
         return [each.message for each in problems(text, "window-too-small")]
 
     assert found("99 %", "298 activations") == [
-        "298 activations cannot show 99 % with a confidence of 95 %: that takes 299 without any failure"
+        "298 activations cannot show 99 % with a confidence of 95 %: this requires 299 without a failure"
     ]
     assert found("99 %", "299 activations") == []
     assert found("99 %", "7 d") == []
     assert found("100 %", "9000 activations") == [
-        "9000 activations cannot show 100 % with a confidence of 95 %: no number of them can"
+        "9000 activations cannot show 100 % with a confidence of 95 %: no window is large enough"
     ]
 
 
@@ -292,17 +304,20 @@ def test_windows() -> None:
 @pytest.mark.parametrize(
     ("tree", "reason"),
     [
-        ("?\n    {}\n    Action B", "`?` goes on with its next child"),
-        ("R?\n    -> Inner\n        {}\n    Action B", "`R?` goes on with its next child"),
+        ("?\n    {}\n    Action B", "`?` continues with its next child"),
+        ("R?\n    -> Inner\n        {}\n    Action B", "`R?` continues with its next child"),
         ("Retry (num_attempts = 2)\n    {}", "`Retry` tries again"),
         ("Inverter\n    {}", "`Inverter` succeeds"),
         ("ForceSuccess\n    {}", "`ForceSuccess` succeeds"),
         ("IfThenElse\n    {}\n    Action B\n    Action C", "`IfThenElse` runs its third child"),
         (
             "|| (failure_count = 2 success_count = 1)\n    {}\n    Action B",
-            "`||` goes on: it takes more than one failure",
+            "`||` continues: it fails only after more than one failure",
         ),
-        ("All|| (max_failures = -1)\n    {}\n    Action B", "`All||` goes on: it takes more than one failure"),
+        (
+            "All|| (max_failures = -1)\n    {}\n    Action B",
+            "`All||` continues: it fails only after more than one failure",
+        ),
         ("ForceSuccess\n    SubTree Sub\nBehaviorTree Sub\n    {}", "`ForceSuccess` succeeds"),
     ],
 )
@@ -374,7 +389,7 @@ def test_what_writes_a_signal(writer: str) -> None:
     text += "BehaviorTree Sub\n    Action B\n"
     assert findings(text.replace("{}", writer), "signal-never-written") == []
     assert findings(text.replace("{}", "Condition C"), "signal-never-written") == [
-        "1 hint «n» no port and no script writes `level`, from which `n` is read"
+        "1 hint «n» no port and no script writes `level`, the entry of `n`"
     ]
 
 
@@ -386,7 +401,7 @@ def test_an_input_writes_nothing() -> None:
 
 def test_a_first_value() -> None:
     tree = "BehaviorTree Main\n    ->\n        Condition S (out = {level})\n        Action A\n"
-    message = "`n` has no value before its first sample, and a guard that reads it then ends the mission"
+    message = "`n` has no initial value: a guard that reads it before anything writes it ends the mission"
     assert findings(GUARD.replace("{initially}", "") + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
     assert findings(GUARD.replace("{initially}", "").replace("halt", "warn") + tree, "signal-may-be-unset") == []
     through = GUARD.replace("{initially}", "").replace("A keeps n <= 3", "A takes at most 3 s\n    A needs high")
@@ -432,7 +447,7 @@ def test_an_entry_of_a_tree_is_not_that_of_the_root(call: str, port: str, is_ano
         f"Root Main\nBehaviorTree Main\n    ->\n        {call}\n        Rest\n"
         f"BehaviorTree Part\n    Look (heat = {port})\nAction Look\n    output heat : bool\n"
     )
-    expected = "1 warning «hot» `hot` is read from the root's `heat`, and the tree `Part` writes its own"
+    expected = "1 warning «hot» `hot` reads the root's `heat`, but the tree `Part` writes its own `heat`"
     assert findings(text, "signal-never-written") == ([expected] if is_another else [])
 
 
@@ -454,7 +469,7 @@ def outbid(*clauses: str) -> str:
 def test_a_bound_that_another_of_the_requirement_outbids(clauses: tuple[str, ...], line: int, said: str) -> None:
     assert_problems(
         outbid(*clauses),
-        f"{line}:5 warning dead-bound «{clauses[line - 2]}» the same requirement asks for {said} says nothing",
+        f"{line}:5 warning dead-bound «{clauses[line - 2]}» the same requirement already demands {said} has no effect",
     )
 
 

@@ -25,7 +25,7 @@ def test_includes_that_are_found() -> None:
 def test_what_may_be_meant() -> None:
     elsewhere = '//- missions/main.btq\ninclude "skills.btq"\n//- shared/skills.btq\n'
     assert_problems(
-        elsewhere, 'missions/main.btq:1:9 error missing-include «"skills.btq"» there is no file `skills.btq`'
+        elsewhere, 'missions/main.btq:1:9 error missing-include «"skills.btq"» cannot find the file `skills.btq`'
     )
     assert_fix(elsewhere, "Replace it by `../shared/skills.btq`", elsewhere.replace('"skills', '"../shared/skills'))
     misspelt = '//- main.btq\ninclude "skils.btq"\n//- skills.btq\n'
@@ -33,7 +33,7 @@ def test_what_may_be_meant() -> None:
 
 
 def test_an_empty_path() -> None:
-    assert_problems('include ""\n', '1:9 error missing-include «""» this include names no file')
+    assert_problems('include ""\n', '1:9 error missing-include «""» missing file name after `include`')
 
 
 def test_circles() -> None:
@@ -63,13 +63,13 @@ def test_in_a_circle_everything_is_known() -> None:
 
 
 def test_a_quality_that_a_missing_file_may_declare_is_not_called_unknown() -> None:
-    missing = '1:9 error missing-include «"own.btq"» there is no file `own.btq`'
+    missing = '1:9 error missing-include «"own.btq"» cannot find the file `own.btq`'
     text = 'include "own.btq"\nBehaviorTree Main\n    Action X satisfices {}\n'
     assert_problems(text.replace("{}", "hygiene"), missing)
     assert_problems(
         text.replace("{}", "relability"),
         missing,
-        "3:25 warning unknown-quality «relability» `relability` is no quality of iso25010-2023",
+        "3:25 warning unknown-quality «relability» unknown quality `relability`; did you mean `reliability` or `maintainability.reusability`?",
     )
 
 
@@ -79,12 +79,12 @@ def test_a_file_that_cannot_be_read_is_told_where_it_is_included() -> None:
     workspace = workspace_of(
         split_files(f'//- main.btq\ninclude "more.btq"\n//- more.btq\ninclude "skills.btq"\n{skills}')
     )
-    for path, which in (("main.btq", "`skills.btq`, which it includes,"), ("more.btq", "`skills.btq`")):
+    for path, which in (("main.btq", "`skills.btq`, which that file includes,"), ("more.btq", "`skills.btq`")):
         (found,) = check(workspace, path)
         assert (found.rule, found.effective_severity) == ("include-with-errors", Severity.ERROR)
         assert found.message.startswith(f"{which} {message}")
         ((place, told),) = [(related.place, related.message) for related in found.related]
-        assert (place.path, place.span.start, told) == ("skills.btq", 25, "the first one")
+        assert (place.path, place.span.start, told) == ("skills.btq", 25, "first error")
 
 
 def test_what_a_check_of_the_included_file_finds_is_told_there_alone() -> None:
@@ -117,13 +117,21 @@ def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
 @pytest.mark.parametrize(
     ("text", "at", "message"),
     [
-        (_TREE.format(include="", node="<Sequence/>"), "Sequence", "`Sequence` takes 1 or more children, it has none"),
+        (
+            _TREE.format(include="", node="<Sequence/>"),
+            "Sequence",
+            "`Sequence` requires 1 or more children, found none",
+        ),
         (
             _TREE.format(include="", node='<SubTree ID="Gone"/>'),
             "Gone",
-            "there is no tree `Gone` in this file or in those it includes",
+            "unknown tree `Gone`; neither this file nor its includes define it",
         ),
-        (_TREE.format(include='<include path="gone.xml"/>', node="<A/>"), "gone.xml", "there is no file `gone.xml`"),
+        (
+            _TREE.format(include='<include path="gone.xml"/>', node="<A/>"),
+            "gone.xml",
+            "cannot find the file `gone.xml`",
+        ),
         (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a blank"),
     ],
 )
@@ -132,7 +140,7 @@ def test_what_the_engine_would_refuse_in_included_xml_is_told_where_it_is_includ
 ) -> None:
     found = next(each for each in _of_xml(nav=text) if each.rule == "include-with-errors")
     assert found.message == f"`nav.xml` has 1 error: {message}"
-    assert found.notes == ("no file that includes it can be built",)
+    assert found.notes == ("`btq build` refuses every file that includes it",)
     ((place, told),) = [(related.place, related.message) for related in found.related]
     assert (place.path, told) == ("nav.xml", "here")
     assert text[place.span.start : place.span.end].strip('"') == at
@@ -140,9 +148,12 @@ def test_what_the_engine_would_refuse_in_included_xml_is_told_where_it_is_includ
 
 def test_of_several_errors_in_included_xml_the_first_is_told_and_how_to_see_the_others() -> None:
     (found,) = _of_xml(nav=_TREE.format(include="", node='<Sequence><Fallback/><Delay delay_msec="x"/></Sequence>'))
-    assert found.message.startswith("`nav.xml` has 3 errors: `Fallback` takes 1 or more children")
-    assert [related.message for related in found.related] == ["the first one"]
-    assert found.notes == ("no file that includes it can be built", "`btq check nav.xml` shows them all")
+    assert found.message.startswith("`nav.xml` has 3 errors: `Fallback` requires 1 or more children")
+    assert [related.message for related in found.related] == ["first error"]
+    assert found.notes == (
+        "`btq build` refuses every file that includes it",
+        "run `btq check nav.xml` to see all of them",
+    )
 
 
 def test_warnings_in_included_xml_are_told_there_alone() -> None:
@@ -154,9 +165,9 @@ def test_warnings_in_included_xml_are_told_there_alone() -> None:
 def test_xml_that_xml_includes_counts() -> None:
     nav = _TREE.format(include='<include path="more.xml"/>', node="<AlwaysSuccess/>")
     more = _TREE.format(include="", node="<Sequence/>").replace("Nav", "More")
-    for path, which in (("main.btq", "`more.xml`, which it includes,"), ("nav.xml", "`more.xml`")):
+    for path, which in (("main.btq", "`more.xml`, which that file includes,"), ("nav.xml", "`more.xml`")):
         (found,) = _of_xml(main=path, nav=nav, more=more)
-        assert found.message == f"{which} has 1 error: `Sequence` takes 1 or more children, it has none"
+        assert found.message == f"{which} has 1 error: `Sequence` requires 1 or more children, found none"
 
 
 def test_xml_that_includes_itself_in_a_circle() -> None:
@@ -210,5 +221,5 @@ def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(t
     (found,) = check(workspace, path)
     root = path.removesuffix("/main.btq")
     assert found.notes == (
-        f"looked for in `{root}`, `{root}/shared`, `{root}/lib` (no folder); `include-paths` in btq.toml adds folders",
+        f"searched `{root}`, `{root}/shared`, `{root}/lib` (no folder); add folders with `include-paths` in btq.toml",
     )

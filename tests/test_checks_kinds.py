@@ -44,14 +44,14 @@ def test_a_name_that_may_be_meant(node: str) -> None:
     ],
 )
 def test_a_slip_of_a_built_in(slip: str, meant: str) -> None:
-    assert_problems(tree(slip), f"3:9 warning unknown-node «{slip}» unknown node `{slip}`")
+    assert_problems(tree(slip), f"3:9 warning unknown-node «{slip}» unknown node `{slip}`; did you mean `{meant}`?")
     assert_fix(tree(slip), f"Replace `{slip}` by `{meant}`", tree(meant))
 
 
 @pytest.mark.parametrize(("model", "node"), [("Pick", "Pik"), ("MoveBase", "movebase"), ("OpenDoor", "OpenDoors")])
 def test_a_slip_of_a_model(model: str, node: str) -> None:
     text = f"Action {model}\n{tree(node)}"
-    assert_problems(text, f"4:9 warning unknown-node «{node}» unknown node `{node}`")
+    assert_problems(text, f"4:9 warning unknown-node «{node}» unknown node `{node}`; did you mean `{model}`?")
 
 
 @pytest.mark.parametrize(
@@ -158,9 +158,9 @@ def test_a_tree_called_as_a_node() -> None:
 
 
 def test_an_explicit_form_without_an_id() -> None:
-    assert_problems(tree("Action"), "3:9 error unknown-node «Action» this Action has no ID: `Action <ID>`")
+    assert_problems(tree("Action"), "3:9 error unknown-node «Action» missing ID of this Action: write `Action <ID>`")
     assert_problems(
-        tree('Condition ""'), "3:9 error unknown-node «Condition» this Condition has no ID: `Condition <ID>`"
+        tree('Condition ""'), "3:9 error unknown-node «Condition» missing ID of this Condition: write `Condition <ID>`"
     )
     assert_problems(
         tree("Action (ID = )"),
@@ -176,7 +176,7 @@ def test_one_mistake_in_a_name_is_told_once() -> None:
     )
     assert_problems(
         palette + tree("keeps"),
-        "5:9 warning clause-as-node «keeps» `keeps` begins a clause of a requirement, but here it is a node",
+        "5:9 warning clause-as-node «keeps» btq reads `keeps` as a node here, although it starts a requirement clause",
     )
     assert_problems(
         palette + tree("CoroAction"),
@@ -190,7 +190,7 @@ def test_one_mistake_in_a_name_is_told_once() -> None:
 def test_a_quoted_kind_is_the_xml_tag() -> None:
     text = tree('"Retry" (num_attempts = 3)\n            X')
     assert_problems(text, '3:9 warning not-an-engine-node «"Retry"» `Retry` is no node of the engine')
-    assert_fix(text, "Take off the quotes", text.replace('"', ""))
+    assert_fix(text, "Remove the quotes", text.replace('"', ""))
     assert_clean(tree('"RetryUntilSuccessful" (num_attempts = 3)\n            X'))
     assert_clean("Decorator Retry\n" + tree('"Retry"\n            X'))  # the program's own
 
@@ -199,7 +199,7 @@ def test_a_word_of_version_3_is_read_as_that_of_today() -> None:
     text = tree("SequenceStar")
     assert_problems(
         text,
-        "3:9 error child-count «SequenceStar» `SequenceStar` takes 1 or more children, it has none",
+        "3:9 error child-count «SequenceStar» `SequenceStar` requires 1 or more children, found none",
         "3:9 warning not-an-engine-node «SequenceStar» `SequenceStar` is no node of the engine",
     )
     assert_fix(text, "Replace it by `SequenceWithMemory`", tree("SequenceWithMemory"), safe=True)
@@ -219,11 +219,11 @@ def test_a_model_makes_a_word_a_node() -> None:
         (("4.9", "4.10"), None),
         (
             ("4.8",),
-            "error newer-engine-node «TryCatch» `TryCatch` came with BehaviorTree.CPP 4.9; 4.8 does not have it",
+            "error newer-engine-node «TryCatch» `TryCatch` requires BehaviorTree.CPP 4.9; 4.8 does not have it",
         ),
         (
             ("4.6", "4.10"),
-            "error newer-engine-node «TryCatch» `TryCatch` came with BehaviorTree.CPP 4.9; 4.6 does not have it",
+            "error newer-engine-node «TryCatch» `TryCatch` requires BehaviorTree.CPP 4.9; 4.6 does not have it",
         ),
     ],
 )
@@ -238,12 +238,13 @@ def test_the_engines_that_a_project_names(engines: tuple[str, ...], problem: str
 def test_only_what_can_stay_as_it_is_is_mended_safely() -> None:
     fits = "Condition Open\n" + tree("Action Open")
     assert_problems(
-        fits, "4:9 warning category-mismatch «Action» `Open` is written as Action, its model says Condition"
+        fits, "4:9 warning category-mismatch «Action» `Open` is written as Action, but its model declares Condition"
     )
     assert_fix(fits, "Replace it by `Condition`", fits.replace("        Action", "        Condition"), safe=True)
     childless = "Decorator Slow\n" + tree("Action Slow")  # a decorator without a child would be the next mistake
     assert_problems(
-        childless, "4:9 warning category-mismatch «Action» `Slow` is written as Action, its model says Decorator"
+        childless,
+        "4:9 warning category-mismatch «Action» `Slow` is written as Action, but its model declares Decorator",
     )
     assert_fix(childless, "Replace it by `Decorator`", childless.replace("        Action", "        Decorator"))
 
@@ -272,7 +273,7 @@ def test_a_node_may_be_called_as_a_clause() -> None:
     assert_clean(tree("Action keeps"))
     assert_clean("Action goal\n" + tree("goal"))
     assert_clean(tree("every\n            X"))
-    assert_fix(tree("goal"), 'Write "goal" if a node is meant', tree('"goal"'))
+    assert_fix(tree("goal"), 'Write "goal" for a node of that name', tree('"goal"'))
 
 
 def test_a_clause_that_the_parser_has_told_is_not_told_again() -> None:
@@ -291,11 +292,11 @@ def test_models_with_one_interface_repeat_each_other() -> None:
     )
     assert_problems(
         "Action A\n    input x : int = 1\nAction A\n    input x : int = 2\n",
-        "3:8 warning duplicate-definition «A» there are two definitions of the node model `A`",
+        "3:8 warning duplicate-definition «A» duplicate definition of the node model `A`",
     )
     assert_problems(
         "Action A\nCondition A\n",
-        "2:11 warning duplicate-definition «A» there are two definitions of the node model `A`",
+        "2:11 warning duplicate-definition «A» duplicate definition of the node model `A`",
     )
 
 
@@ -316,7 +317,7 @@ def test_two_includes_that_clash_are_told_where_they_meet() -> None:
         signal load : N
         Action Lift
         """,
-        'main.btq:2:9 error duplicate-definition «"b.btq"» this file brings a second definition of the signal `load`',
+        'main.btq:2:9 error duplicate-definition «"b.btq"» this file includes a second definition of the signal `load`',
     )
 
 
@@ -351,5 +352,5 @@ def test_a_clash_inside_an_included_file_is_told_there() -> None:
         //- other.btq
         signal speed : m/s
         """,
-        "a.btq:2:8 error duplicate-definition «load» there are two definitions of the signal `load`",
+        "a.btq:2:8 error duplicate-definition «load» duplicate definition of the signal `load`",
     )

@@ -49,8 +49,8 @@ def test_one_mistake_in_a_definition_is_told_once() -> None:
         + "apply slow to every X\napply slow(limit = 3) to One\n"
         + 'BehaviorTree Main\n    ->\n        Script (code = "@speed := 1.0")\n'
         + "        Action X One\n        Action X Two\n",
-        "3:11 error unknown-signal «sped» no signal `sped` is declared",
-        "5:20 error number-without-unit «3» speed is expected, `3` has no unit",
+        "3:11 error unknown-signal «sped» unknown signal `sped`; did you mean `speed`?",
+        "5:20 error number-without-unit «3» missing unit after `3`; expected a speed",
     )
 
 
@@ -65,7 +65,7 @@ def test_what_an_included_file_says_is_told_in_it() -> None:
         QualityReq rq1 "t"
             takes at most 3 m
         """,
-        "rules.btq:2:19 error unit-mismatch «3 m» a time is expected, `3 m` is length",
+        "rules.btq:2:19 error unit-mismatch «3 m» expected a time, found `3 m` (a length)",
     )
 
 
@@ -77,10 +77,10 @@ def test_a_signal_that_fits_nothing() -> None:
         signal c : text initially 3 m
         signal d : 1 fresh within 3 m
         """,
-        "1:24 error number-without-unit «3» length is expected, `3` has no unit",
-        "2:27 error unit-mismatch «3» `true` or `false` is expected, `3` is none",
-        "3:27 error unit-mismatch «3 m» a text in quotes is expected, `3 m` is none",
-        "4:27 error unit-mismatch «3 m» a time is expected, `3 m` is length",
+        "1:24 error number-without-unit «3» missing unit after `3`; expected a length",
+        "2:27 error unit-mismatch «3» expected `true` or `false`, found `3`",
+        "3:27 error unit-mismatch «3 m» expected a text in quotes, found `3 m`",
+        "4:27 error unit-mismatch «3 m» expected a time, found `3 m` (a length)",
     )
 
 
@@ -114,5 +114,5 @@ def test_an_unknown_signal_is_declared_in_the_unit_of_what_it_is_compared_with(c
 def test_the_near_name_comes_before_the_declaration() -> None:
     text = "signal battery : % from {battery}\ncontext low : batery < 20 %\n"
     (found,) = check(Workspace.of({"main.btq": text}), "main.btq")
-    assert found.notes == ("did you mean `battery`? or declare it: `signal batery : % from {batery}`",)
+    assert found.notes == ("or declare it: `signal batery : % from {batery}`",)
     assert [fix.title for fix in found.fixes] == ["Replace `batery` by `battery`"]

@@ -39,7 +39,7 @@ def told(lines: str, head: str = "") -> list[str]:
 )
 def test_slips(word: str, meant: str) -> None:
     assert told(f"Take (image = {{{meant}}})\nStore (image = {{{meant}}})\nStore (image = {{{word}}})") == [
-        f"«{word}» this reads `{word}`, and nothing writes it: is it `{meant}`?"
+        f"«{word}» nothing writes `{word}`, which is read here; did you mean `{meant}`?"
     ]
 
 
@@ -66,12 +66,12 @@ def test_two_names(word: str, other: str) -> None:
 
 def test_what_is_written_and_never_read() -> None:
     lines = 'Script (code = "count := 1.0")\nScript (code = "cuont := (count + 1.0)")\nStore (image = {count})'
-    assert told(lines) == ["«cuont» this writes `cuont`, and nothing reads it: is it `count`?"]
+    assert told(lines) == ["«cuont» nothing reads `cuont`, which is written here; did you mean `count`?"]
 
 
 def test_without_models_two_places_that_are_alone_are_told_once_and_either_may_be_meant() -> None:
     text = "BehaviorTree Main\n    ->\n        A (x = {picture})\n        B (x = {pictuer})\n"
-    assert findings(text, RULE) == ["3 warning «picture» nothing else names `picture`: is it `pictuer`?"]
+    assert findings(text, RULE) == ["3 warning «picture» `picture` appears only here; did you mean `pictuer`?"]
     assert fixes(text, RULE) == [
         ("Replace `picture` by `pictuer`", False, text.replace("picture", "pictuer")),
         ("Replace `pictuer` by `picture`", False, text.replace("pictuer", "picture")),
@@ -98,7 +98,7 @@ def test_a_tree_below_writes_what_is_read_here() -> None:
     assert told(f"SubTree Below (picture = {{pictuer}})\n{here}", below) == []
     lines = "Store (image = {picture})\nStore (image = {pictuer})"
     assert told(f"SubTree Below (_autoremap = true)\n{lines}", below) == [
-        "«pictuer» this reads `pictuer`, and nothing writes it: is it `picture`?"
+        "«pictuer» nothing writes `pictuer`, which is read here; did you mean `picture`?"
     ]
     assert told(f"SubTree Below\n{lines}", below) == []
 
@@ -106,7 +106,9 @@ def test_a_tree_below_writes_what_is_read_here() -> None:
 def test_the_root_blackboard_is_one_for_all_trees() -> None:
     below = 'BehaviorTree Below\n    ScriptCondition (code = "@cuont > 1")\n'
     text = f'{MODELS}BehaviorTree Main\n    ->\n        Script (code = "@count := 1")\n        SubTree Below\n{below}'
-    assert findings(text, RULE) == ["12 warning «@cuont» this reads `@cuont`, and nothing writes it: is it `@count`?"]
+    assert findings(text, RULE) == [
+        "12 warning «@cuont» nothing writes `@cuont`, which is read here; did you mean `@count`?"
+    ]
     written = text.replace("@count := 1", "@count := 1; @cuont := 2")
     assert findings(written, RULE) == []
     by_the_root = text.replace("@count := 1", "@count := 1; cuont := 2")
@@ -126,8 +128,8 @@ def test_an_include_that_is_missing_may_hold_anything() -> None:
 
 def test_the_words_for_yes_and_no() -> None:
     assert told('Script (code = "a := True; b := FALSE; c := true")') == [
-        "«True» in a script `True` is the name of an entry: the engine's word is `true`",
-        "«FALSE» in a script `FALSE` is the name of an entry: the engine's word is `false`",
+        "«True» a script reads `True` as the name of an entry; did you mean `true`?",
+        "«FALSE» a script reads `FALSE` as the name of an entry; did you mean `false`?",
     ]
     assert told('Script (code = "True := 1; a := True")') == []
 

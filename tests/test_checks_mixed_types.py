@@ -86,7 +86,7 @@ def test_two_types_meet(case: str) -> None:
 def test_a_mission_says_where_and_why() -> None:
     text = mission("Count (n = {k})\n SubTree S (v = {k})\nBehaviorTree S\n Drive (speed = {v})")
     assert findings(text, RULE) == [
-        "19 error «{k}» `{k}` is made as int by `n` of `Count`, and `speed` of `Drive` is of type double"
+        "19 error «{k}» `n` of `Count` creates `{k}` as int, but `speed` of `Drive` has the type double"
     ]
 
 

@@ -38,25 +38,25 @@ def test_a_tree_is_renamed_wherever_it_is_named() -> None:
         'parts.btq:1:14 warning forbidden-name «"3 tubes"» '
         "the engine refuses the tree name `3 tubes`: it contains a blank",
     )
-    assert_fix(text, "Rename it to `Move_tubes` wherever it is named", text.replace('"Move tubes"', "Move_tubes"))
+    assert_fix(text, "Rename it to `Move_tubes` everywhere", text.replace('"Move tubes"', "Move_tubes"))
     parts = '//- parts.btq\nBehaviorTree "3 tubes"\n    X\n//- main.btq\ninclude "parts.btq"\n' + tree(
         'SubTree "3 tubes"'
     )
-    assert_fix(parts, "Rename it to `_3_tubes` wherever it is named", parts.replace('"3 tubes"', "_3_tubes"))
+    assert_fix(parts, "Rename it to `_3_tubes` everywhere", parts.replace('"3 tubes"', "_3_tubes"))
 
 
 def test_a_new_name_is_not_taken() -> None:
     text = 'Root "a b"\nBehaviorTree "a b"\n    SubTree a_b\nBehaviorTree a_b\n    X\n'
-    assert_fix(text, "Rename it to `a_b_` wherever it is named", text.replace('"a b"', "a_b_"))
+    assert_fix(text, "Rename it to `a_b_` everywhere", text.replace('"a b"', "a_b_"))
 
 
 @pytest.mark.parametrize(
     ("name", "others", "taken", "free"),
     [
-        ("Charged?", "BehaviorTree Charged\n    X\n", "`Charged`: that is the tree `Charged`", "Charged_"),
-        ("a b", 'BehaviorTree "a.b"\n    X\n', "`a_b`: that is the tree `a.b`", "a_b_"),
-        ("Dock?", "Action Dock\n", "`Dock`: that is the node `Dock`", "Dock_"),
-        ("Fallback?", "", "`Fallback`: that is a node of the engine", "Fallback_"),
+        ("Charged?", "BehaviorTree Charged\n    X\n", "`Charged`, which is the tree `Charged`", "Charged_"),
+        ("a b", 'BehaviorTree "a.b"\n    X\n', "`a_b`, which is the tree `a.b`", "a_b_"),
+        ("Dock?", "Action Dock\n", "`Dock`, which is the node `Dock`", "Dock_"),
+        ("Fallback?", "", "`Fallback`, which is a built-in node", "Fallback_"),
     ],
 )
 @pytest.mark.parametrize("place", ["here", "included", "including"])
@@ -72,7 +72,7 @@ def test_a_tree_whose_mended_name_is_taken_is_an_error(
     workspace = Workspace.of(files)
     (found,) = [each for each in check(workspace, "main.btq") if each.rule == "forbidden-name" and name in each.message]
     assert (found.effective_severity, found.notes) == (Severity.ERROR, (f"`btq build` cannot write it as {taken}",))
-    assert found.fixes[0].title == f"Rename it to `{free}` wherever it is named"
+    assert found.fixes[0].title == f"Rename it to `{free}` everywhere"
 
 
 def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
@@ -83,7 +83,7 @@ def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
     )
     assert_problems(
         tree('SubTree "a b"'),
-        '2:13 error unknown-tree «"a b"» there is no tree `a b` in this file or in those it includes',
+        '2:13 error unknown-tree «"a b"» unknown tree `a b`; neither this file nor its includes define it',
     )
     assert_problems(
         'include "parts.xml" (ros_pkg = "robot")\n' + tree('SubTree "a b"'),
@@ -103,7 +103,7 @@ def test_a_node_may_have_any_id_in_the_explicit_form(name: str) -> None:
     assert_problems(
         text, f"2:5 error forbidden-name «{name}» the engine refuses the node name `{shown}`: it contains {why}"
     )
-    assert_fix(text, f"Write its category: `Action {name}`", tree(f"Action {name}"))
+    assert_fix(text, f"Add its category: `Action {name}`", tree(f"Action {name}"))
     assert_clean(tree(f"Action {name}"))
 
 
@@ -111,10 +111,10 @@ def test_the_category_follows_the_model_or_the_children() -> None:
     model = "Condition BatteryLow?\n"
     assert_fix(
         model + tree("BatteryLow?"),
-        "Write its category: `Condition BatteryLow?`",
+        "Add its category: `Condition BatteryLow?`",
         model + tree("Condition BatteryLow?"),
     )
-    assert_fix(tree("Slow?", "    X"), "Write its category: `Decorator Slow?`", tree("Decorator Slow?", "    X"))
+    assert_fix(tree("Slow?", "    X"), "Add its category: `Decorator Slow?`", tree("Decorator Slow?", "    X"))
 
 
 def test_an_instance_may_be_called_anything_but_this() -> None:
@@ -142,7 +142,7 @@ def test_a_tree_without_an_id() -> None:
     for other in ("Action X\n", "BehaviorTree Other\n    X\n"):
         assert_problems(
             f"BehaviorTree\n    X\n{other}",
-            "1:1 error forbidden-name «BehaviorTree» this tree has no ID: `BehaviorTree <ID>`",
+            "1:1 error forbidden-name «BehaviorTree» missing ID of this tree: write `BehaviorTree <ID>`",
         )
 
 
@@ -160,9 +160,9 @@ def test_every_further_node_of_a_name_is_told() -> None:
     assert_problems(
         tree("->", "    X One", "    Y (name = One)", '    Z "One"'),
         "4:19 hint duplicate-instance-name «One» "
-        "two nodes of this tree are called `One`: in logs both have the same path",
+        "two nodes of this tree have the name `One`: logs show the same path for both",
         '5:11 hint duplicate-instance-name «"One"» '
-        "two nodes of this tree are called `One`: in logs both have the same path",
+        "two nodes of this tree have the name `One`: logs show the same path for both",
     )
 
 
@@ -171,13 +171,12 @@ def test_subtrees_without_a_name_of_their_own() -> None:
     assert_clean(tree("->", "    SubTree Pick", "    SubTree Pick") + pick)
     assert_problems(
         tree("->", "    SubTree Pick Pick", "    SubTree Pick Pick") + pick,
-        "4:22 warning duplicate-instance-name «Pick» "
-        "two SubTrees of this tree are called `Pick`: the engine refuses that",
+        "4:22 warning duplicate-instance-name «Pick» the engine refuses two SubTrees with the name `Pick` in one tree",
     )
     assert_problems(
         tree('SubTree Pick ""') + pick,
         '2:18 warning forbidden-name «""» '
-        "the engine refuses the instance name ``: it is empty, as that of the main tree is",
+        "the engine refuses the instance name ``: it is empty, like the name of the main tree",
     )
     assert_clean(tree("SubTree Pick") + 'BehaviorTree Pick\n    SubTree Place ""\nBehaviorTree Place\n    X\n')
 
@@ -208,6 +207,6 @@ def test_what_a_forgotten_quote_may_have_swallowed_is_not_called_unknown() -> No
 def test_an_empty_name_of_a_subtree_is_told_once() -> None:
     assert_problems(
         'include "x.btq"\nBehaviorTree Main\n    SubTree ""\n',
-        '1:9 error missing-include «"x.btq"» there is no file `x.btq`',
-        "3:5 error unknown-tree «SubTree» this SubTree names no tree: `SubTree <ID>`",
+        '1:9 error missing-include «"x.btq"» cannot find the file `x.btq`',
+        "3:5 error unknown-tree «SubTree» missing tree of this SubTree: write `SubTree <ID>`",
     )

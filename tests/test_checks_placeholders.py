@@ -95,7 +95,9 @@ def test_with_models_a_skill_is_held_against_them_so_the_fix_is_not_safe() -> No
     text = 'Action MoveBase\n    input station : string\n\nBehaviorTree Main\n    ScriptAction (name = "MoveBase")\n'
     ((_, safe, mended),) = fixes(text, "classic-placeholder")
     assert not safe
-    assert findings(mended, "missing-port") == ["5 warning «MoveBase» `MoveBase` needs a value for its port `station`"]
+    assert findings(mended, "missing-port") == [
+        "5 warning «MoveBase» `MoveBase` requires a value for its port `station`"
+    ]
 
 
 def test_the_example_of_the_paper(shared: Path) -> None:
@@ -159,6 +161,6 @@ def test_a_clash_with_an_included_file_shows_its_place_there() -> None:
 def test_an_id_that_the_engine_or_a_tree_has() -> None:
     text = "BehaviorTree Main\n    ScriptAction Sleep\n\nBehaviorTree Other\n    ScriptAction Main\n"
     assert findings(text, "placeholder-clash", "classic-placeholder") == [
-        "2 error «Sleep» `Sleep` becomes the node ID `Sleep`, which is a node of the engine",
+        "2 error «Sleep» `Sleep` becomes the node ID `Sleep`, which is a built-in node",
         "5 error «Main» `Main` becomes the node ID `Main`, which is the name of a tree",
     ]

@@ -38,7 +38,9 @@ def test_a_port_of_another_name_is_one_mistake(wrong: str, right: str) -> None:
     kind = wrong.partition(" ")[0]
     text = tree(f"{wrong}\n            X")
     column = 9 + wrong.index(key)
-    assert_problems(text, f"3:{column} error unknown-port «{key}» `{kind}` has no port `{key}`")
+    assert_problems(
+        text, f"3:{column} error unknown-port «{key}» `{kind}` has no port `{key}`; did you mean `{meant}`?"
+    )
     assert_fix(text, f"Replace `{key}` by `{meant}`", tree(f"{right}\n            X"))
 
 
@@ -50,14 +52,16 @@ def test_a_port_that_has_a_value_is_not_meant() -> None:
 
 def test_ports_of_a_model() -> None:
     model = "Action Move\n    input place\n    input speed = 1\n    output error\n    inout trace\n"
-    assert_problems(model + tree("Move"), "8:9 warning missing-port «Move» `Move` needs a value for its port `place`")
+    assert_problems(
+        model + tree("Move"), "8:9 warning missing-port «Move» `Move` requires a value for its port `place`"
+    )
     assert_clean(model + tree("Move (place = {p})"))
     assert_clean(model + tree('Move (place = "" name = "m" _skipIf = "true")'))
 
 
 def test_all_that_is_missing_is_told_at_once() -> None:
     text = "Action Move\n    input x\n    input y\n    input z\n" + tree("Move Home (y = 1)")
-    assert_problems(text, "7:9 warning missing-port «Move» `Move` needs values for its ports `x` and `z`")
+    assert_problems(text, "7:9 warning missing-port «Move» `Move` requires values for its ports `x` and `z`")
     assert_fix(
         text, "Pass on the entries of the same name: `x = {=} z = {=}`", text.replace("y = 1", "y = 1 x = {=} z = {=}")
     )
@@ -76,16 +80,16 @@ def test_a_model_without_ports_is_one_mistake_at_a_node() -> None:
 def test_ports_of_a_tree() -> None:
     assert_problems(
         tree("SubTree Pick") + PICK,
-        "3:17 error missing-port «Pick» `Pick` needs values for its ports `object` and `grip`",
+        "3:17 error missing-port «Pick» `Pick` requires values for its ports `object` and `grip`",
     )
     assert_problems(
         tree("SubTree Pick (object = a grip = {g} spede = 3)") + PICK,
-        "3:45 warning unknown-port «spede» `Pick` has no port `spede`",
+        "3:45 warning unknown-port «spede» `Pick` has no port `spede`; did you mean `speed`?",
     )
     # The engine says nothing of `objekt`, but misses `object`.
     assert_problems(
         tree("SubTree Pick (objekt = a grip = {g})") + PICK,
-        "3:23 error unknown-port «objekt» `Pick` has no port `objekt`",
+        "3:23 error unknown-port «objekt» `Pick` has no port `objekt`; did you mean `object`?",
     )
     assert_clean(tree("SubTree Pick (anything = 1)") + "BehaviorTree Pick\n    X\n")  # a tree that declares none
 
@@ -98,34 +102,36 @@ def test_a_subtree_that_gets_every_entry_misses_none(attribute: str) -> None:
 def test_autoremap_may_be_off() -> None:
     assert_problems(
         tree("SubTree Pick (object = a _autoremap = false)") + PICK,
-        "3:17 error missing-port «Pick» `Pick` needs a value for its port `grip`",
+        "3:17 error missing-port «Pick» `Pick` requires a value for its port `grip`",
     )
 
 
 def test_an_empty_default_is_none_to_the_engine() -> None:
     assert_problems(
         tree("SubTree Pick") + 'BehaviorTree Pick\n    input object = ""\n    X\n',
-        "3:17 error missing-port «Pick» `Pick` needs a value for its port `object`",
+        "3:17 error missing-port «Pick» `Pick` requires a value for its port `object`",
     )
 
 
 def test_a_port_whose_name_stands_in_brackets() -> None:
     model = "Action Move\n    input (name = place)\n"
     assert_clean(model + tree("Move (place = a)"))
-    assert_problems(model + tree("Move"), "5:9 warning missing-port «Move» `Move` needs a value for its port `place`")
+    assert_problems(
+        model + tree("Move"), "5:9 warning missing-port «Move» `Move` requires a value for its port `place`"
+    )
 
 
 def test_the_model_of_a_subtree_counts_where_its_tree_declares_nothing() -> None:
     model = "SubTree Pick\n    input object\n"
     assert_problems(
         model + tree("SubTree Pick") + "BehaviorTree Pick\n    X\n",
-        "5:17 error missing-port «Pick» `Pick` needs a value for its port `object`",
+        "5:17 error missing-port «Pick» `Pick` requires a value for its port `object`",
     )
 
 
 def test_an_id_where_the_engine_takes_none() -> None:
     assert_problems(
-        tree("-> (ID = a)\n            X"), "3:13 error unknown-port «ID» `->` takes no `ID`: the engine refuses it"
+        tree("-> (ID = a)\n            X"), "3:13 error unknown-port «ID» the engine refuses the attribute `ID` on `->`"
     )
     assert_fix(tree("-> (ID = a)\n            X"), "Replace `ID` by `name`", tree("-> (name = a)\n            X"))
     assert_clean(tree("Action (ID = Move)"))
@@ -134,10 +140,13 @@ def test_an_id_where_the_engine_takes_none() -> None:
 def test_a_script_without_code_is_a_placeholder_unless_code_is_misspelt() -> None:
     assert_problems(
         tree("ScriptAction Move (speed = 1)"),
-        "3:9 hint classic-placeholder «ScriptAction» `ScriptAction` without code stands for the action `Move`",
+        "3:9 hint classic-placeholder «ScriptAction» `ScriptAction` without code is a placeholder of the action `Move`",
     )
-    assert_problems(tree('Script Reset (cod = "a := 1")'), "3:23 error unknown-port «cod» `Script` has no port `cod`")
-    assert_problems(tree("Script"), "3:9 error missing-port «Script» `Script` needs a value for its port `code`")
+    assert_problems(
+        tree('Script Reset (cod = "a := 1")'),
+        "3:23 error unknown-port «cod» `Script` has no port `cod`; did you mean `code`?",
+    )
+    assert_problems(tree("Script"), "3:9 error missing-port «Script» `Script` requires a value for its port `code`")
 
 
 # ---- unknown-attribute -----------------------------------------------------------------------------------------------
@@ -153,7 +162,7 @@ def test_a_shared_blackboard_of_version_3() -> None:
     assert_problems(
         text,
         "3:23 warning unknown-attribute «__shared_blackboard» "
-        "`__shared_blackboard` is no attribute that the engine reads: it ignores it without a word",
+        "the engine silently ignores `__shared_blackboard`; did you mean `_autoremap`?",
     )
     assert_fix(text, "Replace `__shared_blackboard` by `_autoremap`", text.replace("__shared_blackboard", "_autoremap"))
     off = tree("SubTree Pick (object = a grip = {g} __shared_blackboard = false)") + PICK
@@ -186,14 +195,14 @@ def test_a_name_that_is_no_port_name() -> None:
 def test_what_stands_before_the_brackets_counts(text: str, key: str) -> None:
     at = text.rindex(f"{key} =")
     line, column = text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
-    assert_problems(text, f"{line}:{column} error duplicate-attribute «{key}» `{key}` has a value already")
+    assert_problems(text, f"{line}:{column} error duplicate-attribute «{key}» duplicate value for `{key}`")
 
 
 def test_three_values_are_two_too_many() -> None:
     assert_problems(
         tree("X (a = 1 a = 2 a = 3)"),
-        "3:18 error duplicate-attribute «a» `a` has a value already",
-        "3:24 error duplicate-attribute «a» `a` has a value already",
+        "3:18 error duplicate-attribute «a» duplicate value for `a`",
+        "3:24 error duplicate-attribute «a» duplicate value for `a`",
     )
 
 

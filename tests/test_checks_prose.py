@@ -136,13 +136,13 @@ def test_what_can_be_checked(text: str) -> None:
 )
 def test_prose_is_told_once_at_the_first_keyword(text: str, keyword: str) -> None:
     assert findings(requirement(text), "prose-constraint") == [
-        f"1 hint «{keyword}» no tool can check what stands behind `{keyword}`"
+        f"1 hint «{keyword}» no tool can check the prose after `{keyword}`"
     ]
 
 
 def test_a_keyword_behind_escapes_and_line_ends() -> None:
     text = 'QualityReq rq1 "\\"Soon\\"\r\n    FailureIf it takes longer than 5 s"\r\n'
-    assert findings(text, "prose-constraint") == ["2 hint «FailureIf» no tool can check what stands behind `FailureIf`"]
+    assert findings(text, "prose-constraint") == ["2 hint «FailureIf» no tool can check the prose after `FailureIf`"]
 
 
 def test_the_fix_adds_the_clause_and_the_sentence_stays() -> None:
@@ -188,7 +188,7 @@ def test_a_requirement_that_is_repeated_is_told_where_it_is_defined() -> None:
     (found,) = problems(text, "prose-constraint")
     assert found.span.start < text.index("Place")
     assert found.fixes == ()  # with a clause in one of the two places there would be two requirements
-    assert found.notes == ("as a clause that can be checked: `takes at most 5 s`",)
+    assert found.notes == ("write it as a clause: `takes at most 5 s`",)
 
 
 @given(st.text(alphabet=st.sampled_from("Su cesIfFailr:.\"'\\\n\r(){}=<>3 s%#/*"), max_size=40))

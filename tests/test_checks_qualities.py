@@ -39,11 +39,11 @@ def test_a_name_is_looked_at_wherever_it_stands() -> None:
             X (satisfices Quality = safty (QualityReq ID = "rq2" description = "Slowly"))
                 satisfies rq1, QualityReq rq3 : safty "Softly"
         """,
-        "1:18 warning unknown-quality «safty» `safty` is no quality of iso25010-2023",
-        "2:18 warning unknown-quality «safty» `safty` is no quality of iso25010-2023",
-        "4:16 warning unknown-quality «safty» `safty` is no quality of iso25010-2023",
-        "5:29 warning unknown-quality «safty» `safty` is no quality of iso25010-2023",
-        "6:41 warning unknown-quality «safty» `safty` is no quality of iso25010-2023",
+        "1:18 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
+        "2:18 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
+        "4:16 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
+        "5:29 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
+        "6:41 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
     )
     assert_fix(node("safty"), "Replace `safty` by `safety`", node("safety"))
 
@@ -80,28 +80,28 @@ def test_the_edition_of_a_file_and_of_a_project() -> None:
     )
     assert_problems(
         node("safety.fail-safe"),
-        "2:18 hint old-quality-name «safety.fail-safe» `safety.fail-safe` is no name of iso25010-2011",
+        "2:18 hint old-quality-name «safety.fail-safe» iso25010-2011 does not define `safety.fail-safe`",
         project=old,
     )
 
 
 def test_an_edition_that_there_is_not() -> None:
     text = node("safety", "qualities iso25010-2025\n")
-    assert_problems(text, "1:11 warning unknown-quality «iso25010-2025» there is no quality model `iso25010-2025`")
+    assert_problems(text, "1:11 warning unknown-quality «iso25010-2025» unknown quality model `iso25010-2025`")
     assert_fix(text, "Replace it by `iso25010-2023`", text.replace("2025", "2023"))
 
 
 def test_a_name_without_an_equal_is_not_changed_safely() -> None:
     assert_problems(
         node("context-coverage"),
-        "2:18 hint old-quality-name «context-coverage» `context-coverage` is no name of iso25010-2023",
+        "2:18 hint old-quality-name «context-coverage» iso25010-2023 does not define `context-coverage`",
     )
 
 
 def test_another_word_is_changed_safely() -> None:
     assert_problems(
         node("latency"),
-        "2:18 hint old-quality-name «latency» `latency` is another word for `performance-efficiency.time-behaviour`",
+        "2:18 hint old-quality-name «latency» `latency` is an alias of `performance-efficiency.time-behaviour`",
     )
     title = "Replace it by `performance-efficiency.time-behaviour`"
     assert_fix(node("latency"), title, node("performance-efficiency.time-behaviour"), safe=True)
@@ -118,14 +118,14 @@ def test_an_old_characteristic_has_a_usual_meaning() -> None:
     assert_problems(
         node("Usability"),
         "2:18 info ambiguous-quality «Usability» "
-        "`Usability` means several qualities; it is read as `interaction-capability`",
+        "ambiguous quality name `Usability`; btq reads it as `interaction-capability`",
     )
     assert_clean(node("usability", "qualities iso25010-2011\n"))
 
 
 @pytest.mark.parametrize("word", ["efficiency", "robustness", "suitability", "accessibility"])
 def test_words_that_may_mean_this_or_that(word: str) -> None:
-    assert_problems(node(word), f"2:18 warning ambiguous-quality «{word}» `{word}` means several qualities")
+    assert_problems(node(word), f"2:18 warning ambiguous-quality «{word}» ambiguous quality name `{word}`")
     assert_clean(node(word, f"quality {word}\n"))
 
 

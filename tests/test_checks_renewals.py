@@ -26,7 +26,7 @@ def told(tree: str, others: str = "", guard: str = GUARD) -> list[str]:
     return findings(f"{guard}Root Main\nBehaviorTree Main\n{lines}{others}", RULE)
 
 
-MESSAGE = "no node writes `level` while `A` runs, so this is decided when that starts"
+MESSAGE = "no node writes `level` while `A` runs, so the result is fixed when the node starts"
 TOLD = [f"3 warning «A keeps n <= 3» {MESSAGE}"]
 
 
@@ -155,7 +155,7 @@ def test_files() -> None:
     main = f'include "rules.btq"\ninclude "skills.btq"\nBehaviorTree Main\n    ->\n        {W}\n        A'
     (found,) = problems(f"{main} satisfies q\n", RULE, rules=rules, skills=skills)
     assert found.message == MESSAGE
-    assert [each.message for each in found.related] == ["this may write it, and not meanwhile", "the guarded node"]
+    assert [each.message for each in found.related] == ["writes it, but not while the node runs", "guarded node"]
     # Attached in the other file: told at the node.
     both = f'include "skills.btq"\n{rules}apply q to every A\n'
     assert findings(f"{main}\n", RULE, rules=both, skills=skills) == [f"6 warning «A» {MESSAGE}"]

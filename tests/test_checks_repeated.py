@@ -28,8 +28,8 @@ def test_the_second_one_goes(node: str, title: str, fixed: str) -> None:
 def test_two_names_of_one_quality_are_one() -> None:
     assert_problems(
         "BehaviorTree Main\n    X satisfices time-behaviour, performance-efficiency.time-behaviour\n",
-        "2:34 hint named-twice «performance-efficiency.time-behaviour» a second "
-        "`performance-efficiency.time-behaviour` changes nothing",
+        "2:34 hint named-twice «performance-efficiency.time-behaviour» duplicate "
+        "`performance-efficiency.time-behaviour` has no effect",
     )
 
 

@@ -21,10 +21,10 @@ def test_every_way_to_name_a_requirement() -> None:
             X (satisfies QualityReq ID = "rq3")
                 satisfies rq4(limit = 3 s)
         """,
-        "1:7 error unknown-requirement «rq1» no requirement `rq1` is defined here or in an included file",
-        "3:15 error unknown-requirement «rq2» no requirement `rq2` is defined here or in an included file",
-        '4:34 error unknown-requirement «"rq3"» no requirement `rq3` is defined here or in an included file',
-        "5:19 error unknown-requirement «rq4» no requirement `rq4` is defined here or in an included file",
+        "1:7 error unknown-requirement «rq1» unknown requirement `rq1`; neither this file nor its includes define it",
+        "3:15 error unknown-requirement «rq2» unknown requirement `rq2`; neither this file nor its includes define it",
+        '4:34 error unknown-requirement «"rq3"» unknown requirement `rq3`; neither this file nor its includes define it',
+        "5:19 error unknown-requirement «rq4» unknown requirement `rq4`; neither this file nor its includes define it",
     )
 
 
@@ -55,7 +55,7 @@ def test_one_requirement_in_several_places() -> None:
 
 
 def test_each_other_text_is_told_against_the_first() -> None:
-    told = "the requirement `rq1` says something else in another place"
+    told = "the requirement `rq1` has another definition that differs"
     assert_problems(
         classic("one", "two", "one", "three"),
         f'4:38 error conflicting-requirement «"rq1"» {told}',
@@ -76,7 +76,7 @@ def test_clauses_and_qualities_are_part_of_what_is_said(first: str, second: str)
     line = first.count("\n") + 2
     assert_problems(
         text,
-        f"{line}:12 error conflicting-requirement «rq1» the requirement `rq1` says something else in another place",
+        f"{line}:12 error conflicting-requirement «rq1» the requirement `rq1` has another definition that differs",
     )
     assert_clean(f"QualityReq rq1 {second}\nQualityReq rq1 {second}\n")
 
@@ -84,7 +84,7 @@ def test_clauses_and_qualities_are_part_of_what_is_said(first: str, second: str)
 def test_a_definition_that_says_nothing_is_told_for_that_only() -> None:
     assert_problems(
         'QualityReq rq1 "In time"\nQualityReq rq1\n',
-        "2:12 warning requirement-without-text «rq1» the requirement `rq1` says nothing",
+        "2:12 warning requirement-without-text «rq1» the requirement `rq1` demands nothing",
     )
 
 
@@ -102,7 +102,7 @@ def test_two_includes_that_contradict_each_other() -> None:
         QualityReq rq2 "same"
         """,
         'main.btq:2:9 error conflicting-requirement «"b.btq"» '
-        "this file brings a second requirement `rq1`, which says something else",
+        "this file includes a second requirement `rq1` with different content",
     )
 
 
@@ -129,7 +129,7 @@ def test_requirements_that_somebody_uses(text: str) -> None:
 def test_a_misspelt_use_is_one_mistake() -> None:
     assert_problems(
         RULE + TREE.replace("rq1", "rq11"),
-        "4:17 error unknown-requirement «rq11» no requirement `rq11` is defined here or in an included file",
+        "4:17 error unknown-requirement «rq11» unknown requirement `rq11`; did you mean `rq1`?",
     )
     assert_problems(
         RULE + TREE.replace("satisfies", "satisfy"),
@@ -149,7 +149,7 @@ def test_what_could_not_be_read_may_be_what_is_said() -> None:
 
 def test_an_empty_text_says_nothing() -> None:
     assert_problems(
-        'QualityReq rq1 " "\n', "1:12 warning requirement-without-text «rq1» the requirement `rq1` says nothing"
+        'QualityReq rq1 " "\n', "1:12 warning requirement-without-text «rq1» the requirement `rq1` demands nothing"
     )
     assert_clean("QualityReq rq1\n    verified by review\n")
 
@@ -188,7 +188,7 @@ def test_a_requirement_of_another_file_may_be_called_as_a_quality() -> None:
         QualityReq safety "Carefully"
         """,
         "main.btq:2:17 error unknown-requirement «safety» "
-        "no requirement `safety` is defined here or in an included file",
+        "unknown requirement `safety`; neither this file nor its includes define it",
     )
 
 
@@ -200,7 +200,7 @@ MEANT = "did you mean `satisfies`?"
 @pytest.mark.parametrize("parent", ["Action X", "->", "Inverter", "X"])
 def test_a_misspelt_clause_line_is_read_as_a_node(parent: str) -> None:
     text = f"{RULE}BehaviorTree Main\n    {parent}\n        satisfys rq1\n"
-    assert_problems(text, f"5:9 warning clause-as-node «satisfys» `satisfys` is a node here: {MEANT}")
+    assert_problems(text, f"5:9 warning clause-as-node «satisfys» btq reads `satisfys` as a node here; {MEANT}")
     if "X" in parent:
         assert_fix(text, "Replace `satisfys` by `satisfies`", text.replace("satisfys", "satisfies"))
 
@@ -218,7 +218,7 @@ def test_nodes_that_look_like_clauses() -> None:
 
 def test_an_action_without_a_claim() -> None:
     text = 'QualityReq rq1 "t"\n    {}\nBehaviorTree Main\n    Action X satisfies rq1\n'
-    told = "the requirement `rq1` says nothing that could be violated, so `on violation {}` does nothing"
+    told = "the requirement `rq1` demands nothing that can be violated, so `on violation {}` has no effect"
     for action in ("fail", "halt", "warn", "log"):
         assert_problems(
             text.replace("{}", f"on violation {action}"),
@@ -235,21 +235,21 @@ USER = "BehaviorTree X\n    Action A\n"
 @pytest.mark.parametrize(
     ("clauses", "expected"),
     [
-        ("\n    goal 2 s\n    goal 1 s\n", "a goal already: `goal 2 s`"),
-        ("\n    confidence 90 %\n    confidence 95 %\n", "a confidence already: `confidence 90 %`"),
-        ("\n    over last 9 runs\n    over last 3 d\n", "a window already: `over last 9 runs`"),
+        ("\n    goal 2 s\n    goal 1 s\n", "a goal: `goal 2 s`"),
+        ("\n    confidence 90 %\n    confidence 95 %\n", "a confidence: `confidence 90 %`"),
+        ("\n    over last 9 runs\n    over last 3 d\n", "a window: `over last 9 runs`"),
         (
             "\n    in at least 9 % of runs\n    with probability > 9 %\n",
-            "how often it is to hold already: `in at least 9 % of runs`",
+            "how often it must hold: `in at least 9 % of runs`",
         ),
-        (" verified by test verified by review\n", "how it is verified already: `verified by test`"),
+        (" verified by test verified by review\n", "how to verify it: `verified by test`"),
     ],
 )
 def test_a_clause_of_a_kind_that_is_said_once(clauses: str, expected: str) -> None:
     text = f'QualityReq a "t"\n    A takes at most 3 s{clauses}{USER}'
     (found,) = problems(text, "duplicate-clause")
-    assert found.message == f"the requirement says {expected}"
-    assert [related.message for related in found.related] == ["this one counts"]
+    assert found.message == f"the requirement already states {expected}"
+    assert [related.message for related in found.related] == ["this one takes effect"]
     assert [fix.safe for fix in found.fixes] == [False, False]
 
 

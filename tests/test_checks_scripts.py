@@ -81,7 +81,7 @@ def test_places_count_from_the_file_and_not_from_the_tree() -> None:
 @pytest.mark.parametrize(
     ("node", "expected"),
     [
-        ('Script (code = "")', 'warning «""» this script does nothing'),
+        ('Script (code = "")', 'warning «""» empty script'),
         ('Script (code = "  ")', 'error «"  "»'),
         ('ScriptCondition (code = "")', 'error «""»'),
         ('AlwaysSuccess (_skipIf = "")', 'error «""»'),
@@ -102,7 +102,7 @@ def test_only_the_versions_of_the_project_count() -> None:
 
 def test_a_project_that_names_no_version_is_told_how() -> None:
     text = tree('AlwaysSuccess (_skipIf = "a + b == c")')
-    pin = 'if that is what you run, say `engine = "4.10"` in btq.toml'
+    pin = 'if you run 4.10, set `engine = "4.10"` in btq.toml'
     (found,) = problems(text, "script-version")
     assert pin in found.notes
     (found,) = problems(text, "script-version", project=Project(engines=("4.6", "4.8")))

@@ -29,8 +29,8 @@ COUNT = "count-of-nothing"
         ("Repeat (num_cycles = -2)", "«-2» with `-2` `Repeat` never runs its child"),
         ('Retry (num_attempts = "0")', '«"0"» with `"0"` `Retry` never runs its child'),
         ("RetryUntilSuccessful (num_attempts = -5)", "«-5» with `-5` `RetryUntilSuccessful` never runs its child"),
-        ("Timeout (msec = 0)", "«0» to the engine a Timeout of `0` is none: it never ends its child"),
-        ("Timeout (msec = 0 s)", "«0 s» to the engine a Timeout of `0 s` is none: it never ends its child"),
+        ("Timeout (msec = 0)", "«0» a Timeout of `0` is disabled: it never halts its child"),
+        ("Timeout (msec = 0 s)", "«0 s» a Timeout of `0 s` is disabled: it never halts its child"),
         ("Repeat (num_cycles = -1)", None),
         ("Repeat (num_cycles = 1)", None),
         ("Repeat (num_cycles = {n})", None),
@@ -47,7 +47,7 @@ def test_counts(node: str, problem: str | None) -> None:
 
 def test_a_negative_count_is_probably_meant_for_no_end() -> None:
     text = tree("Repeat (num_cycles = -2)", "    Action Work")
-    assert fixes(text, COUNT) == [("Write `-1`: without end", False, text.replace("-2", "-1"))]
+    assert fixes(text, COUNT) == [("Write `-1` for endless", False, text.replace("-2", "-1"))]
     assert fixes(text.replace("-2", "0"), COUNT) == []
 
 
@@ -59,8 +59,8 @@ OUTPUT = "literal-for-output"
 def test_a_value_for_an_output() -> None:
     text = MODELS + tree("Plan (path = path cost = 3)")
     assert findings(text, OUTPUT) == [
-        "8 warning «path» `path` of `Plan` is an output: it is written to an entry, and `path` is none",
-        "8 warning «3» `cost` of `Plan` is an output: it is written to an entry, and `3` is none",
+        "8 warning «path» expected a blackboard entry for the output `path` of `Plan`, found `path`",
+        "8 warning «3» expected a blackboard entry for the output `cost` of `Plan`, found `3`",
     ]
     assert fixes(text, OUTPUT) == [
         ("Write the entry `{path}`", False, text.replace("= path", "= {path}")),
@@ -162,8 +162,8 @@ def test_two_ports_of_one_name() -> None:
     model = "Action A\n    input a : int\n    output a : double\n    input b\n"
     text = f"{model}BehaviorTree Main\n    input c\n    input c\n    A\n"
     assert findings(text, "duplicate-definition") == [
-        "3 warning «a» there are two ports `a`",
-        "7 warning «c» there are two ports `c`",
+        "3 warning «a» duplicate port `a`",
+        "7 warning «c» duplicate port `c`",
     ]
 
 
@@ -195,5 +195,5 @@ def test_a_signal_that_is_a_number_and_an_entry_that_is_a_text(unit: str, type_:
         f'QualityReq q : safety "Q"\n    leaves battery == {value}\n'
         "BehaviorTree Main\n    Read (battery = {=}) satisfies q\n"
     )
-    message = "«battery» `battery` is a number, and `battery` of `Read` writes a text there"
+    message = "«battery» `battery` is a number, but `battery` of `Read` writes text"
     assert findings(text, "unit-mismatch") == ([f"1 warning {message}"] if told else [])

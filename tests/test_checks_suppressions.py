@@ -9,7 +9,7 @@ from btq_lang.checks import check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.workspace import Workspace
 
-RETY = "warning unknown-node «Rety» unknown node `Rety`"
+RETY = "warning unknown-node «Rety» unknown node `Rety`; did you mean `Retry`?"
 
 
 def tree(*lines: str) -> str:
@@ -71,9 +71,9 @@ def test_a_string_is_no_comment() -> None:
 def test_a_comment_that_can_silence_nothing_is_told() -> None:
     assert_problems(
         tree("Foo  # btq: ignore[unknown-nod, unknown-node, nonsense]", "Foo  # btq: ignore[unknown-node"),
-        "3:28 warning useless-ignore «unknown-nod» unknown rule `unknown-nod`: did you mean `unknown-node`?",
+        "3:28 warning useless-ignore «unknown-nod» unknown rule `unknown-nod`; did you mean `unknown-node`?",
         "3:55 warning useless-ignore «nonsense» unknown rule `nonsense`",
-        "4:16 warning useless-ignore «btq: ignore[unknown-node» this comment silences nothing: its `[` has no `]`",
+        "4:16 warning useless-ignore «btq: ignore[unknown-node» this comment silences nothing: missing `]`",
     )
     assert_fix(
         tree("Foo  # btq: ignore[unknown-nod]"),
@@ -90,7 +90,7 @@ def test_errors_after_which_a_file_is_not_read_as_it_stands_are_not_silenced() -
         tree("Foo )  # btq: ignore[syntax-error]"),
         error,
         "3:30 warning useless-ignore «syntax-error» "
-        "`syntax-error` cannot be silenced: with such a mistake the file is not read as it stands",
+        "`syntax-error` cannot be silenced: after this error btq cannot read the file reliably",
     )
 
 

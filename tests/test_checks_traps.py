@@ -78,14 +78,14 @@ def test_what_surely_takes_more_than_a_tick_gives_a_warning(first: tuple[str, ..
         "\nBehaviorTree Pause\n    Sleep (msec = 1 s)\n"
     )
     name = first[0].split(" (")[0].removeprefix("SubTree ")
-    message = f"`Work` never gets further than one tick: `{name}` then starts again and halts it"
+    message = f"`Work` never gets beyond its first tick: `{name}` restarts and halts it"
     assert findings(text, REACTIVE) == [f"{len(first) + 3} warning «Work» {message}"]
 
 
 def test_an_action_may_complete_at_once_so_it_gives_a_hint() -> None:
     text = tree("R?", "    Action GoTo", "    Condition Ok", "    -> Rest", "        Action Park")
     assert findings(text, REACTIVE) == [
-        "5 hint «->» if `GoTo` takes longer than one tick, it starts again whenever `-> Rest` is RUNNING, and halts it"
+        "5 hint «->» if `GoTo` takes longer than one tick, it restarts whenever `-> Rest` is RUNNING, and halts it"
     ]
     (found,) = problems(text, REACTIVE)
     assert [text[related.place.span.start : related.place.span.end] for related in found.related] == ["GoTo"]
@@ -119,7 +119,7 @@ PRIORITY = ("?", "    -> Recharge", "        Condition Low", "        Action Cha
 
 
 def test_a_choice_at_the_top_of_a_mission() -> None:
-    message = "while `Work` runs, `Low` is not asked again"
+    message = "while `Work` runs, `Low` is not checked again"
     assert findings(tree(*PRIORITY), RECHECK) == [f"2 hint «?» {message}"]
     inside = ("Repeat (num_cycles = -1)", "    R->", "        Condition Ok", *(f"        {line}" for line in PRIORITY))
     assert findings(tree(*inside), RECHECK) == [f"5 hint «?» {message}"]
@@ -146,13 +146,13 @@ def test_no_fix_where_another_branch_would_start_again(other: tuple[str, ...]) -
     """While `GiveUp` runs, `R?` would start `Drive` again at the next tick."""
     for lines in ((*PRIORITY[1:4], *other, *GIVE_UP), (*other, *PRIORITY[1:4], *GIVE_UP)):
         (found,) = problems(tree("?", *lines), RECHECK)
-        assert found.message.endswith(", `Low` is not asked again")
+        assert found.message.endswith(", `Low` is not checked again")
         assert found.fixes == ()
 
 
 def test_the_last_branch_may_take_its_time() -> None:
     (found,) = problems(tree(*PRIORITY[:4], *GIVE_UP), RECHECK)
-    assert [fix.title for fix in found.fixes] == ["Ask at every tick: `R?`"]
+    assert [fix.title for fix in found.fixes] == ["Check at every tick: `R?`"]
 
 
 @pytest.mark.parametrize(
@@ -233,7 +233,7 @@ WATCHED = 'Action Work (_while = "x")'
 
 @pytest.mark.parametrize("parent", ["->", "M->", "A->", "R->"])
 def test_a_sequence_takes_skipped_for_success(parent: str) -> None:
-    message = f"when `_while` becomes false, `Work` is halted and `{parent}` goes on as if it had succeeded"
+    message = f"when `_while` becomes false, `Work` is halted and `{parent}` continues as if it had succeeded"
     assert findings(tree(parent, f"    {WATCHED}", "    Condition Next"), WHILE) == [f"3 warning «_while» {message}"]
     assert findings(tree(parent, "    Condition First", f"    {WATCHED}"), WHILE) == [f"4 warning «_while» {message}"]
 
@@ -310,11 +310,11 @@ UNREACHABLE = "unreachable-child"
         ),
         (
             ("Switch (case_1 = a case_2 = b)", "    Action A", "    Action B", "    Action C"),
-            "3 «A» `A` can never run: `Switch` has no `variable`, so it runs its last child",
+            "3 «A» `A` can never run: without a `variable` `Switch` runs its last child",
         ),
         (
             ("Switch3 (variable = {v} case_1 = a case_2 = b case_3 = 'a')", "    A", "    B", "    C", "    D"),
-            "5 «C» `C` can never run: an earlier case is `a` already",
+            "5 «C» `C` can never run: an earlier case already has the value `a`",
         ),
     ],
 )
@@ -358,7 +358,7 @@ def test_a_child_that_may_run(lines: tuple[str, ...]) -> None:
 def test_the_example_of_the_paper(shared: Path) -> None:
     text = (shared / "original" / "paper_example.qualitybtcpp").read_text("utf-8")
     assert findings(text, *TRAPS) == [
-        "3 hint «?» while `-> SolidStation` runs, `ScriptCondition BatteryLow?` is not asked again"
+        "3 hint «?» while `-> SolidStation` runs, `ScriptCondition BatteryLow?` is not checked again"
     ]
 
 

@@ -25,7 +25,7 @@ def test_a_tree_that_4_6_does_not_read(engines: tuple[str, ...], severity: str |
 
     project = Project(engines=engines)
     assert_clean(nested(97), project=project)
-    told = f"99:106 {severity} nested-too-deep «Drive» more than 97 levels of nodes: BehaviorTree.CPP 4.6 reads no more"
+    told = f"99:106 {severity} nested-too-deep «Drive» BehaviorTree.CPP 4.6 reads at most 97 levels of nodes"
     assert_problems(nested(98), *([told] if severity is not None else []), project=project)
 
 
@@ -34,13 +34,11 @@ def test_a_tree_that_4_6_does_not_read(engines: tuple[str, ...], severity: str |
 
 def test_the_way_to_an_unknown_tree() -> None:
     misspelt = "BehaviorTree Main\n    SubTree Pik\n" + PICK
-    assert_problems(
-        misspelt, "2:13 error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes"
-    )
+    assert_problems(misspelt, "2:13 error unknown-tree «Pik» unknown tree `Pik`; did you mean `Pick`?")
     assert_fix(misspelt, "Replace `Pik` by `Pick`", misspelt.replace("Pik\n", "Pick\n"))
     node = "Action Pick\nBehaviorTree Main\n    SubTree Pick First\n"
     assert_problems(node, "3:13 error unknown-tree «Pick» `Pick` is a node, not a tree")
-    assert_fix(node, "Write `Pick` alone", node.replace("SubTree ", ""))
+    assert_fix(node, "Write only `Pick`", node.replace("SubTree ", ""))
 
 
 def test_an_include_brings_the_tree() -> None:
@@ -56,7 +54,7 @@ def test_an_include_brings_the_tree() -> None:
         """
     assert_problems(
         text,
-        "missions/main.btq:3:13 error unknown-tree «Pick» there is no tree `Pick` in this file or in those it includes",
+        "missions/main.btq:3:13 error unknown-tree «Pick» unknown tree `Pick`; neither this file nor its includes define it",
     )
     fixed = text.replace('include "a.btq"\n', 'include "a.btq"\n        include "../parts/pick.btq"\n')
     assert_fix(text, "Include `../parts/pick.btq`", fixed)
@@ -93,7 +91,7 @@ def test_a_root_names_a_tree_in_two_ways() -> None:
         column = root.index("Pik") + 1
         assert_problems(
             f"{root}\n{PICK}",
-            f"1:{column} error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes",
+            f"1:{column} error unknown-tree «Pik» unknown tree `Pik`; did you mean `Pick`?",
         )
     assert_clean(f'Root (main_tree_to_execute = "")\n{PICK}')  # 4.10 runs the only tree
 
@@ -102,7 +100,7 @@ def test_what_cannot_be_known_is_not_told() -> None:
     assert_clean('include "parts.xml" (ros_pkg = "robot")\nBehaviorTree Main\n    SubTree Pick\n')
     assert_problems(
         'include "parts.btq"\nBehaviorTree Main\n    SubTree Pick\n',
-        '1:9 error missing-include «"parts.btq"» there is no file `parts.btq`',
+        '1:9 error missing-include «"parts.btq"» cannot find the file `parts.btq`',
     )
     assert_problems(
         "BehaviorTree Main\n    SubTree Pick\nBehaviorTree = Pick\n    X\n",
@@ -114,7 +112,7 @@ def test_a_subtree_without_a_name() -> None:
     for subtree in ("SubTree", 'SubTree ""', "SubTree (speed = 1)"):
         assert_problems(
             f"BehaviorTree Main\n    {subtree}\n",
-            "2:5 error unknown-tree «SubTree» this SubTree names no tree: `SubTree <ID>`",
+            "2:5 error unknown-tree «SubTree» missing tree of this SubTree: write `SubTree <ID>`",
         )
     assert_problems(
         "BehaviorTree Main\n    SubTree (Pick)\n",
@@ -128,19 +126,19 @@ def test_a_subtree_without_a_name() -> None:
 def test_a_tree_of_two_files() -> None:
     assert_problems(
         f'//- main.btq\ninclude "a.btq"\nBehaviorTree Main\n    SubTree Pick\n{PICK}//- a.btq\n{PICK}',
-        "main.btq:4:14 error duplicate-tree «Pick» there are two trees `Pick`",
+        "main.btq:4:14 error duplicate-tree «Pick» duplicate tree `Pick`",
     )
     assert_problems(
         f'//- main.btq\ninclude "a.btq"\ninclude "b.btq"\n//- a.btq\n{PICK}//- b.btq\n{PICK}',
-        'main.btq:2:9 error duplicate-tree «"b.btq"» this file brings a second tree `Pick`',
+        'main.btq:2:9 error duplicate-tree «"b.btq"» this file includes a second tree `Pick`',
     )
 
 
 def test_doubled_trees_are_told_for_nothing_else() -> None:
     assert_problems(
         "BehaviorTree A\n    X\nBehaviorTree A\n    X\nBehaviorTree A\n    X\n",
-        "3:14 error duplicate-tree «A» there are two trees `A`",
-        "5:14 error duplicate-tree «A» there are two trees `A`",
+        "3:14 error duplicate-tree «A» duplicate tree `A`",
+        "5:14 error duplicate-tree «A» duplicate tree `A`",
     )
 
 
@@ -227,11 +225,11 @@ def test_a_library_may_hold_more_than_is_used() -> None:
 def test_nothing_is_unused_where_a_name_is_unknown() -> None:
     assert_problems(
         "Root Main\nBehaviorTree Main\n    SubTree Pik\n" + PICK,
-        "3:13 error unknown-tree «Pik» there is no tree `Pik` in this file or in those it includes",
+        "3:13 error unknown-tree «Pik» unknown tree `Pik`; did you mean `Pick`?",
     )
     assert_problems(
         "Root Main\nBehaviorTree Main\n    Subtree Pick\n" + PICK,
-        "3:5 warning unknown-node «Subtree» unknown node `Subtree`",
+        "3:5 warning unknown-node «Subtree» unknown node `Subtree`; did you mean `SubTree`?",
     )
     assert_problems(
         "BehaviorTree Main\n    Pick\n" + PICK, "2:5 error unknown-node «Pick» `Pick` is a tree, not a node"
@@ -259,7 +257,7 @@ def test_the_mission_is_known(text: str) -> None:
 
 def test_naming_the_mission() -> None:
     two = "BehaviorTree A\n    X\nBehaviorTree B\n    X\n"
-    problem = "warning unknown-main-tree «A» nothing says which tree is the mission: no tree refers to `A`, `B`"
+    problem = "warning unknown-main-tree «A» unknown main tree: no tree refers to `A`, `B`"
     assert_problems(two, f"1:14 {problem}")
     assert_fix(two, "Make `B` the main tree", f"Root B\n{two}")
     assert_problems(f"Root ()\n{two}", f"2:14 {problem}")
@@ -274,14 +272,15 @@ def test_naming_the_mission() -> None:
 def test_one_diagnostic_for_all_the_nodes_too_many() -> None:
     assert_problems(
         "BehaviorTree A\n    X (\n        a = 1\n    )\n    Y\n    Z\n",
-        "5:5 error tree-root-count «Y» a tree has one node at its top, this one has 3",
+        "5:5 error tree-root-count «Y» a tree must have one node at its top, found 3",
     )
 
 
 def test_what_counts_as_the_node_of_a_tree() -> None:
     assert_clean('BehaviorTree A\n    xml "<X/>"\n')
     assert_problems(
-        "BehaviorTree\n    input a : int\n", "1:1 error tree-root-count «BehaviorTree» this tree has no node"
+        "BehaviorTree\n    input a : int\n",
+        "1:1 error tree-root-count «BehaviorTree» a tree must have one node at its top, found none",
     )
     assert_problems(
         "BehaviorTree A\n    = X\n",

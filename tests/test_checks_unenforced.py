@@ -56,7 +56,9 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
 def test_why_a_claim_is_not_enforced(clauses: str, why: str) -> None:
     signals = "signal n : 1 from {n} initially 0\nsignal bare : 1 initially 0\n"
     for action in ("halt", "fail"):
-        assert told(f"{clauses}|on violation {action}", signals) == [f"`on violation {action}` is not enforced: {why}"]
+        assert told(f"{clauses}|on violation {action}", signals) == [
+            f"the engine cannot enforce `on violation {action}`: {why}"
+        ]
     assert told(clauses, signals) == []
     assert told(f"{clauses}|on violation warn", signals) == []
 
@@ -87,20 +89,20 @@ def test_a_classic_constraint_is_hard_without_being_asked() -> None:
     text = 'Root Main\nBehaviorTree Main\n    Action A (satisfies QualityReq ID = "q" description = "SuccessIf {}")\n'
     assert findings(text.format("takes at most 5 s"), RULE) == []
     assert [each.partition("» ")[2] for each in findings(text.format("takes at least 5 s"), RULE)] == [
-        "this is not enforced: the engine can stop a node, and not make it do more"
+        "the engine cannot enforce this: the engine can stop a node, and not make it do more"
     ]
 
 
 def test_nodes_that_nothing_can_stand_around() -> None:
     tree = '->\n    Action A (_skipIf = "@x" _onSuccess = "@y := 1")\n    Condition C'
     assert told("A takes at most 5 s|on violation fail", tree=tree) == [
-        "`on violation fail` is not enforced: `A` may be skipped and has `_onSuccess`"
+        "the engine cannot enforce `on violation fail`: `A` may be skipped and has `_onSuccess`"
     ]
     # To halt the mission, something stands around its root.
     tree = "RunOnce\n    ->\n        Action A\n        Condition C"
     assert told("A takes at most 5 s|on violation fail", tree=tree) == []
     assert told("A takes at most 5 s|on violation halt", tree=tree) == [
-        "`on violation halt` is not enforced: `RunOnce` may be skipped from within, "
+        "the engine cannot enforce `on violation halt`: `RunOnce` may be skipped from within, "
         "and what stands around it could not be"
     ]
 
@@ -127,7 +129,8 @@ def test_nodes_of_included_files(main: str) -> None:
     workspace = Workspace.of(files("takes at most 5 s", main))
     found = {path: [each for each in check(workspace, path) if each.rule == RULE] for path in workspace.files}
     is_here = "# here" in main
-    why = "`on violation halt` is not enforced: `A` stands in an included file, which other missions may include; "
+    what = "the engine cannot enforce `on violation halt`"
+    why = f"{what}: `A` stands in an included file, which other missions may include; "
     assert [each.message for each in found.pop("main.btq")] == (
         [] if is_here else [f"{why}with --bundle it is enforced"]
     )
@@ -143,7 +146,7 @@ def test_a_node_of_this_file_that_another_one_attaches_it_to() -> None:
     }
     found = findings(texts.pop("main.btq"), RULE, **{path.removesuffix(".btq"): text for path, text in texts.items()})
     why = "the engine can stop a node, and not make it do more"
-    assert found == [f"5 warning «B» `on violation halt` is not enforced: {why}"]
+    assert found == [f"5 warning «B» the engine cannot enforce `on violation halt`: {why}"]
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)

@@ -61,7 +61,7 @@ def test_one_mistake_is_told_once() -> None:
     """What asks for it misspells its name, or cannot be read, or subtracts without blanks."""
     assert_problems(
         f'signal battery : % from {{b}}\nQualityReq rq1 "t"\n    leaves batery > 3 %\n{NODE}',
-        "3:12 error unknown-signal «batery» no signal `batery` is declared",
+        "3:12 error unknown-signal «batery» unknown signal `batery`; did you mean `battery`?",
     )
     assert_problems(
         f'signal battery : % from {{b}}\nQualityReq rq1 "t"\n    leaves > battery 3 %\n{NODE}',
@@ -69,7 +69,7 @@ def test_one_mistake_is_told_once() -> None:
     )
     assert_problems(
         f'signal a : % from {{a}}\nsignal b : % from {{b}}\nQualityReq rq1 "t"\n    leaves a-b > 3 %\n{NODE}',
-        "4:12 hint subtraction-without-blanks «a-b» `a-b` is one name, and nothing is called so",
+        "4:12 hint subtraction-without-blanks «a-b» undefined name `a-b`; write spaces around `-` to subtract",
     )
 
 

@@ -63,7 +63,7 @@ def test_help_says_what_there_is(btq: Run) -> None:
         (("check", ""), "check: a path is empty; `.` is this folder"),
         (("check", "--color", "never", ""), "check: a path is empty; `.` is this folder"),
         (("check", "--jobs", "-1"), "check: --jobs -1: a number of processes, or 0 for as many as it is worth"),
-        (("check", "--select", "unknown-nod"), "check: unknown rule `unknown-nod`: did you mean `unknown-node`?"),
+        (("check", "--select", "unknown-nod"), "check: unknown rule `unknown-nod`; did you mean `unknown-node`?"),
         (("format", ""), "format: a path is empty; `.` is this folder"),
     ],
 )
@@ -226,7 +226,7 @@ def test_xml_is_checked_and_shown_as_it_stands(btq: Run, tmp_path: Path) -> None
     (tmp_path / "tree.xml").write_text(XML)
     done = btq("check", "--fix", "tree.xml")
     assert done.stdout == (
-        "error[unknown-tree]: there is no tree `Pick` in this file or in those it includes\n"
+        "error[unknown-tree]: unknown tree `Pick`; neither this file nor its includes define it\n"
         " --> tree.xml:3:18\n"
         "  |\n"
         '2 |   <BehaviorTree ID="Main">\n'
@@ -352,7 +352,7 @@ def test_an_error_in_included_xml_is_told_once(btq: Run, tmp_path: Path) -> None
     tree = '<root BTCPP_format="4">\n<BehaviorTree ID="Old"><Sequence/></BehaviorTree>\n</root>\n'
     (tmp_path / "old.xml").write_text(tree)
     (tmp_path / "m.btq").write_text('include "old.xml"\nRoot Main\nBehaviorTree Main\n    SubTree Old\n')
-    message = "`Sequence` takes 1 or more children, it has none"
+    message = "`Sequence` requires 1 or more children, found none"
     at_include = f"m.btq:1:9: error[include-with-errors] `old.xml` has 1 error: {message}\n"
     itself = f"old.xml:2:25: error[child-count] {message}\n"
     for paths, told in ((["m.btq"], at_include), (["."], at_include), (["m.btq", "old.xml"], itself)):

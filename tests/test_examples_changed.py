@@ -27,7 +27,7 @@ CHANGES = {
         "navigation/navigation.btq",
         ("over last 500 activations", "over last 200 activations"),
         "window-too-small: 200 activations cannot show 99 % with a confidence of 95 %: "
-        "that takes 299 without any failure",
+        "this requires 299 without a failure",
     ),
     "a way to a node that is not there": (
         "pick-and-place/cell.btq",

@@ -73,8 +73,8 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("engin = 1", ["1:1: unknown key `engin`: did you mean `engine`?"]),
-        ("\n  include_paths = []", ["2:3: unknown key `include_paths`: did you mean `include-paths`?"]),
+        ("engin = 1", ["1:1: unknown key `engin`; did you mean `engine`?"]),
+        ("\n  include_paths = []", ["2:3: unknown key `include_paths`; did you mean `include-paths`?"]),
         ("[zebra]\nx = 1", ["1:2: unknown key `zebra`"]),
         ("zebra.x = 1", ["1:1: unknown key `zebra`"]),
         ('"a b" = 1', ["1:1: unknown key `a b`"]),
@@ -91,7 +91,7 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
         ('exclude = ["x", 1]', ["1:1: `exclude` must be a list of strings"]),
         (
             'select = [\n  "unknown-node",\n  "unknwn-node", # "unknwn-node"\n]',
-            ["3:3: unknown rule `unknwn-node`: did you mean `unknown-node`?"],
+            ["3:3: unknown rule `unknwn-node`; did you mean `unknown-node`?"],
         ),
         ("ignore = ['zebra']", ["1:11: unknown rule `zebra`"]),
         ("rules = 1", ["1:1: `rules` must be a table of rules and severities"]),
@@ -104,7 +104,7 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
             "[rules]\nunused-tree = []",
             ['2:1: `rules.unused-tree` must be one of "error", "warning", "info", "hint", "off"'],
         ),
-        ('exclude = ["""\nengin = 1\n"""]\nengin = 2', ["4:1: unknown key `engin`: did you mean `engine`?"]),
+        ('exclude = ["""\nengin = 1\n"""]\nengin = 2', ["4:1: unknown key `engin`; did you mean `engine`?"]),
         ("x = 1\ny = 2", ["1:1: unknown key `x`", "2:1: unknown key `y`"]),
         ("engine = \n", ["1:10: Invalid value"]),
         ("engine = ", ["1:10: Invalid value"]),
@@ -158,7 +158,7 @@ def test_severities_and_choice_of_rules() -> None:
 
 def test_unknown_rules_of_the_command_line() -> None:
     assert unknown_rule("unused-tree") is None
-    assert unknown_rule("unusd-tree") == "unknown rule `unusd-tree`: did you mean `unused-tree`?"
+    assert unknown_rule("unusd-tree") == "unknown rule `unusd-tree`; did you mean `unused-tree`?"
 
 
 @pytest.mark.parametrize(

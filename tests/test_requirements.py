@@ -258,12 +258,12 @@ def test_a_path_names_one_node(path: str, node: str, through: tuple[str, ...]) -
 @pytest.mark.parametrize(
     ("path", "message"),
     [
-        ("Turn", "`Turn` is the name of 3 nodes"),
-        ("Leg/Turn", "`Leg/Turn` is the name of 2 nodes"),
-        ("Walk/Leg", "no node `Leg` stands below `Walk`"),
-        ("First/Alone", "no node `Alone` stands below `First`"),
-        ("Jump", "nothing is called `Jump`"),
-        ("Leg/Leg/Leg/Walk", "no node `Walk` stands below `Leg/Leg/Leg`"),
+        ("Turn", "ambiguous path `Turn`: 3 nodes match"),
+        ("Leg/Turn", "ambiguous path `Leg/Turn`: 2 nodes match"),
+        ("Walk/Leg", "no node `Leg` below `Walk`"),
+        ("First/Alone", "no node `Alone` below `First`"),
+        ("Jump", "unknown node `Jump`"),
+        ("Leg/Leg/Leg/Walk", "no node `Walk` below `Leg/Leg/Leg`"),
     ],
 )
 def test_paths_that_name_none_or_several(path: str, message: str) -> None:
@@ -288,7 +288,7 @@ def test_a_tag_that_nothing_has() -> None:
     text = 'QualityReq slow "t"\n    takes at most 9 s\napply slow to every node tagged drivng\n'
     text += "BehaviorTree Main\n    A Home tags driving, heavy\n"
     (problem,) = resolved(text).problems
-    assert problem.diagnostic.message == "no node has the tag `drivng`"
+    assert problem.diagnostic.message == "no node has the tag `drivng`; did you mean `driving`?"
     assert [fix.title for fix in problem.diagnostic.fixes] == ["Replace `drivng` by `driving`"]
 
 
@@ -366,7 +366,7 @@ def test_two_values_of_one_rank() -> None:
     )
     assert len(found.problems) == 3
     assert found.problems[0].diagnostic.message == (
-        "`A One` gets two values from `slow`: limit = 9 s, other = 2 m and limit = 1 s, other = 2 m"
+        "`slow` has two values for `A One`: limit = 9 s, other = 2 m and limit = 1 s, other = 2 m"
     )
     assert found.applied == ()
 
@@ -446,38 +446,38 @@ def test_conditions() -> None:
 @pytest.mark.parametrize(
     ("text", "rule", "message"),
     [
-        ("speed <= 3 s", "unit-mismatch", "`speed` is speed, `3 s` is time"),
-        ("speed <= 3", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
-        ("-3 <= speed", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
-        ("speed + 3 < 5 m/s", "number-without-unit", "`speed` is in km/h, `3` has no unit"),
-        ("n < 3 m", "unit-mismatch", "`n` is a plain number, `3 m` is length"),
-        ("n < 3 %", "unit-mismatch", "`n` is a plain number, `3 %` is percentage"),
-        ("zone == 3", "unit-mismatch", "`zone` is a text, `3` is a plain number"),
-        ('zone < "a"', "unit-mismatch", "a text is neither more nor less: compare with `==` or `!=`"),
-        ("ok < 3", "unit-mismatch", "`ok` is true or false, `3` is a plain number"),
-        ("speed", "unit-mismatch", "a condition is expected, `speed` is speed"),
-        ("zone", "unit-mismatch", "a condition is expected, `zone` is a text"),
-        ("3 s", "unit-mismatch", "a condition is expected, `3 s` is time"),
-        ("speed * 2", "unit-mismatch", "a condition is expected, `speed * 2` is speed"),
-        ("ok + 1 < 2", "unit-mismatch", "`+` is for numbers, `ok` is true or false"),
-        ("max(zone) < 2", "unit-mismatch", "`max` is of numbers, `zone` is text"),
-        ("heat < 5 m", "unit-mismatch", "`heat` is temperature, `5 m` is length"),
-        ("heat + heat < 5 degC", "unit-mismatch", "a difference of temperatures is expected, `heat` is a temperature"),
-        ("heat * 2 < 5 K", "unit-mismatch", "`heat` is a temperature in degC, which cannot be multiplied"),
+        ("speed <= 3 s", "unit-mismatch", "cannot compare `speed` (a speed) with `3 s` (a time)"),
+        ("speed <= 3", "number-without-unit", "missing unit after `3`; `speed` is in km/h"),
+        ("-3 <= speed", "number-without-unit", "missing unit after `3`; `speed` is in km/h"),
+        ("speed + 3 < 5 m/s", "number-without-unit", "missing unit after `3`; `speed` is in km/h"),
+        ("n < 3 m", "unit-mismatch", "cannot compare `n` (a plain number) with `3 m` (a length)"),
+        ("n < 3 %", "unit-mismatch", "cannot compare `n` (a plain number) with `3 %` (a percentage)"),
+        ("zone == 3", "unit-mismatch", "cannot compare `zone` (a text) with `3` (a plain number)"),
+        ('zone < "a"', "unit-mismatch", "cannot order a text; compare with `==` or `!=`"),
+        ("ok < 3", "unit-mismatch", "cannot compare `ok` (true or false) with `3` (a plain number)"),
+        ("speed", "unit-mismatch", "expected a condition, found `speed` (a speed)"),
+        ("zone", "unit-mismatch", "expected a condition, found `zone` (a text)"),
+        ("3 s", "unit-mismatch", "expected a condition, found `3 s` (a time)"),
+        ("speed * 2", "unit-mismatch", "expected a condition, found `speed * 2` (a speed)"),
+        ("ok + 1 < 2", "unit-mismatch", "`+` requires numbers, found `ok` (true or false)"),
+        ("max(zone) < 2", "unit-mismatch", "`max` requires a number, but `zone` is a text"),
+        ("heat < 5 m", "unit-mismatch", "cannot compare `heat` (a temperature) with `5 m` (a length)"),
+        ("heat + heat < 5 degC", "unit-mismatch", "expected a temperature difference, found `heat` (a temperature)"),
+        ("heat * 2 < 5 K", "unit-mismatch", "cannot multiply or divide `heat`, a temperature in degC"),
         (
             "heat - heat < 5 degC",
             "unit-mismatch",
-            "a difference of temperatures is expected, `5 degC` is a temperature",
+            "expected a temperature difference, found `5 degC` (a temperature)",
         ),
         (
             "stddev(heat) < 5 degC",
             "unit-mismatch",
-            "a difference of temperatures is expected, `5 degC` is a temperature",
+            "expected a temperature difference, found `5 degC` (a temperature)",
         ),
         ("fast < 3", "unit-mismatch", "`fast` is a context, not a value"),
-        ("sped < 3 m/s", "unknown-signal", "no signal `sped` is declared"),
-        ("max(sped) < 3 m/s", "unknown-signal", "no signal `sped` is declared"),
-        ("(ok or fast) == 3", "unit-mismatch", "a value is expected, `ok or fast` is a condition"),
+        ("sped < 3 m/s", "unknown-signal", "unknown signal `sped`; did you mean `speed`?"),
+        ("max(sped) < 3 m/s", "unknown-signal", "unknown signal `sped`; did you mean `speed`?"),
+        ("(ok or fast) == 3", "unit-mismatch", "expected a value, found the condition `ok or fast`"),
     ],
 )
 def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> None:
@@ -489,19 +489,19 @@ def test_conditions_that_mean_nothing(text: str, rule: str, message: str) -> Non
 @pytest.mark.parametrize(
     ("clauses", "message"),
     [
-        ("takes at most 30 m", "a time is expected, `30 m` is length"),
-        ("takes at most 30", "a time is expected, `30` has no unit"),
-        ("takes at most way", "a time is expected, `way` is length"),
-        ("takes at most ok", "a time is expected, `ok` is true or false"),
-        ("uses at most 3 s of way", "length, as `way` measures it, is expected, `3 s` is time"),
-        ("uses at most 3 degC of heat", "a difference of temperatures is expected, `3 degC` is a temperature"),
-        ("uses at most 3 of zone", "what is used is a number, `zone` is text"),
-        ("tries at most 3 s", "a number is expected, `3 s` is time"),
-        ("runs at least 3 per 1 m", "a time is expected, `1 m` is length"),
-        ("takes at most 3 s in at least 3 s of runs", "a percentage is expected, `3 s` is time"),
-        ("takes at most 3 s goal 3 m", "a goal of the same dimension as the bound is expected, `3 m` is length"),
-        ("takes at most 3 s over last 3 m", "a time is expected, `3 m` is length"),
-        ("takes at most 3 s if fast else 4 m", "a time is expected, `4 m` is length"),
+        ("takes at most 30 m", "expected a time, found `30 m` (a length)"),
+        ("takes at most 30", "missing unit after `30`; expected a time"),
+        ("takes at most way", "expected a time, found `way` (a length)"),
+        ("takes at most ok", "expected a time, found `ok` (true or false)"),
+        ("uses at most 3 s of way", "expected a length (the dimension of `way`), found `3 s` (a time)"),
+        ("uses at most 3 degC of heat", "expected a temperature difference, found `3 degC` (a temperature)"),
+        ("uses at most 3 of zone", "`uses` requires a number, but `zone` is a text"),
+        ("tries at most 3 s", "expected a number, found `3 s` (a time)"),
+        ("runs at least 3 per 1 m", "expected a time, found `1 m` (a length)"),
+        ("takes at most 3 s in at least 3 s of runs", "expected a percentage, found `3 s` (a time)"),
+        ("takes at most 3 s goal 3 m", "expected a goal of the same dimension as the bound, found `3 m` (a length)"),
+        ("takes at most 3 s over last 3 m", "expected a time, found `3 m` (a length)"),
+        ("takes at most 3 s if fast else 4 m", "expected a time, found `4 m` (a length)"),
     ],
 )
 def test_bounds_of_the_wrong_sort(clauses: str, message: str) -> None:
@@ -516,7 +516,7 @@ def test_contexts_in_contexts() -> None:
     assert found.contexts["c30"] is not None
     assert found.contexts["c0"] is None
     found = resolved("context a : b or true\ncontext b : a\ncontext c : b or true\n")
-    assert [problem.diagnostic.message for problem in found.problems] == ["the context `b` speaks of itself"]
+    assert [problem.diagnostic.message for problem in found.problems] == ["the context `b` refers to itself"]
 
 
 def test_more_than_any_number() -> None:
@@ -524,9 +524,9 @@ def test_more_than_any_number() -> None:
         'QualityReq rq1 "t"\n    takes at most 1e999 s\n    tries at most 1e999\n    runs at least 1 per 1e308 h\n'
     )
     assert [(problem.diagnostic.rule, problem.diagnostic.message) for problem in found.problems] == [
-        ("invalid-literal", "`1e999 s` is more than any number"),
-        ("invalid-literal", "`1e999` is more than any number"),
-        ("invalid-literal", "`1e308 h` is more than any number"),
+        ("invalid-literal", "`1e999 s` exceeds the range of numbers"),
+        ("invalid-literal", "`1e999` exceeds the range of numbers"),
+        ("invalid-literal", "`1e308 h` exceeds the range of numbers"),
     ]
 
 

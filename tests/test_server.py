@@ -430,7 +430,7 @@ def test_rename(editor: Editor) -> None:
         editor.uri("skills.btq"): [(0, 7, 11, "Grasp")],
     }
     refused = editor.ask("textDocument/rename", **editor.at("main.btq", 2, 5), newName="Retry")
-    assert refused["error"] == {"code": -32803, "message": "`Retry` is a node of the engine"}
+    assert refused["error"] == {"code": -32803, "message": "`Retry` is a built-in node"}
 
 
 def test_rename_names_versions_to_an_editor_that_compares_them(tmp_path: Path) -> None:

@@ -42,8 +42,8 @@ def test_what_no_included_xml_has_is_nowhere() -> None:
     text = SKILLS.format(more="        SubTree Pikc\n        MoveBsae\n")
     assert_problems(
         text,
-        "main.btq:7:17 error unknown-tree «Pikc» there is no tree `Pikc` in this file or in those it includes",
-        "main.btq:8:9 warning unknown-node «MoveBsae» unknown node `MoveBsae`",
+        "main.btq:7:17 error unknown-tree «Pikc» unknown tree `Pikc`; did you mean `Pick`?",
+        "main.btq:8:9 warning unknown-node «MoveBsae» unknown node `MoveBsae`; did you mean `MoveBase`?",
     )
 
 
@@ -66,7 +66,7 @@ def test_the_engine_knows_no_namespaces() -> None:
     )
     workspace = workspace_of({"main.xml": text.replace("//- main.xml", "").strip()})
     notes = [note for found in check(workspace, "main.xml") for note in found.notes]
-    assert notes == ["it knows no namespaces of XML: to it the prefix is part of the name"]
+    assert notes == ["it does not support XML namespaces: the prefix is part of the name"]
 
 
 def test_what_could_not_be_read_may_hold_anything() -> None:
@@ -122,7 +122,9 @@ def test_explicit_forms_are_refused_only_directly_below_a_reactive_sequence() ->
 
 def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> None:
     text = "BehaviorTree T\n    R->\n        Ok\n        {node}\n"
-    apart = "it cannot be an XML tag, and the engine takes no other form here: put it in a Sequence of its own"
+    apart = (
+        "the name is not a valid XML tag, and the engine accepts no other form here: put it in a Sequence of its own"
+    )
 
     def found(node: str, version: str = "4.10", symbol: str = "R->") -> list[tuple[str, tuple[str, ...]]]:
         files = {"a.btq": text.replace("{node}", node).replace("R->", symbol)}
@@ -143,7 +145,7 @@ def test_what_can_be_no_tag_is_refused_directly_below_a_reactive_sequence() -> N
         assert found(node) == []  # a forbidden tag is told as such
     xml = '<root BTCPP_format="4"><BehaviorTree ID="T"><ReactiveSequence><Action ID="3d scan"/></ReactiveSequence>'
     (told,) = [each for each in problems(f"{xml}</BehaviorTree></root>") if each.rule == "explicit-in-reactive"]
-    assert told.notes == ("`Unknown node type: Action`, it says, and means the tag: put it in a Sequence of its own",)
+    assert told.notes == ("its message `Unknown node type: Action` refers to the tag: put it in a Sequence of its own",)
 
 
 def test_files_of_any_name_that_begin_like_xml_are_xml() -> None:
@@ -182,11 +184,11 @@ OLD = """\
 
 
 def test_notes_on_xml_speak_of_xml() -> None:
-    main = ("unknown-main-tree", ('`main_tree_to_execute="…"` of <root> names the main tree',))
+    main = ("unknown-main-tree", ('name the main tree with `main_tree_to_execute="…"` of <root>',))
     shortest = '`<Action ID="InitNeo4j"/>` in <TreeNodesModel>'
-    node = ("unknown-node", (f"the other nodes here have models; the shortest is {shortest}",))
+    node = ("unknown-node", (f"the other nodes of this file have models; the shortest is {shortest}",))
     why = "SequenceStar is version 3's name of SequenceWithMemory"
-    way = "`btq import` makes a .btq file of it that says this as version 4 does"
+    way = "`btq import` converts the file to .btq in the syntax of version 4"
     assert [(each.rule, each.notes) for each in problems(OLD)] == [main, ("not-an-engine-node", (why, way)), node]
     new = problems(OLD.replace("<root>", '<root BTCPP_format="4">'))
     assert [(each.rule, each.notes) for each in new] == [main, ("not-an-engine-node", (why,)), node]

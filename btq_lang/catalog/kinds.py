@@ -34,7 +34,7 @@ Execution: TypeAlias = "Literal['synchronous', 'asynchronous', 'as-children']"
 Content: TypeAlias = "Literal['value', 'script', 'key']"
 
 # The literals of a port that says what its node returns: with IDLE the engine ends with an error.
-RESULT: Final = "BT::NodeStatus but IDLE"
+RESULT: Final = "BT::NodeStatus except IDLE"
 
 
 class PortKind(Record):

@@ -23,14 +23,16 @@ class LiteralProblem(Record):
 
     Attributes:
         kind: refused: the engine ends with an error, at load or at the latest when it reads the port; trailing-text:
-            it drops what stands behind the number.
-        reason: in words, to stand behind "`text` ".
+            it drops the text after the number.
+        expected: what the type accepts, in words that follow "expected".
         reads: what the engine reads instead; None where it refuses.
+        found: the part of the literal that is wrong, in words that follow "found"; None for all of it.
     """
 
     kind: Literal["refused", "trailing-text"]
-    reason: str
+    expected: str
     reads: str | None = None
+    found: str | None = None
 
 
 @cache_of(1_000)  # the same values are given again and again
@@ -76,13 +78,13 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
         return _check_real(plain, text, version)
     if plain == "bool":
         known = text in ("0", "1", "true", "True", "TRUE", "false", "False", "FALSE")
-        return None if known else LiteralProblem("refused", "is no bool: true, false, 1 or 0")
+        return None if known else LiteralProblem("refused", "true, false, 1 or 0")
     if plain == RESULT:
         known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
-        return None if known else LiteralProblem("refused", "is no result: SUCCESS, FAILURE, SKIPPED or RUNNING")
+        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, SKIPPED or RUNNING")
     if plain == "BT::NodeStatus":
         known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
-        return None if known else LiteralProblem("refused", "is no status: SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE")
+        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE")
     return None
 
 
@@ -93,13 +95,13 @@ def _check_integer(plain: str, text: str) -> LiteralProblem | None:
     while end < len(text) and text[end] in "0123456789":
         end += 1
     if end == start:
-        return LiteralProblem("refused", f"is no {plain}")
+        return LiteralProblem("refused", _bare("an integer" if low else "an integer of 0 or more", text))
     # More digits than any type has are not worth converting, and beyond some thousands int() raises.
     digits = text[start:end].lstrip("0") or "0"
     value = int(digits) if len(digits) <= 20 else high + 2  # with a `-` too, beyond the range
     if not low <= (-value if start else value) <= high:
-        return LiteralProblem("refused", f"is out of range: {plain} is {low} to {high}")
-    return _rest(text, end)
+        return LiteralProblem("refused", f"an integer from {low} to {high}")
+    return _rest(text, end, "an integer")
 
 
 def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
@@ -108,27 +110,33 @@ def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
         return None  # as nearly all are
     number = (_REAL if at_least(version, "4.9") else _OLD_REAL).match(text)
     if number is None:
-        return LiteralProblem("refused", f"is no {plain}")
+        return LiteralProblem("refused", _bare("a number", text))
     value = _value(number[0])
     smallest, largest = _MAGNITUDES[plain]
     vanishes = abs(value) <= smallest and _mantissa(number[0]).strip("+-.0 \t\n\v\f\r") != ""
     if not _named(number[0]) and (abs(value) > largest or vanishes):
-        return LiteralProblem("refused", f"is out of range for {plain}")
-    return _rest(text, number.end())
+        return LiteralProblem("refused", f"a number in the range of {plain}")
+    return _rest(text, number.end(), "a number")
 
 
-def _rest(text: str, end: int) -> LiteralProblem | None:
-    """Blanks behind a number are dropped, too, but nobody misses them."""
+def _bare(number: str, text: str) -> str:
+    """What the type accepts; names a leading `+` or space if that is all that is wrong."""
+    digit = text.strip().removeprefix("+")[:1]
+    return f"{number} without a leading `+` or space" if "0" <= digit <= "9" else number
+
+
+def _rest(text: str, end: int, expected: str) -> LiteralProblem | None:
+    """Spaces after a number are dropped too, but nobody misses them."""
     if text[end:].isspace() or end == len(text):
         return None
-    return LiteralProblem("trailing-text", f"is read as {text[:end].strip()}: the rest is dropped", text[:end].strip())
+    return LiteralProblem("trailing-text", expected, text[:end].strip())
 
 
 def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralProblem | None:
     """Items between semicolons, the last one perhaps followed by one; since 4.9 also `json:[1, 2]`."""
     is_queue = "deque" in port_type
     if item == "bool" and not is_queue and not at_least(version, "4.7.3"):
-        return LiteralProblem("refused", "is no list of bool: 4.6 reads none from text")
+        return LiteralProblem("refused", "a blackboard entry (4.6 reads no list of bool from text)")
     if text.startswith("json:") and not is_queue and at_least(version, "4.9"):
         return _check_json(item, text[len("json:") :])
     items = text.split(";")
@@ -137,11 +145,13 @@ def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralPr
     found = [_check_one(item, one, version) for one in items]
     for one, problem in zip(items, found, strict=True):
         if problem is not None and problem.kind == "refused":
-            return LiteralProblem("refused", f"has an item that is refused: `{one}` {problem.reason}")
+            return LiteralProblem("refused", f"{problem.expected} as each item", found=_item(one))
     reads = [one if problem is None else problem.reads or "" for one, problem in zip(items, found, strict=True)]
     if reads == items:
         return None
-    return LiteralProblem("trailing-text", f"is read as {';'.join(reads)}: the rest is dropped", ";".join(reads))
+    return LiteralProblem(
+        "trailing-text", "an integer as each item" if item == "int" else "a number as each item", ";".join(reads)
+    )
 
 
 def _check_json(item: str, text: str) -> LiteralProblem | None:
@@ -151,15 +161,19 @@ def _check_json(item: str, text: str) -> LiteralProblem | None:
     try:
         values = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
-        return LiteralProblem("refused", "is not well-formed behind `json:`")
+        return LiteralProblem("refused", "well-formed JSON after `json:`")
     if not isinstance(values, list):
-        return LiteralProblem("refused", "is no list behind `json:`")
+        return LiteralProblem("refused", "a JSON list after `json:`")
     wanted: dict[str, tuple[type, ...]] = {"double": (int, float), "bool": (bool,), "std::string": (str,)}
     types = wanted.get(item, (int, float, bool))
     for value in values:
         if not isinstance(value, types) or (item == "double" and isinstance(value, bool)):
-            return LiteralProblem("refused", f"has an item that is no {item}: `{json.dumps(value)}`")
+            return LiteralProblem("refused", f"{_JSON_ITEMS[item]} as each item", found=_item(json.dumps(value)))
     return None
+
+
+def _item(text: str) -> str:
+    return f"the item `{text}`" if text else "an empty item"
 
 
 def _refuse_constant(word: str) -> None:
@@ -240,6 +254,12 @@ _SYNONYMS: Final = {
     "uint16_t": "unsigned short",
     "int8_t": "signed char",
     "uint8_t": "unsigned char",
+}
+_JSON_ITEMS: Final = {
+    "int": "a number, true or false",
+    "double": "a number",
+    "bool": "true or false",
+    "std::string": "a string",
 }
 _OTHER_TYPES: Final = frozenset(("double", "float", "bool", "std::string", "BT::NodeStatus"))
 # Up to the first a number that is not 0 becomes 0, beyond the second it becomes infinite: the engine refuses both.

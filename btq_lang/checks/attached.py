@@ -23,7 +23,7 @@ def other_word(view: View, entry: Entry, use: Use, rule: str, *, requirement: bo
     span = _alone(view, entry, use, word)
     fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` by `{other}`", span, other, safe=safe),) if span else ()
     message = f"`{use.name}` is a {is_}, not a {is_not}"
-    notes = ("a node satisfices qualities, and satisfies requirements",)
+    notes = ("`satisfices` names qualities, `satisfies` names requirements",)
     return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)
 
 

@@ -28,8 +28,8 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
         is_count = verb in _COUNTED
         if is_count and isinstance(claim.subject, Mission):
             span = Span(claim.start, claim.end)
-            message = f"a mission starts once in a run, so `{verb}` says nothing of it"
-            notes = ("name the node whose starts are counted: `MoveBase tries at most 3`",)
+            message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
+            notes = ("name the node whose starts to count: `MoveBase tries at most 3`",)
             yield Diagnostic("impossible-bound", span, message, notes=notes)
         elif bound is not None:
             for amount in walk(bound):
@@ -58,9 +58,9 @@ def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "uses-of-gauge",
             claim.resource.span,
-            f"`{claim.resource.text}` is neither a counter nor a level, so its use means nothing",
+            f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined",
             related=(view.defined_at(definition, "declared here"),),
-            notes=("uses of a counter are the value after less that before, of a level the other way round",),
+            notes=("the use of a counter is its final minus its initial value; the use of a level is the opposite",),
             fixes=tuple(
                 Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),))
                 for word in words
@@ -93,12 +93,12 @@ def _count(
     what = "attempts" if claim.verb.raw == "tries" else "starts"
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
-        message = f"`{_shown(amount)}` is no number of {what}"
+        message = f"expected a whole number of {what}, found `{_shown(amount)}`"
         if isinstance(claim.per, Word) and number > 0:
-            notes = ("a rate has whole numbers, and as long a time as that needs: `runs at least 1 per 2 s`",)
+            notes = ("write a whole number per a longer time: `runs at least 1 per 2 s`",)
     elif what == "attempts" and not is_lower and number < 1 and not _has_scope(requirement):
-        message = "a node that is tried at all is tried once: nothing keeps this but a node that never starts"
-        notes = ("the first start counts, too; without a second one it `tries at most 1`",)
+        message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
+        notes = ("the first start counts as well: write `tries at most 1` to allow no second one",)
     else:
         return
     fixes: tuple[Fix, ...] = ()
@@ -110,7 +110,7 @@ def _count(
 
 def _time(amount: Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
     if number < 0 or (number == 0 and not is_lower):
-        message = f"every time is more than `{_shown(amount)}`"
+        message = f"every duration exceeds `{_shown(amount)}`"
         yield Diagnostic("impossible-bound", amount.word.span, message)
 
 

@@ -28,7 +28,7 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
         if allowed is None:
             continue
         if allowed.low > most[0]:
-            message = f"{node.shown} takes at least {seconds(allowed.low)}, so it can never keep to `{most[1]}`"
+            message = f"{node.shown} takes at least {seconds(allowed.low)}, so it always violates `{most[1]}`"
         elif applied.requirement.odds is not None:
             continue
         else:
@@ -36,9 +36,9 @@ def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
             allowed = allowed if is_known else _held_against(claim, demanded.budgets.composed_of_known(node))
             if allowed is None or allowed.high <= most[0]:
                 continue
-            rest = "" if is_known else ", and that without what has no bound"
+            rest = "" if is_known else ", not counting steps without a bound"
             what = summed(together(allowed.terms))
-            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}`: {what}{rest}"
+            message = f"{node.shown} may take {seconds(allowed.high)}, more than `{most[1]}` allows: {what}{rest}"
         terms = together(allowed.terms)
         related = tuple(Related(term.node.place, _share(term)) for term in terms)
         yield place, Diagnostic("budget-exceeded", place.span, message, related=related)

@@ -45,15 +45,15 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
         notes: tuple[str, ...] = ()
         if seen.kind is not None and seen.kind.late_count and count:
             notes = ("the engine loads this and throws when the node is ticked",)
-        related = model_related(view, seen, "its model says so") if seen.node.category is None else ()
+        related = model_related(view, seen, "declared by its model") if seen.node.category is None else ()
         if most is not None and count > most:
             extra = seen.node.children[most]
             span = extra.head.span if isinstance(extra, Node) else Span(extra.start, extra.end)
-            related += (Related(Place(span), "the first one too many"),)
+            related += (Related(Place(span), "first extra child"),)
         yield Diagnostic(
             "child-count",
             seen.node.head.span,
-            f"{_called(seen)} takes {_range(least, most)}, it has {count or 'none'}",
+            f"{_called(seen)} requires {_range(least, most)}, found {count or 'none'}",
             related=related,
             notes=notes,
         )
@@ -69,7 +69,7 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
         by_children = _is_switch_by_children(seen)
         if by_children and not 3 <= count <= 7:
             message = f"`Switch` has {count or 'no'} child{'ren' if count != 1 else ''}"
-            note = "the engine has switches of 2 to 6 cases, with one child more for the default: 3 to 7 children"
+            note = "the engine supports 2 to 6 cases, each with a child, and one more child for the default"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,))
             continue
         number = count - 1 if by_children else int(seen.kind.tag[6:])
@@ -85,8 +85,8 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 note = f"with {count} children {note}: one child for each, and the last for the default"
             yield Diagnostic("switch-cases", extra[0].span, message, notes=(note,))
         elif missing:
-            message = f"{seen.shown} has no {' and no '.join(f'`{name}`' for name in missing)}"
-            note = "the engine says nothing about it and runs the default child"
+            message = f"{seen.shown} lacks {' and '.join(f'`{name}`' for name in missing)}"
+            note = "the engine does not report this and runs the default child"
             yield Diagnostic("switch-cases", node.head.span, message, notes=(note,), severity=Severity.WARNING)
 
 
@@ -104,10 +104,9 @@ def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "parallel-threshold",
                 value.span,
-                f"`{port}` is {threshold}, but there {'is' if count == 1 else 'are'} only {count} "
-                f"child{'ren' if count > 1 else ''}",
+                f"`{port}` is {threshold}, but the node has only {count} child{'ren' if count > 1 else ''}",
                 notes=("the engine throws when the node is ticked; -1 means all children",),
-                fixes=(replace_fix("Write `-1`: all children", value.span, "-1"),),
+                fixes=(replace_fix("Write `-1` for all children", value.span, "-1"),),
             )
 
 

@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 _ONCE: dict[type, str] = {
-    Odds: "how often it is to hold",
+    Odds: "how often it must hold",
     Confidence: "a confidence",
     Window: "a window",
     OnViolation: "what happens on violation",
     Goal: "a goal",
-    How: "how it is verified",
+    How: "how to verify it",
 }
 
 
@@ -64,8 +64,8 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield Diagnostic(
                     "clause-without-odds",
                     Span(clause.start, clause.end),
-                    f"{said} says nothing here: without odds one violation is enough",
-                    notes=("say how often it is to hold: `in at least 95 % of activations`",),
+                    f"{said} has no effect here: without odds a single violation violates the requirement",
+                    notes=("state how often it must hold: `in at least 95 % of activations`",),
                 )
 
 
@@ -80,7 +80,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
         named = {word.text for word in walk(requirement.clauses) if isinstance(word, Word)}
         for parameter in requirement.parameters:
             if parameter.name.text not in named:
-                message = f"no clause names the parameter `{parameter.name.text}`, so its value changes nothing"
+                message = f"no clause uses the parameter `{parameter.name.text}`, so its value has no effect"
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
@@ -91,8 +91,8 @@ def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diag
     return Diagnostic(
         "duplicate-clause",
         Span(clause.start, clause.end),
-        f"the requirement says {_ONCE[type(clause)]} already: `{said}`",
-        related=(Related(Place(Span(counts.start, counts.end)), "this one counts"),),
+        f"the requirement already states {_ONCE[type(clause)]}: `{said}`",
+        related=(Related(Place(Span(counts.start, counts.end)), "this one takes effect"),),
         fixes=tuple(
             replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=said == again)
             for words, each in removals

@@ -27,8 +27,8 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
                 yield Diagnostic(
                     "subtraction-without-blanks",
                     word.span,
-                    f"`{word.text}` is one name, and nothing is called so",
-                    notes=("`-` is part of a name; a subtraction has blanks on both sides",),
+                    f"undefined name `{word.text}`; write spaces around `-` to subtract",
+                    notes=("without spaces `-` is part of the name",),
                     fixes=(replace_fix(f"Write `{left} - {right}`", word.span, f"{left} - {right}", safe=True),),
                 )
                 break

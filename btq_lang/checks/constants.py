@@ -49,13 +49,15 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
 
 def _told(value: Word, met: Meeting, severity: Severity | None) -> Diagnostic:
     port = f"`{met.pair.key.text}` of `{met.node.head.text}`"
-    message = f"from {_TYPED_SINCE} on the engine makes a number of `{value.text}`, and no tree: {port} takes a text"
+    message = (
+        f"BehaviorTree.CPP {_TYPED_SINCE} and later refuse to load this tree: `{value.text}` is a number, {port} a text"
+    )
     return Diagnostic(
         "number-for-text",
         value.span,
         message,
-        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the port that takes a text"),),
-        notes=(f"give it an entry that holds the text: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
+        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the text port"),),
+        notes=(f"pass an entry that holds the text: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
         severity=severity,
     )
 

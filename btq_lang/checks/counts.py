@@ -36,18 +36,18 @@ def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
-    fixes = (replace_fix("Write `-1`: without end", value.span, "-1"),) if number < 0 else ()
+    fixes = (replace_fix("Write `-1` for endless", value.span, "-1"),) if number < 0 else ()
     return Diagnostic(
         "count-of-nothing",
         value.span,
         f"with `{value.raw}` {seen.shown} never runs its child",
-        notes=("-1 means without end, other numbers below 1 mean never",),
+        notes=("-1 means endless, other numbers below 1 mean never",),
         fixes=fixes,
     )
 
 
 def _timeout(value: Word) -> Diagnostic:
-    message = f"to the engine a Timeout of `{value.raw}` is none: it never ends its child"
+    message = f"a Timeout of `{value.raw}` is disabled: it never halts its child"
     return Diagnostic("count-of-nothing", value.span, message)
 
 

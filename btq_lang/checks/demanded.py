@@ -280,7 +280,7 @@ def values(bounded: Bounded) -> list[tuple[float, str]]:
 def seconds(value: float) -> str:
     """A duration as people say it: `250 ms`, `45 s`, `2.5 min`."""
     if value == inf:
-        return "for ever"
+        return "forever"
     if 0.0 < value < 1.0:
         return f"{value * 1000:.4g} ms"
     for size, unit in ((3600.0, "h"), (60.0, "min")):

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
     from btq_lang.workspace import Workspace
 
+NOWHERE = "; neither this file nor its includes define it"
+
 
 def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An included file that cannot be found."""
@@ -39,8 +41,8 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic(
         "missing-include",
         include.path.span,
-        f"there is no file `{path}`" if path else "this include names no file",
-        notes=(f"looked for in {places}; `include-paths` in btq.toml adds folders",),
+        f"cannot find the file `{path}`" if path else "missing file name after `include`",
+        notes=(f"searched {places}; add folders with `include-paths` in btq.toml",),
         fixes=fixes,
     )
 
@@ -58,7 +60,7 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
         "cyclic-include",
         include.path.span,
         f"this file includes {how}",
-        notes=("the engine follows such a circle until it crashes",),
+        notes=("the engine follows the cycle until it crashes",),
     )
 
 
@@ -74,15 +76,15 @@ def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         place, message = errors[0]
         shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
-        which = f"`{shown}`" if path == target else f"`{shown}`, which it includes,"
-        notes: tuple[str, ...] = ("no file that includes it can be built",)
+        which = f"`{shown}`" if path == target else f"`{shown}`, which that file includes,"
+        notes: tuple[str, ...] = ("`btq build` refuses every file that includes it",)
         if len(errors) > 1 and not is_btq(path):  # a folder's XML is checked only where it is named
-            notes += (f"`btq check {shown}` shows them all",)
+            notes += (f"run `btq check {shown}` to see all of them",)
         yield Diagnostic(
             "include-with-errors",
             include.path.span,
             f"{which} has {len(errors)} error{'s' if len(errors) > 1 else ''}: {message}",
-            related=(Related(place, "the first one" if len(errors) > 1 else "here"),),
+            related=(Related(place, "first error" if len(errors) > 1 else "here"),),
             notes=notes,
         )
         return

@@ -11,7 +11,7 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.near import distance
+from btq_lang.near import did_you_mean, distance
 from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.symbols import Symbol
@@ -46,7 +46,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
             if not is_torn(entry, seen):
-                message = f"this {word.raw} has no ID: `{word.raw} <ID>`"
+                message = f"missing ID of this {word.raw}: write `{word.raw} <ID>`"
                 yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
         elif name is None:
             continue
@@ -56,7 +56,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # no node of the engine, which is told
         elif (category := _category_meant(seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` by `{category}`", name.span, category)
-            message = f"`{name.text}` is a node here: did you mean `{category}`?"
+            message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
             yield from _unknown(view, entry, seen, name)
@@ -78,8 +78,8 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             notes = (known.why, *_way_in(view, known))
             yield Diagnostic("not-an-engine-node", name.span, message, notes=notes, fixes=fixes)
         elif (meant := _quoted_alias(seen, name)) is not None and not _is_refused(view, seen, name):
-            note = f"in quotes a kind is the XML tag, and the engine's node is called {meant.tag}"
-            fix = replace_fix("Take off the quotes", name.span, name.text)
+            note = f"a quoted kind is the XML tag, and the engine's tag is {meant.tag}"
+            fix = replace_fix("Remove the quotes", name.span, name.text)
             yield Diagnostic("not-an-engine-node", name.span, message, notes=(note,), fixes=(fix,))
 
 
@@ -91,11 +91,11 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None:
                 continue
-            pin = f'if that is what you run, say `engine = "{project.target}"` in btq.toml'
+            pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
             yield Diagnostic(
                 "newer-engine-node",
                 seen.id.span,
-                f"`{seen.kind.tag}` came with BehaviorTree.CPP {seen.kind.since}; {missing[0]} does not have it",
+                f"`{seen.kind.tag}` requires BehaviorTree.CPP {seen.kind.since}; {missing[0]} does not have it",
                 notes=() if project.pinned else (pin,),
                 severity=None if project.pinned else Severity.WARNING,
             )
@@ -114,8 +114,8 @@ def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
     own = view.nodes(entry)
     if own and len(given) >= _MANY:
         shown = ", ".join(f"`{name}`" for name in given[:3])
-        message = f"no node has a model here, so the ports of {len(given)} are not checked: {shown} …"
-        notes = ("declare them, `Action …` with its ports, or include the file that does",)
+        message = f"no models in scope, so btq cannot check the ports of {len(given)} nodes: {shown} …"
+        notes = ("declare the nodes (`Action …` with its ports), or include the file that declares them",)
         yield Diagnostic("no-models", own[0].node.head.span, message, notes=notes)
 
 
@@ -142,12 +142,12 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
         written_as = seen.node.category
         if written_as is None or category is None or category == written_as.raw:
             continue
-        who = "the engine has it as" if seen.kind is not None else "its model says"
+        who = "the engine defines" if seen.kind is not None else "its model declares"
         least, most = CHILDREN[category]
         fits = least <= len(seen.node.children) and (most is None or len(seen.node.children) <= most)
         safe = category != "SubTree" and (fits or seen.kind is not None)
         fix = replace_fix(f"Replace it by `{category}`", written_as.span, category, safe=safe)
-        message = f"{seen.shown} is written as {written_as.raw}, {who} {category}"
+        message = f"{seen.shown} is written as {written_as.raw}, but {who} {category}"
         related = model_related(view, seen, "the model")
         yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
 
@@ -158,8 +158,8 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in nodes.given:
         for pair in seen.node.attributes:
             if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
-                message = f"`{pair.key.raw} =` is a port of {seen.shown} here"
-                note = f"what a node {pair.key.raw} stands behind the word: `{pair.key.raw} {pair.value.raw}`"
+                message = f"btq reads `{pair.key.raw} =` as a port of {seen.shown} here"
+                note = f"write `{pair.key.raw}` without `=`: `{pair.key.raw} {pair.value.raw}`"
                 fix = replace_fix("Remove `=`", Span(pair.key.end, pair.value.start), " ")
                 yield Diagnostic("clause-as-node", pair.key.span, message, notes=(note,), fixes=(fix,))
     for seen in nodes.strangers:  # no built-in is called so
@@ -170,16 +170,16 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if any(problem.span.start == name.start for problem in entry.diagnostics):
             continue  # the parser has said so already
         if meant:
-            message = f"`{name.text}` is a node here: did you mean `{meant}`?"
+            message = f"btq reads `{name.text}` as a node here; did you mean `{meant}`?"
             fix = replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, meant)
             yield Diagnostic("clause-as-node", name.span, message, fixes=(fix,))
             continue
         yield Diagnostic(
             "clause-as-node",
             name.span,
-            f"`{name.text}` begins a clause of a requirement, but here it is a node",
-            notes=("clauses stand in the block of a requirement: `satisfies QualityReq …` on a line of its own",),
-            fixes=(replace_fix(f'Write "{name.text}" if a node is meant', name.span, quote(name.text)),),
+            f"btq reads `{name.text}` as a node here, although it starts a requirement clause",
+            notes=("indent the clause below its requirement, `satisfies QualityReq …` on a line of its own",),
+            fixes=(replace_fix(f'Write "{name.text}" for a node of that name', name.span, quote(name.text)),),
         )
 
 
@@ -187,15 +187,18 @@ def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A second signal, context or quality of one name, or a second model with another interface."""
     for first, second in view.clashes(entry, *_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
-            both = (view.defined_at(first, "the first one, which counts"), view.defined_at(second, "the second one"))
-            yield _second(second.symbol, include_place(entry), both, "this file brings a second definition of")
+            both = (
+                view.defined_at(first, "first definition, which takes effect"),
+                view.defined_at(second, "second definition"),
+            )
+            yield _second(second.symbol, include_place(entry), both, "this file includes a second definition of")
     for symbol in view.summary(entry).symbols:
         if symbol.kind not in _DEFINED_ONCE or not view.scope.is_repeated(symbol.kind, symbol.name):
             continue
         counts = view.scope.find(symbol.kind, symbol.name)
         if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
-            one = (view.defined_at(counts, "the first one, which counts"),)
-            yield _second(symbol, symbol.span, one, "there are two definitions of")
+            one = (view.defined_at(counts, "first definition, which takes effect"),)
+            yield _second(symbol, symbol.span, one, "duplicate definition of")
 
 
 def declared_category(seen: SeenNode) -> str | None:
@@ -251,7 +254,7 @@ def _way_in(view: View, known: KnownWord) -> tuple[str, ...]:
     origin = view.look_up(lookups.origin)
     if origin is None or known.word not in _TRANSLATED or _SAYS_VERSION_4.search(origin.text):
         return ()
-    return ("`btq import` makes a .btq file of it that says this as version 4 does",)
+    return ("`btq import` converts the file to .btq in the syntax of version 4",)
 
 
 def _quoted_alias(seen: SeenNode, name: Word) -> NodeKind | None:
@@ -279,10 +282,10 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         shortest = f"a line `{category} {written(name.text)}`"
         if view.is_xml:
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
-        others = "the other nodes here" if has_palette else "most nodes here"
+        others = "the other nodes of this file" if has_palette else "most nodes of this file"
         notes = (f"{others} have models; the shortest is {shortest}",)
     severity = None if likely or has_palette else Severity.HINT
-    message = f"unknown node `{name.text}`"
+    message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)
 
 
@@ -334,7 +337,7 @@ def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
         "unknown-node",
         name.span,
         f"`{name.text}` is a tree, not a node",
-        related=(view.defined_at(tree, "the tree"),) if tree is not None else (),
+        related=(view.defined_at(tree, "tree definition"),) if tree is not None else (),
         fixes=(replace_fix(f"Write `SubTree {written(name.text)}`", span, text),),
         severity=Severity.ERROR,
     )

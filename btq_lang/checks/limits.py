@@ -34,7 +34,7 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
             Diagnostic(
                 "limit-too-small",
                 place.span,
-                f"the engine cannot hold anything to `{most[1]}`: it counts whole milliseconds, and 0 is no limit",
+                f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit",
             ),
         )
 
@@ -51,9 +51,9 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
             Diagnostic(
                 "limit-on-synchronous-node",
                 place.span,
-                f"{node.shown} completes within one tick, so nothing can stop it after {_typed(claim)}",
-                related=(Related(node.place, "never RUNNING"),),
-                notes=("the requirement is monitored all the same; leave `on violation` out, or limit an action",),
+                f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
+                related=(Related(node.place, "never returns RUNNING"),),
+                notes=("btq still monitors the requirement; remove `on violation`, or limit an action instead",),
             ),
         )
 
@@ -71,7 +71,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
         if success is not None and success.low > limit:
             continue
         message = f"`{most[1]}` is never reached: a Timeout halts {node.shown} after {seconds(limit)}"
-        related = (Related(above.place, "the Timeout"),)
+        related = (Related(above.place, "Timeout"),)
         yield place, Diagnostic("dead-bound", place.span, message, related=related)
 
 
@@ -97,11 +97,11 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
                     continue
                 if bound[2].place == tight[2].place:  # the same claim, which may reach the node by several ways
                     continue
-                message = f"the same requirement asks for at {word} `{tight[1]}`, so `{bound[1]}` says nothing"
+                message = f"the same requirement already demands at {word} `{tight[1]}`, so `{bound[1]}` has no effect"
                 at = tight[3]
                 if at.path == bound[3].path and at.anchor is bound[3].anchor:
                     at = Place(at.span)  # without its item, which would be hashed for each of many claims
-                related = (Related(at, "the tighter bound"),) if tight[3].span != bound[3].span else ()
+                related = (Related(at, "tighter bound"),) if tight[3].span != bound[3].span else ()
                 yield bound[3], Diagnostic("dead-bound", bound[3].span, message, related=related)
 
 
@@ -125,7 +125,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
         else:
             continue
         place = Place(Span(clause.start, clause.end), requirement.path, requirement.item)
-        related = (Related(claim.place, "the bound"),)
+        related = (Related(claim.place, "bound"),)
         yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
 
 
@@ -144,10 +144,10 @@ def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
         related = tuple(Related(loop.place, f"{times} times") for loop, times in loops)
         allowed = int(most[0])
         if count > allowed:
-            message = f"{node.shown} may be tried {count} times, {allowed} are allowed"
+            message = f"{node.shown} may be tried {count} times, but the requirement allows {allowed}"
             yield place, Diagnostic("attempts-mismatch", place.span, message, related=related)
         elif count < allowed:
-            message = f"{node.shown} is tried {count} times at most, so the {allowed} allowed are never reached"
+            message = f"{node.shown} is tried at most {count} times and never reaches the {allowed} allowed attempts"
             yield place, Diagnostic("attempts-mismatch", place.span, message, related=related, severity=Severity.HINT)
 
 
@@ -171,8 +171,10 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
             if before_least is not None and before_most is not None and before_least[0] > before_most[0]:
                 continue  # told
             other = least[key] if high is not None and most[key][2] is place else most[key]
-            related = () if other[2] is place else (Related(other[2], "the other bound"),)
-            message = f"{node.shown} cannot keep both: at least `{least[key][1]}`, at most `{most[key][1]}`"
+            related = () if other[2] is place else (Related(other[2], "other bound"),)
+            message = (
+                f"{node.shown} cannot satisfy both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
+            )
             yield place, Diagnostic("contradicting-bounds", place.span, message, related=related)
 
 

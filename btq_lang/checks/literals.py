@@ -16,7 +16,7 @@ from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
-from btq_lang.units import convert, dimension_name, parse_unit
+from btq_lang.units import a_dimension, convert, parse_unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -55,22 +55,24 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         text = value.text
         if target.port == "_autoremap" and is_pointer(text):
-            note = "the engine reads this attribute before there are entries: write true, or leave it out"
-            yield Diagnostic("invalid-literal", value.span, f"`{text}` is no bool here", notes=(note,))
+            note = "the engine reads this attribute before any entry exists: write `true`, or remove it"
+            yield Diagnostic(
+                "invalid-literal", value.span, f"expected true or false for `_autoremap`, found `{text}`", notes=(note,)
+            )
             continue
         problem = check_literal(target.type, text, version)
         if problem is None:
             continue
-        notes = (f"the port `{target.port}` is of type {target.type}",)
+        notes = (f"`{target.port}` has the type {target.type}",)
         if not target.converts:
-            message = f"{_shown(text)} is no {target.type}"
+            message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
             yield Diagnostic("invalid-literal", value.span, message, notes=notes, severity=Severity.WARNING)
         elif problem.kind == "refused":
-            message = f"{_shown(text)} {problem.reason}"
+            message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
             fixes = _accepted(target, value, version)
             yield Diagnostic("invalid-literal", value.span, message, notes=notes, fixes=fixes)
         else:
-            message = f"the engine reads `{text}` as {problem.reads} and drops the rest without a word"
+            message = f"the engine reads `{text}` as {problem.reads} and silently drops the rest"
             yield Diagnostic(
                 "trailing-text-in-number", value.span, message, fixes=_as_quantity(value, target, problem.reads)
             )
@@ -90,14 +92,14 @@ def quantity_on_unitless_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "quantity-on-unitless-port",
                 value.span,
-                f"nobody knows the unit of the port `{target.port}`",
+                f"unknown unit of the port `{target.port}`",
                 notes=(
-                    "write the number in the unit that the node expects, and say that unit in the port's description",
-                    *([f"for a node that reads the unit itself, write it in quotes: `{quote(value.raw)}`"] * as_text),
+                    "write the number in the unit that the node expects, and state that unit in the port's description",
+                    *([f"if the node reads the unit itself, use quotes: `{quote(value.raw)}`"] * as_text),
                 ),
             )
         elif unit.dimension != wanted.dimension:
-            message = f"`{target.port}` takes {dimension_name(wanted)}, `{value.raw}` is {dimension_name(unit)}"
+            message = f"expected {a_dimension(wanted)} for `{target.port}`, found `{value.raw}` ({a_dimension(unit)})"
             yield Diagnostic("quantity-on-unitless-port", value.span, message)
 
 
@@ -108,13 +110,15 @@ def _converted(target: _Target, value: Word, version: str) -> Iterator[Diagnosti
     if quantity is None or wanted is None or quantity[1].dimension != wanted.dimension:
         return  # told by others
     number = convert(quantity[0], quantity[1], wanted)
-    notes = (f"the port `{target.port}` is of type {target.type}, in {target.unit}",)
+    notes = (f"`{target.port}` has the type {target.type} and the unit {target.unit}",)
     if not isfinite(number):
-        message = f"`{value.raw}` is more than any number"
+        message = f"`{value.raw}` exceeds the range of numbers"
     elif target.type in _INTEGERS and not _is_whole(number):
-        message = f"`{value.raw}` is no whole number of {target.unit}"
+        message = f"expected a whole number of {target.unit} for `{target.port}`, found `{value.raw}`"
     elif problem := check_literal(target.type, _plain(number), version):
-        message = f"`{value.raw}`: {_plain(number)} {target.unit} {problem.reason}"
+        message = (
+            f"expected {problem.expected} for `{target.port}`, found `{value.raw}` ({_plain(number)} {target.unit})"
+        )
     else:
         return
     yield Diagnostic("invalid-literal", value.span, message, notes=notes)
@@ -204,7 +208,7 @@ def _as_value(text: str) -> str:
 
 
 def _shown(text: str) -> str:
-    return f"`{text}`" if text else "an empty text"
+    return f"`{text}`" if text else "an empty string"
 
 
 def _plain(number: float) -> str:

@@ -131,7 +131,7 @@ def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
         but: the tree that a name is wanted for.
     """
     target = workspace.project.target
-    taken = dict.fromkeys(BUILTINS, "a node of the engine")
+    taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}
     for each in sorted(workspace.linked(path)):
         for kind, name in sorted(workspace.files[each].defined_names, key=lambda one: one[1]):

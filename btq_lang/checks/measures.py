@@ -47,8 +47,8 @@ def _all_without_subject(view: View) -> dict[int, list[Diagnostic]]:
                 diagnostic = Diagnostic(
                     "requirement-without-subject",
                     claim.place.span,
-                    f"nobody says what `{claim.text}` is about",
-                    notes=("name a node in front of it, or attach the requirement to one with `satisfies`",),
+                    f"missing subject of `{claim.text}`",
+                    notes=("write a node before the verb, or attach the requirement to a node with `satisfies`",),
                 )
                 found.setdefault(id(requirement.item), []).append(diagnostic)
     return found

@@ -59,7 +59,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
         if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
             continue
         if not view.ask(_is_created, tree, mention.name) and view.scope.complete:
-            message = f"in a script `{mention.name}` is the name of an entry: the engine's word is `{meant}`"
+            message = f"a script reads `{mention.name}` as the name of an entry; did you mean `{meant}`?"
             fix = replace_fix(f"Write `{meant}`", mention.span, meant)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
 
@@ -113,11 +113,11 @@ def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: 
     """is_single: the other name stands in one place, too, so that it may be the slip."""
     name = mention.name
     other = next((each for each in mentions if each.name == meant), None)
-    message = f"nothing else names `{name}`: is it `{meant}`?"
+    message = f"`{name}` appears only here; did you mean `{meant}`?"
     if not mention.writes and mention.reads:
-        message = f"this reads `{name}`, and nothing writes it: is it `{meant}`?"
+        message = f"nothing writes `{name}`, which is read here; did you mean `{meant}`?"
     elif not mention.reads and mention.writes:
-        message = f"this writes `{name}`, and nothing reads it: is it `{meant}`?"
+        message = f"nothing reads `{name}`, which is written here; did you mean `{meant}`?"
     fixes = [replace_fix(f"Replace `{name}` by `{meant}`", mention.span, meant)]
     if is_single and other is not None:
         fixes.append(replace_fix(f"Replace `{meant}` by `{name}`", other.span, name))

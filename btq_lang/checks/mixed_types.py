@@ -172,18 +172,18 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
             span = value.span
         seen, port = _port(view, first.port)
         later_seen, later_port = _port(view, later.port)
-        related = [_related(view, first.port, f"here it becomes {first.type}")]
+        related = [_related(view, first.port, f"created here as {first.type}")]
         if later.port.tree != tree or later.port.node != later.node:
-            related.append(_related(view, later.port, f"it is given to this port of {later.type}"))
+            related.append(_related(view, later.port, f"used here as {later.type}"))
         yield Diagnostic(
             "entry-with-two-types",
             span,
-            f"`{{{key}}}` is made as {first.type} by `{port.key.text}` of {seen.shown}, "
-            f"and `{later_port.key.text}` of {later_seen.shown} is of type {later.type}",
+            f"`{port.key.text}` of {seen.shown} creates `{{{key}}}` as {first.type}, "
+            f"but `{later_port.key.text}` of {later_seen.shown} has the type {later.type}",
             related=tuple(related),
             notes=(
-                "the engine makes no tree where an entry has two types: give each its own, "
-                "a script copies: `other := entry`",
+                "BehaviorTree.CPP refuses to load this tree; use an entry for each type, "
+                "and copy the value in a script: `other := entry`",
             ),
             severity=severity,
         )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
 
-_NO_NAMESPACES = ("it knows no namespaces of XML: to it the prefix is part of the name",)
+_NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
 _UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
 
 
@@ -66,12 +66,12 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         related = (Related(Place(other.span), "the first one"),)
         if seen.is_subtree:
-            message = f"two SubTrees of this tree are called `{text}`: the engine refuses that"
+            message = f"the engine refuses two SubTrees with the name `{text}` in one tree"
             severity = Severity.ERROR if view.is_xml else Severity.WARNING
             notes = () if view.is_xml else ("`btq build` writes the second one under another name",)
             yield Diagnostic("duplicate-instance-name", name.span, message, related, notes, severity=severity)
         else:
-            message = f"two nodes of this tree are called `{text}`: in logs both have the same path"
+            message = f"two nodes of this tree have the name `{text}`: logs show the same path for both"
             yield Diagnostic("duplicate-instance-name", name.span, message, related=related)
 
 
@@ -93,7 +93,7 @@ def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version:
     if reason := instance_name_problem(label.text, version):
         yield _refused("instance", label, reason)
     if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
-        refused = _refused("instance", label, "it is empty, as that of the main tree is")
+        refused = _refused("instance", label, "it is empty, like the name of the main tree")
         note = "`btq build` leaves it out"
         yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
 
@@ -104,8 +104,8 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
         problem.span.start <= tree.end for problem in entry.diagnostics
     ):
         span = Span(tree.start, tree.start + len("BehaviorTree"))
-        note = "the engine takes a tree without ID only if nothing else is in the file"
-        yield Diagnostic("forbidden-name", span, "this tree has no ID: `BehaviorTree <ID>`", notes=(note,))
+        note = "the engine accepts a tree without an ID only as the only tree of a file"
+        yield Diagnostic("forbidden-name", span, "missing ID of this tree: write `BehaviorTree <ID>`", notes=(note,))
 
 
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
@@ -116,7 +116,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
     taken = view.look_up(lookups.taken_names, name.text).get(legal)
     note = f"`btq build` writes it as `{legal}`"
     if taken is not None:
-        note = f"`btq build` cannot write it as `{legal}`: that is {taken}"
+        note = f"`btq build` cannot write it as `{legal}`, which is {taken}"
     return Diagnostic(
         "forbidden-name",
         name.span,
@@ -144,7 +144,7 @@ def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
     places = [view.place(definition)]
     places += [Place(use.use.span, use.path, use.entry.item) for use in view.workspace.references(definition)]
     changes = tuple(Change(place, written(legal)) for place in places)
-    return (Fix(f"Rename it to `{legal}` wherever it is named", changes),)
+    return (Fix(f"Rename it to `{legal}` everywhere", changes),)
 
 
 def _explicit(seen: SeenNode, name: Word) -> tuple[Fix, ...]:
@@ -152,5 +152,5 @@ def _explicit(seen: SeenNode, name: Word) -> tuple[Fix, ...]:
     if name.text in ("", "Root", "root"):
         return ()
     category = likely_category(seen)
-    title = f"Write its category: `{category} {written(name.text)}`"
+    title = f"Add its category: `{category} {written(name.text)}`"
     return (replace_fix(title, Span(name.start, name.start), f"{category} "),)

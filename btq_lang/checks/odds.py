@@ -32,11 +32,11 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
             continue
         likely, parts, rest = ensured
         message = (
-            f"{_called(applied, node)} is to do so in {_percent(wanted)}; "
-            f"what is demanded below it ensures {_percent(likely)}{rest}"
+            f"{_called(applied, node)} must do so in {_percent(wanted)}, but "
+            f"the requirements below it ensure only {_percent(likely)}{rest}"
         )
-        related = tuple(Related(part.place, f"misses in up to {_percent(share)}") for part, share in parts if share)
-        notes = ("what each of several steps may miss adds up (the union bound)",) if len(related) > 1 else ()
+        related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
+        notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
         yield place, Diagnostic("odds-beyond-children", place.span, message, related=related, notes=notes)
 
 
@@ -52,12 +52,12 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
     needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
     if needed <= window.count:
         return
-    reason = f"that takes {needed} without any failure" if needed < inf else "no number of them can"
+    reason = f"this requires {needed} without a failure" if needed < inf else "no window is large enough"
     message = (
         f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
         f"{_percent(confidence)}: {reason}"
     )
-    related = (Related(odds.place, "what is to be shown"),)
+    related = (Related(odds.place, "odds to show"),)
     yield window.place, Diagnostic("window-too-small", window.place.span, message, related=related)
 
 
@@ -70,7 +70,7 @@ def _ensured(
     limit = most[0] if most is not None else inf
     if claim.verb == "succeeds":
         success = budgets.success(node)
-        rest = "" if success is not None else ", even if all else succeeds"
+        rest = "" if success is not None else ", even if every other step succeeds"
         success = success or budgets.success_of_known(node)
         if success is None or success.seconds > limit:
             return None

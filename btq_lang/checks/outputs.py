@@ -37,17 +37,15 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         name = value.text if is_name(value.text) else pair.key.text
         fixes = (replace_fix(f"Write the entry `{{{name}}}`", value.span, f"{{{name}}}"),) if is_name(name) else ()
-        notes = ("so it is at many outputs here: right if the program takes the value for an entry's name",)
-        message = (
-            f"`{pair.key.text}` of {seen.shown} is an output: it is written to an entry, and `{value.raw}` is none"
-        )
+        notes = ("many outputs of this file have a literal; ignore this if your program reads it as an entry's name",)
+        message = f"expected a blackboard entry for the output `{pair.key.text}` of {seen.shown}, found `{value.raw}`"
         yield Diagnostic(
             "literal-for-output",
             value.span,
             message,
             notes=notes
             if is_custom
-            else (f"the engine refuses it: it {problem.reason}",)
+            else (f"the engine refuses this value: the port expects {problem.expected}",)
             if is_refused and problem
             else (),
             fixes=() if is_custom else fixes,

@@ -43,7 +43,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "classic-placeholder",
             seen.node.kind.span,
-            f"`{seen.node.kind.text}` without code stands for {what} `{name}`",
+            f"`{seen.node.kind.text}` without code is a placeholder of {what} `{name}`",
             fixes=(fix,) if fix is not None else (),
         )
 
@@ -64,7 +64,7 @@ def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 "placeholder-clash",
                 name.span,
                 f"`{other}` and `{name.text}` both become the node ID `{legal}`",
-                related=(Related(first, "the first one"),),
+                related=(Related(first, "first one"),),
             )
 
 
@@ -109,7 +109,7 @@ def _id_of(name: str) -> str:
 def _taken(view: View, name: str) -> str | None:
     """Why a placeholder cannot become a node of this ID."""
     if name in BUILTINS:
-        return "which is a node of the engine"
+        return "which is a built-in node"
     return "which is the name of a tree" if view.defines(Kind.TREE, name) else None
 
 

@@ -11,7 +11,7 @@ from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.near import distance, near
+from btq_lang.near import did_you_mean, distance, near
 from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
@@ -43,7 +43,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "unknown-port",
                 key.span,
-                f"{seen.shown} has no port `{key.text}`",
+                f"{seen.shown} has no port `{key.text}`{did_you_mean(likely)}",
                 related=_declared(view, seen),
                 notes=(f"it has {names}" if known else "it has no ports",),
                 fixes=fixes,
@@ -73,12 +73,16 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "missing-port",
             seen.node.head.span,
-            f"{seen.shown} needs {'a value' if len(missing) == 1 else 'values'} for its "
+            f"{seen.shown} requires {'a value' if len(missing) == 1 else 'values'} for its "
             f"port{'s' if len(missing) > 1 else ''} {names}",
             related=_declared(view, seen),
             notes=(
                 *(f"`{port.name}`: {port.doc}" for port in missing if port.doc),
-                *(f"`{port.name}` can have none: take it out of the model" for port in missing if port.name[:1] == "_"),
+                *(
+                    f"the engine cannot set `{port.name}`: remove it from the model"
+                    for port in missing
+                    if port.name[:1] == "_"
+                ),
             ),
             fixes=_passing_on(view, entry, seen, missing),
             # Whether the robot's program asks for an input is known to nobody but the program.
@@ -92,7 +96,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for pair in entry.item.attributes:
             kind = RESERVED_ATTRIBUTES.get(pair.key.text)
             if kind is not None and kind.is_script:
-                message = f"`{pair.key.text}` does nothing on a BehaviorTree: put it on the tree's node"
+                message = f"`{pair.key.text}` has no effect on a BehaviorTree: move it to the tree's node"
                 yield Diagnostic("unknown-attribute", pair.key.span, message)
     for seen in view.seen(entry).given:
         for pair in seen.node.attributes:
@@ -101,8 +105,8 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 continue
             likely = (_OF_TODAY[key],) if key in _OF_TODAY else near(key, _KEPT)
             if not likely:
-                kept = "it keeps it for the node's own code, from 4.7 on"
-                refused = f"{view.project.target} takes it for a port, and refuses a node that has none of that name"
+                kept = "from 4.7 on the engine keeps it for the node's own code"
+                refused = f"{view.project.target} reads it as a port, and refuses a node without a port of that name"
                 is_port = is_port_name(key, view.project.target)
                 yield Diagnostic(
                     "unknown-attribute",
@@ -113,7 +117,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 )
             elif not (key in _OF_TODAY and _is_off(pair.value)):
                 fixes = tuple(replace_fix(f"Replace `{key}` by `{name}`", pair.key.span, name) for name in likely)
-                message = f"`{key}` is no attribute that the engine reads: it ignores it without a word"
+                message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
 
 
@@ -127,8 +131,8 @@ def duplicate_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for pair in pairs:
             key = pair.key.text
             if key in first:
-                related = (Related(Place(first[key].span), "the first value, which counts"),)
-                yield Diagnostic("duplicate-attribute", pair.key.span, f"`{key}` has a value already", related=related)
+                related = (Related(Place(first[key].span), "first value, which takes effect"),)
+                yield Diagnostic("duplicate-attribute", pair.key.span, f"duplicate value for `{key}`", related=related)
             first.setdefault(key, pair)
 
 
@@ -147,8 +151,8 @@ def duplicate_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield Diagnostic(
                     "duplicate-definition",
                     name.span,
-                    f"there are two ports `{name.text}`",
-                    related=(Related(Place(first[name.text].span), "the first one"),),
+                    f"duplicate port `{name.text}`",
+                    related=(Related(Place(first[name.text].span), "first one"),),
                     severity=Severity.WARNING,
                 )
 
@@ -165,7 +169,7 @@ def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if port.type is None or not likely:
                 continue
             fix = replace_fix(f"Replace `{name}` by `{likely[0]}`", port.type.span, likely[0])
-            message = f"is the type `{name}` one of the robot's program, or is it `{likely[0]}`?"
+            message = f"unknown type `{name}`; did you mean `{likely[0]}`?"
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
 
@@ -264,7 +268,7 @@ def _forbidden_id(seen: SeenNode) -> Iterator[Diagnostic]:
         return
     for pair in node.attributes:
         if pair.key.text == "ID":
-            message = f"{seen.shown} takes no `ID`: the engine refuses it"
+            message = f"the engine refuses the attribute `ID` on {seen.shown}"
             fix = replace_fix("Replace `ID` by `name`", pair.key.span, "name")
             fixes = () if node.name is not None else (fix,)
             yield Diagnostic("unknown-port", pair.key.span, message, fixes=fixes)
@@ -284,7 +288,7 @@ def _declared(view: View, seen: SeenNode) -> tuple[Related, ...]:
     definition = seen.definition
     if seen.is_subtree and seen.node.id is not None:
         definition = view.scope.find(Kind.TREE, seen.node.id.text)
-    return (view.defined_at(definition, "its ports are declared here"),) if definition else ()
+    return (view.defined_at(definition, "ports declared here"),) if definition else ()
 
 
 def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPort]) -> tuple[Fix, ...]:

@@ -34,17 +34,17 @@ def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
                 continue
             is_failure = key == "_failureIf"
-            watched = "`R->` with a ScriptCondition in front of it, or a requirement with `keeps`"
+            watched = "`R->` with a ScriptCondition in front of the node, or a requirement with `keeps`"
             if not is_failure:
-                watched = "`R?` with a ScriptCondition in front of it"
+                watched = "`R?` with a ScriptCondition in front of the node"
             start = "a requirement with `needs`, or `->`" if is_failure else "`?`"
             yield Diagnostic(
                 "one-shot-monitor",
                 pair.key.span,
-                f"`{key}` is asked once, when {seen.shown} starts, and not while it runs",
+                f"the engine checks `{key}` once, when {seen.shown} starts, and not while it runs",
                 notes=(
-                    f"{watched} asks at every tick",
-                    f"where it is to be asked once, {start} with a ScriptCondition in front of it says so",
+                    f"to check it at every tick, use {watched}",
+                    f"to check it once, use {start} with a ScriptCondition in front of the node",
                 ),
                 severity=None if is_failure else Severity.HINT,
             )
@@ -68,10 +68,10 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "while-skip-is-success",
             pair.key.span,
-            f"when `_while` becomes false, {seen.shown} is halted and {parent.shown} goes on as if it had succeeded",
+            f"when `_while` becomes false, {seen.shown} is halted and {parent.shown} continues as if it had succeeded",
             notes=(
-                "a halted node is SKIPPED, and a Sequence takes that for done",
-                "to fail instead: `R->` with a ScriptCondition in front of it, or a requirement with `keeps`",
+                "the halted node returns SKIPPED, which a Sequence treats as done",
+                "to fail instead, use `R->` with a ScriptCondition in front of the node, or a requirement with `keeps`",
             ),
         )
 
@@ -91,8 +91,8 @@ def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "skipped-condition",
             pair.key.span,
-            f"where `{pair.key.text}` skips {seen.shown}, {parent.shown} throws, and the mission ends",
-            notes=(f"put {parent.shown} below `{pair.key.text}`, or say in a ScriptCondition what is to be asked",),
+            f"if `{pair.key.text}` skips {seen.shown}, {parent.shown} throws and the mission ends",
+            notes=(f"move `{pair.key.text}` to {parent.shown}, or check it in a ScriptCondition",),
         )
 
 

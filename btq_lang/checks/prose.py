@@ -34,7 +34,7 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "prose-constraint",
             in_source(requirement.text, keyword),
-            f"no tool can check what stands behind `{requirement.text.text[keyword.start : keyword.end]}`",
+            f"no tool can check the prose after `{requirement.text.text[keyword.start : keyword.end]}`",
             notes=_notes(clauses),
             fixes=_fixes(view, entry, requirement.text, symbol.name, clauses),
         )
@@ -88,10 +88,8 @@ def _signals(view: View) -> dict[str, Dimension]:
 
 def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
     if not clauses:
-        return (
-            "a clause can be checked: `takes at most 30 s`, or `keeps speed < 0.5 m/s` with a `signal speed : m/s`",
-        )
-    return (f"as a clause that can be checked: {', '.join(f'`{clause}`' for clause in clauses)}",)
+        return ("write a clause: `takes at most 30 s`, or `keeps speed < 0.5 m/s` with `signal speed : m/s`",)
+    return (f"write it as a clause: {', '.join(f'`{clause}`' for clause in clauses)}",)
 
 
 def _fixes(view: View, entry: Entry, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:

@@ -6,6 +6,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.name_kinds import Kind
+from btq_lang.near import did_you_mean
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Qualities
@@ -23,7 +24,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if isinstance(entry.item, Qualities) and entry.item.edition is not None:
         edition = entry.item.edition
         if edition.text not in EDITIONS:
-            message = f"there is no quality model `{edition.text}`"
+            message = f"unknown quality model `{edition.text}`"
             fixes = tuple(replace_fix(f"Replace it by `{name}`", edition.span, name) for name in EDITIONS)
             yield Diagnostic("unknown-quality", edition.span, message, fixes=fixes)
     for use, match in _matches(view, entry):
@@ -41,8 +42,8 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "unknown-quality",
             use.span,
-            f"`{use.name}` is no quality of {view.edition}",
-            notes=() if meant else (f"a quality of your own is declared with a line `quality {written(_last(use))}`",),
+            f"unknown quality `{use.name}`{did_you_mean(meant)}",
+            notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
             fixes=tuple(
                 replace_fix(f"Replace `{use.name}` by `{name}`", _whole(view, entry, use), name) for name in meant
             ),
@@ -57,11 +58,11 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
         is_alias = match.kind == "alias"
         if match.safe:
             new = match.candidates[0].id
-            message = f"`{use.name}` is another word for `{new}`"
+            message = f"`{use.name}` is an alias of `{new}`"
             if not is_alias:
                 message = f"`{use.name}` is called `{new}` in {view.edition}"
         else:
-            message = f"`{use.name}` is no name of {view.edition}"
+            message = f"{view.edition} does not define `{use.name}`"
         # "`x` is another word for y" says nothing new behind such a message.
         notes = (match.explanation,) if match.explanation and not (is_alias and match.safe) else ()
         yield Diagnostic(
@@ -87,7 +88,7 @@ def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "ambiguous-quality",
             use.span,
-            f"`{use.name}` means several qualities" + (f"; it is read as `{usual}`" if usual else ""),
+            f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
             notes=(match.explanation,) if match.explanation else (),
             fixes=tuple(
                 replace_fix(f"Replace it by `{candidate.id}`: {candidate.name}", _whole(view, entry, use), candidate.id)

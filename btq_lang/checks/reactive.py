@@ -71,14 +71,16 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
             shown = (
                 f"write <{name.text}/>" if name is not None and can_be_tag else "write the node's own name as its tag"
             )
-            note = f"`Unknown node type: {category.raw}`, it says, and means the tag: {shown if can_be_tag else _APART}"
+            note = (
+                f"its message `Unknown node type: {category.raw}` refers to the tag: {shown if can_be_tag else _APART}"
+            )
             message = f"the engine refuses <{category.raw}> directly below a ReactiveSequence"
             yield Diagnostic("explicit-in-reactive", category.span, message, notes=(note,))
         elif name is None or can_be_tag or seen.kind is not None or seen.is_placeholder:
             continue
         elif category is not None or not is_forbidden:  # else forbidden-name tells it
             message = f"the engine refuses `{name.text}` directly below a ReactiveSequence"
-            note = f"it cannot be an XML tag, and the engine takes no other form here: {_APART}"
+            note = f"the name is not a valid XML tag, and the engine accepts no other form here: {_APART}"
             yield Diagnostic("explicit-in-reactive", name.span, message, notes=(note,))
 
 
@@ -108,24 +110,24 @@ def _second_async_sequence(seen: SeenNode, version: str) -> Diagnostic | None:
         "reactive-multiple-async",
         found[1].head.span,
         f"the engine refuses a second AsyncSequence in {seen.shown}",
-        related=(Related(Place(found[0].head.span), "the first one"),),
+        related=(Related(Place(found[0].head.span), "first one"),),
         severity=Severity.ERROR,
     )
 
 
 def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) -> Diagnostic:
     other, this = called(first), called(child)
-    message = f"{this} never gets further than one tick: {other} then starts again and halts it"
+    message = f"{this} never gets beyond its first tick: {other} restarts and halts it"
     if not surely:
-        message = f"if {other} takes longer than one tick, it starts again whenever {this} is RUNNING, and halts it"
+        message = f"if {other} takes longer than one tick, it restarts whenever {this} is RUNNING, and halts it"
     return Diagnostic(
         "reactive-multiple-async",
         child.head.span,
         message,
-        related=(Related(Place(first.head.span), "what starts again"),),
+        related=(Related(Place(first.head.span), "restarts"),),
         notes=(
-            f"at every tick {seen.shown} begins with its first child, and a child that is RUNNING halts all others",
-            f"only the last child of {seen.shown} should take its time; put the steps of a plan into a `->`",
+            f"{seen.shown} starts with its first child at every tick; a child that returns RUNNING halts all others",
+            f"only the last child of {seen.shown} should run over several ticks; put the steps of a plan into a `->`",
         ),
         severity=None if surely else Severity.HINT,
     )
@@ -167,16 +169,16 @@ def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: 
     return Diagnostic(
         "condition-without-recheck",
         kind.span,
-        f"while {called(branch)} runs, {called(guard.node)} is not asked again",
+        f"while {called(branch)} runs, {called(guard.node)} is not checked again",
         related=(
-            Related(Place(guard.node.head.span), "asked once, and then no more until the Fallback has completed"),
+            Related(Place(guard.node.head.span), "checked once, and then not again until the Fallback has completed"),
             Related(Place(branch.head.span), "not interrupted"),
         ),
         notes=(
-            f"{seen.shown} goes on with the child that is running; `R?` begins with the first one at every tick",
-            "that is right where the choice is to be made once",
+            f"{seen.shown} resumes the running child; `R?` starts with the first child at every tick",
+            "keep it if the choice is to be made only once",
         ),
-        fixes=(replace_fix("Ask at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
+        fixes=(replace_fix("Check at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
     )
 
 

@@ -47,14 +47,14 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
             Diagnostic(
                 "guard-never-renewed",
                 told.span,
-                f"no node writes {names} while {node.shown} runs, so this is decided when that starts",
+                f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts",
                 related=(
-                    *(Related(writer.place, "this may write it, and not meanwhile") for writer in writers[:3]),
-                    Related(node.place, "the guarded node"),
+                    *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
+                    Related(node.place, "guarded node"),
                 ),
                 notes=(
-                    "write it beside the node: below the same Parallel, or before it in a reactive control, `R->`",
-                    "right where the robot's program writes it, too; what is to hold at the start says `needs`",
+                    "write it beside the node: below the same Parallel, or before it in a reactive control node, `R->`",
+                    "ignore this if the robot's program writes it; to check only at the start, write `needs`",
                 ),
             ),
         )

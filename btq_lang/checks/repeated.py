@@ -77,8 +77,8 @@ def _repeated(view: View, entry: Entry, names: list[_Named]) -> Iterator[Diagnos
         yield Diagnostic(
             "named-twice",
             named.span,
-            f"a second `{text[named.span.start : named.span.end]}` changes nothing",
-            related=(Related(Place(first[named.says]), "this one is enough"),),
+            f"duplicate `{text[named.span.start : named.span.end]}` has no effect",
+            related=(Related(Place(first[named.says]), "first one"),),
             fixes=(_removal(named.clause, *named.beside, text),) if named.clause is not None else (),
             tags=(Tag.UNNECESSARY,),
         )

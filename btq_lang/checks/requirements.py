@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from btq_lang.checks.includes import include_fix
+from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.name_kinds import Kind
+from btq_lang.near import did_you_mean
 from btq_lang.symbols import Symbol, same_requirement
 from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 
@@ -32,11 +33,9 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield other_word(view, entry, use, "unknown-requirement", requirement=False, safe=is_exact)
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
-        fixes += tuple(
-            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
-            for name in view.near(use.name, Kind.REQUIREMENT)
-        )
-        message = f"no requirement `{use.name}` is defined here or in an included file"
+        likely = view.near(use.name, Kind.REQUIREMENT)
+        fixes += tuple(replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name)) for name in likely)
+        message = f"unknown requirement `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         yield Diagnostic("unknown-requirement", use.span, message, fixes=fixes)
 
 
@@ -44,8 +43,8 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """One ID with two texts; one ID with one text is one requirement in several places."""
     for first, second in view.clashes(entry, Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
-            related = (view.defined_at(first, _COUNTS), view.defined_at(second, "the other definition"))
-            message = f"this file brings a second requirement `{second.symbol.name}`, which says something else"
+            related = (view.defined_at(first, _COUNTS), view.defined_at(second, "other definition"))
+            message = f"this file includes a second requirement `{second.symbol.name}` with different content"
             yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
     for symbol in view.summary(entry).symbols:
         if symbol.kind is not Kind.REQUIREMENT or not view.scope.is_repeated(symbol.kind, symbol.name):
@@ -55,11 +54,9 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "conflicting-requirement",
                 symbol.span,
-                f"the requirement `{symbol.name}` says something else in another place",
+                f"the requirement `{symbol.name}` has another definition that differs",
                 related=(view.defined_at(counts, _COUNTS),),
-                notes=(
-                    f"to refer to it, write `satisfies {written(symbol.name)}`; another requirement needs another ID",
-                ),
+                notes=(f"write `satisfies {written(symbol.name)}` to refer to it, or use another ID",),
             )
 
 
@@ -82,8 +79,8 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic(
         "unused-requirement",
         requirement.name.span,
-        f"nothing satisfies the requirement `{requirement.name.text}`",
-        notes=(f"attach it to a node with `satisfies {written(requirement.name.text)}`, or with `apply`",),
+        f"unused requirement `{requirement.name.text}`: no node satisfies it",
+        notes=(f"attach it to a node with `satisfies {written(requirement.name.text)}` or `apply`",),
         tags=(Tag.UNNECESSARY,),
     )
 
@@ -99,14 +96,14 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
             continue  # what it says may be what could not be read
-        message = f"the requirement `{symbol.name}` says nothing"
+        message = f"the requirement `{symbol.name}` demands nothing"
         if action is not None:
-            message += f" that could be violated, so `on violation {action}` does nothing"
-        note = "give it a clause such as `takes at most 30 s`" + ("" if action else ", or a text in quotes")
+            message += f" that can be violated, so `on violation {action}` has no effect"
+        note = "add a clause such as `takes at most 30 s`" + ("" if action else ", or a text in quotes")
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
-_COUNTS = "the first definition, which counts"
+_COUNTS = "first definition, which takes effect"
 
 
 def _differ(symbol: Symbol, first: Symbol) -> bool:

@@ -32,7 +32,7 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 if problem.rule == "empty-script":
                     yield _empty(seen, pair.value, found)
                 elif problem.rule == "script-version" and not project.pinned:
-                    pin = f'if that is what you run, say `engine = "{project.target}"` in btq.toml'
+                    pin = f'if you run {project.target}, set `engine = "{project.target}"` in btq.toml'
                     yield replace(found, notes=(*found.notes, pin))
                 else:
                     yield found
@@ -65,5 +65,5 @@ def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic,
 def _empty(seen: SeenNode, value: Word, found: Diagnostic) -> Diagnostic:
     """The whole value is the place; the engine runs a Script without any character, and refuses all others."""
     if seen.kind is not None and seen.kind.tag == "Script" and value.text == "":
-        return replace(found, span=value.span, message="this script does nothing", severity=Severity.WARNING)
+        return replace(found, span=value.span, message="empty script", severity=Severity.WARNING)
     return replace(found, span=value.span)

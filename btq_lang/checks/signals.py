@@ -74,7 +74,7 @@ def _never_written(
     for signal in here:
         key = (signal.key or "").removeprefix("@")
         if key in written and signal.name in guarding and (writer := isolated(found, writes, key)) is not None:
-            message = f"`{signal.name}` is read from the root's `{key}`, and the tree `{writer.tree}` writes its own"
+            message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
             yield signal.place, Diagnostic("signal-never-written", signal.place.span, message, related, notes)
@@ -89,8 +89,10 @@ def _never_written(
             Diagnostic(
                 "signal-never-written",
                 signal.place.span,
-                f"no port and no script writes `{key}`, from which `{signal.name}` is read",
-                notes=(f"is it `{likely[0]}`?",) if likely else ("right where the robot's program writes it",),
+                f"no port and no script writes `{key}`, the entry of `{signal.name}`",
+                notes=(f"did you mean `{likely[0]}`?",)
+                if likely
+                else ("ignore this if the robot's program writes it",),
                 severity=None if likely else Severity.HINT,
             ),
         )
@@ -109,11 +111,9 @@ def _of_text(demanded: Demanded, here: list[Signal], entries: list[Entries]) -> 
             port = declared_port(demanded, node, pair.key.text)
             if port is None or port.type is None or port.direction.raw == "input" or not is_text(port.type.text):
                 continue
-            message = (
-                f"`{signal.name}` is a number, and `{pair.key.text}` of `{node.node.head.text}` writes a text there"
-            )
+            message = f"`{signal.name}` is a number, but `{pair.key.text}` of `{node.node.head.text}` writes text"
             related = (Related(node.place, "written here"),)
-            notes = ("the engine reads a number from the text, and ends the mission where there is none",)
+            notes = ("the engine reads a number from the text, and ends the mission if the text contains none",)
             yield (
                 signal.place,
                 Diagnostic("unit-mismatch", signal.place.span, message, related, notes, severity=Severity.WARNING),
@@ -130,7 +130,7 @@ def _may_be_unset(demanded: Demanded, guards: Iterable[Guard]) -> Iterator[Found
             if signal.key is None or signal.initially is not None:
                 continue
             signals[signal.name] = signal
-            told.setdefault(signal.name, []).append(Related(place, "this is checked by the engine"))
+            told.setdefault(signal.name, []).append(Related(place, "the engine checks this"))
     for name, related in told.items():
         signal = signals[name]
         place = signal.place if signal.place.path == demanded.view.path else related[0].place
@@ -139,8 +139,8 @@ def _may_be_unset(demanded: Demanded, guards: Iterable[Guard]) -> Iterator[Found
             Diagnostic(
                 "signal-may-be-unset",
                 place.span,
-                f"`{name}` has no value before its first sample, and a guard that reads it then ends the mission",
+                f"`{name}` has no initial value: a guard that reads it before anything writes it ends the mission",
                 related=tuple(related[:3]),
-                notes=("give it one: `initially …`",),
+                notes=("add an initial value: `initially …`",),
             ),
         )

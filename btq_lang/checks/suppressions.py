@@ -59,7 +59,7 @@ class Suppressions:
             return
         if match[1] and not match[3]:
             span = Span(*match.span()).shifted(token.start)
-            message = "this comment silences nothing: its `[` has no `]`"
+            message = "this comment silences nothing: missing `]`"
             self.useless.append(Diagnostic("useless-ignore", span, message))
         elif match[2] is None:
             self._everything.add(line)
@@ -75,5 +75,5 @@ def _useless(name: str, span: Span) -> Iterator[Diagnostic]:
         fixes = tuple(replace_fix(f"Replace `{name}` by `{rule}`", span, rule) for rule in likely)
         yield Diagnostic("useless-ignore", span, message, fixes=fixes)
     elif name in UNREADABLE:
-        message = f"`{name}` cannot be silenced: with such a mistake the file is not read as it stands"
+        message = f"`{name}` cannot be silenced: after this error btq cannot read the file reliably"
         yield Diagnostic("useless-ignore", span, message)

@@ -38,8 +38,8 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
                 "swallowed-failure",
                 place.span,
                 f"when {node.shown} fails because of this, {above.shown} {reason}",
-                related=(Related(above.place, "the failure ends here"), Related(node.place, "the node that fails")),
-                notes=("that may be meant; to stop the mission, write `on violation halt`",),
+                related=(Related(above.place, "the failure stops here"), Related(node.place, "failing node")),
+                notes=("to stop the mission instead, write `on violation halt`",),
             ),
         )
 
@@ -103,7 +103,7 @@ def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
     tag = parent.tag
     last = child.index == len(parent.node.children) - 1
     if tag in ("Fallback", "AsyncFallback", "ReactiveFallback"):
-        return None if last else "goes on with its next child"
+        return None if last else "continues with its next child"
     if tag == "RetryUntilSuccessful":
         return None if port_count(parent, "num_attempts") == 1 else "tries again"
     if tag in ("ForceSuccess", "Inverter"):
@@ -111,7 +111,7 @@ def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
     if tag in ("IfThenElse", "WhileDoElse") and child.index == 0:
         return "runs its third child" if len(parent.node.children) == 3 else None
     if tag in ("Parallel", "ParallelAll") and _failures_needed(parent) > 1:
-        return "goes on: it takes more than one failure"
+        return "continues: it fails only after more than one failure"
     return None
 
 

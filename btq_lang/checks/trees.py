@@ -6,10 +6,11 @@ from btq_lang.blocks import OF_ITS_OWN
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import calls, lookups
-from btq_lang.checks.includes import include_fix
+from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.name_kinds import Kind
+from btq_lang.near import did_you_mean
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Model, Node, Tree
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 _MOST_NAMES = 5  # in one message
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open
-_LAST_WINS = "the engine does not complain: it runs the last one it reads"
+_LAST_WINS = "the engine does not report this: it runs the last one that it reads"
 
 
 def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -33,7 +34,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
         if word is not None and is_nameless and not is_torn(entry, seen):
-            yield Diagnostic("unknown-tree", word.span, "this SubTree names no tree: `SubTree <ID>`")
+            yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
     for use in view.uses(entry, Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name):
             continue
@@ -41,12 +42,11 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
             continue  # the engine has read all files before it makes a tree, and nobody adds an include to others' XML
-        fixes = tuple(include_fix(view, path) for path in view.elsewhere(Kind.TREE, use.name)[:3])
-        fixes += tuple(
-            replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name))
-            for name in view.near(use.name, Kind.TREE)
-        )
-        message = f"there is no tree `{use.name}` in this file or in those it includes"
+        elsewhere = view.elsewhere(Kind.TREE, use.name)
+        fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
+        likely = view.near(use.name, Kind.TREE)
+        fixes += tuple(replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name)) for name in likely)
+        message = f"unknown tree `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         model = view.scope.find(Kind.MODEL, use.name)
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
@@ -64,11 +64,11 @@ def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
         level = levels[id(seen)] = 1 if seen.parent is None else levels[id(seen.parent)] + 1
         if level <= _DEEPEST_OF_4_6:
             continue
-        pin = f'if you run a later one, say `engine = "{project.target}"` in btq.toml'
+        pin = f'if you run a later version, set `engine = "{project.target}"` in btq.toml'
         yield Diagnostic(
             "nested-too-deep",
             seen.node.head.span,
-            f"more than {_DEEPEST_OF_4_6} levels of nodes: BehaviorTree.CPP 4.6 reads no more",
+            f"BehaviorTree.CPP 4.6 reads at most {_DEEPEST_OF_4_6} levels of nodes",
             notes=(OF_ITS_OWN,) if project.pinned else (OF_ITS_OWN, pin),
             severity=None if project.pinned else Severity.WARNING,
         )
@@ -81,8 +81,8 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "duplicate-tree",
             include_place(entry),
-            f"this file brings a second tree `{second.symbol.name}`",
-            related=(view.defined_at(first, "the first one"), view.defined_at(second, "the second one")),
+            f"this file includes a second tree `{second.symbol.name}`",
+            related=(view.defined_at(first, "first one"), view.defined_at(second, "second one")),
             notes=(_LAST_WINS,),
         )
     if not isinstance(entry.item, Tree) or entry.item.name is None:
@@ -95,8 +95,8 @@ def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "duplicate-tree",
             name.span,
-            f"there are two trees `{name.text}`",
-            related=(view.defined_at(first_one, "the first one"),),
+            f"duplicate tree `{name.text}`",
+            related=(view.defined_at(first_one, "first one"),),
             notes=(_LAST_WINS,),
         )
 
@@ -118,7 +118,7 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         "recursive-tree",
         span,
         f"the tree `{name}` contains itself" + (f": {way}" if len(circle) > 2 else ""),
-        notes=("the engine refuses it from 4.9 on and crashes before; repeat with Repeat or Retry instead",),
+        notes=("BehaviorTree.CPP 4.9 and later refuse it, earlier versions crash; use Repeat or Retry instead",),
     )
 
 
@@ -135,12 +135,12 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return  # another tree of that name counts, which is told
     users = calls.callers(view, name.text)
     if not users:
-        message = f"nothing refers to the tree `{name.text}`, and the mission is `{main}`"
+        message = f"unused tree `{name.text}`: nothing refers to it, and the main tree is `{main}`"
         yield Diagnostic("unused-tree", name.span, message, tags=(Tag.UNNECESSARY,))
         return
     user = view.scope.find(Kind.TREE, users[0])
-    related = (view.defined_at(user, "it is used here, but this tree is not reached either"),) if user else ()
-    message = f"the mission `{main}` never reaches the tree `{name.text}`"
+    related = (view.defined_at(user, "used here, but the mission does not reach this tree either"),) if user else ()
+    message = f"unreachable tree `{name.text}`: the main tree `{main}` never reaches it"
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
@@ -161,13 +161,13 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic(
         "unknown-main-tree",
         span,
-        f"nothing says which tree is the mission: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
+        f"unknown main tree: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
         related=tuple(
-            view.defined_at(other, "another tree that no tree refers to")
+            view.defined_at(other, "another tree without a reference")
             for name in tops[1:_MOST_NAMES]
             if (other := view.scope.find(Kind.TREE, name)) is not None
         ),
-        notes=(f"{way} names the main tree",),
+        notes=(f"name the main tree with {way}",),
         fixes=tuple(_main_tree_fix(view, name) for name in tops[:3]),
     )
 
@@ -180,23 +180,25 @@ def tree_root_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     place = tree.name.span if tree.name else Span(tree.start, tree.end)
     if not tree.children:
         if not entry.diagnostics:  # else its node may be what could not be read
-            note = "a tree has one node at its top, in its block"
-            yield Diagnostic("tree-root-count", place, "this tree has no node", notes=(note,))
+            note = "write one node in the tree's block"
+            yield Diagnostic(
+                "tree-root-count", place, "a tree must have one node at its top, found none", notes=(note,)
+            )
         return
     first, extra = (
         child.head.span if isinstance(child, Node) else Span(child.start, child.end) for child in tree.children[:2]
     )
     second = tree.children[1]
     if isinstance(second, Node) and second.head.text == "BehaviorTree":
-        message = "a BehaviorTree begins where the one before it begins: this one is indented"
+        message = "write every BehaviorTree in the same column: this one is indented"
         yield Diagnostic("tree-root-count", extra, message)
         return
     yield Diagnostic(
         "tree-root-count",
         extra,
-        f"a tree has one node at its top, this one has {len(tree.children)}",
-        related=(Related(Place(first), "the first one"),),
-        notes=("put them under one node, a Sequence `->` for example",),
+        f"a tree must have one node at its top, found {len(tree.children)}",
+        related=(Related(Place(first), "first one"),),
+        notes=("put them below one node, such as a Sequence `->`",),
     )
 
 
@@ -207,14 +209,14 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     name = entry.item.name
     model = view.scope.find(Kind.MODEL, name.text)
     if name.text in BUILTINS:
-        message = f"`{name.text}` is a node of the engine: a tree cannot have its name"
+        message = f"a tree cannot have the name `{name.text}`, which is a built-in node"
         yield Diagnostic("tree-named-like-node", name.span, message)
     elif model is not None and not _is_subtree_model(model):
         yield Diagnostic(
             "tree-named-like-node",
             name.span,
-            f"`{name.text}` is a node: a tree cannot have its name",
-            related=(view.defined_at(model, "the node is declared here"),),
+            f"a tree cannot have the name `{name.text}`, which is a node",
+            related=(view.defined_at(model, "node declared here"),),
         )
 
 
@@ -224,7 +226,7 @@ def _as_node(use: Use) -> tuple[Fix, ...]:
     if node is None or node.category is None or node.kind is None:
         return ()
     span = Span(node.category.start, node.kind.start)
-    return (replace_fix(f"Write `{node.kind.raw}` alone", span, ""),)
+    return (replace_fix(f"Write only `{node.kind.raw}`", span, ""),)
 
 
 def _main_tree_fix(view: View, name: str) -> Fix:

@@ -20,7 +20,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
     for applied, claim, node, place, why in demanded.hard:
         if place is None or _is_told_otherwise(demanded, claim, node, place):
             continue
-        related = () if place == node.place else (Related(node.place, "the node"),)
+        related = () if place == node.place else (Related(node.place, "node"),)
         if why is not None:
             yield place, _found(applied, place, why, related)
             continue
@@ -49,11 +49,11 @@ def _found(
 ) -> Diagnostic:
     requirement = applied.requirement
     asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are hard unasked
-    note = "it is not more than monitored: leave `on violation` out, or write `warn`"
+    note = "btq only monitors it: remove `on violation`, or write `on violation warn`"
     return Diagnostic(
         "not-enforced",
         place.span,
-        f"{asked} is not enforced: {why}",
+        f"the engine cannot enforce {asked}: {why}",
         related=related,
         notes=() if is_bundled or requirement.classic else (note,),
         severity=Severity.HINT if is_bundled else None,

@@ -89,7 +89,7 @@ def _in_switch(seen: SeenNode) -> Diagnostic | None:
     """A case that an earlier one has already, or that a literal variable does not name."""
     variable = seen.node.attribute("variable")
     if variable is None:
-        reason = f"{seen.shown} has no `variable`, so it runs its last child"
+        reason = f"without a `variable` {seen.shown} runs its last child"
         return _unreachable(seen.node.children[0], reason, None)
     first: set[str] = set()
     for number, child in enumerate(seen.node.children[:-1], 1):
@@ -97,7 +97,7 @@ def _in_switch(seen: SeenNode) -> Diagnostic | None:
         if case is None or is_pointer(case.text):
             continue
         if case.text in first:
-            return _unreachable(child, f"an earlier case is `{case.text}` already", None)
+            return _unreachable(child, f"an earlier case already has the value `{case.text}`", None)
         first.add(case.text)
     return None
 
@@ -108,7 +108,7 @@ def _unreachable(child: Node | Verbatim, reason: str, culprit: Node | None) -> D
         "unreachable-child",
         span,
         f"{_shown(child)} can never run: {reason}",
-        related=(Related(Place(culprit.head.span), "because of this"),) if culprit is not None else (),
+        related=(Related(Place(culprit.head.span), "reason"),) if culprit is not None else (),
         tags=(Tag.UNNECESSARY,),
     )
 

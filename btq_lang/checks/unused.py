@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 def unused_signal(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A signal that no condition, no bound and no `uses` names."""
     if isinstance(entry.item, Signal) and _is_unused(view, entry, Kind.SIGNAL):
-        yield from _unused(entry.item, "unused-signal", "nothing asks for the signal")
+        yield from _unused(entry.item, "unused-signal", "no clause uses the signal")
 
 
 def unused_context(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A context that no condition names."""
     if isinstance(entry.item, Context) and _is_unused(view, entry, Kind.CONTEXT):
-        yield from _unused(entry.item, "unused-context", "no condition names the context")
+        yield from _unused(entry.item, "unused-context", "no condition uses the context")
 
 
 def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnostic]:

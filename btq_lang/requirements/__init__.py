@@ -297,9 +297,9 @@ def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[F
         depth[name] = 1 + max((depth[word] for word in needed if word in depth), default=0)
         mistake = None
         if any(word not in depth or word == name for word in needed):
-            mistake = "cyclic-context", f"the context `{name}` speaks of itself"
+            mistake = "cyclic-context", f"the context `{name}` refers to itself"
         elif depth[name] > _DEEPEST:
-            mistake = "nested-too-deep", f"more than {_DEEPEST} contexts that speak of each other"
+            mistake = "nested-too-deep", f"more than {_DEEPEST} levels of contexts in contexts"
         yield file, symbol, mistake
 
 

@@ -7,7 +7,7 @@ where two are equally specific and differ, a problem says so and neither counts.
 from __future__ import annotations
 
 from btq_lang.diagnostics import Diagnostic, Related, replace_fix
-from btq_lang.near import near
+from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record, fields_of, replace
 from btq_lang.requirements import model
 from btq_lang.requirements.memory import is_same
@@ -241,7 +241,7 @@ def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
     for selector in apply.exceptions:
         nodes = {id(target.node) for target, _ in _selected(reader, selector)}
         if nodes and applied_to and nodes.isdisjoint(applied_to) and reader.knows_all_nodes:
-            message = "nothing of what this excepts is among what is applied to"
+            message = "`except` has no effect: the selector does not match any of these nodes"
             span = TextSpan(selector.start, selector.end)
             reader.complain("unmatched-path", span, message, severity=Severity.WARNING)
         excepted |= nodes
@@ -265,7 +265,7 @@ def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]
             below = reader.ask("under", (selector.every.text, top)) if top is not None else ()
             if nodes and top is not None and not below and reader.knows_all_nodes:
                 shown = "/".join(name.text for name in selector.path.names)
-                message = f"no `{selector.every.text}` stands below `{shown}`"
+                message = f"no node matches `every {selector.every.raw}` below `{shown}`"
                 reader.complain("unmatched-path", selector.every.span, message)
             nodes, rank = below, _EVERY_UNDER
         yield from ((Target(node), rank) for node in nodes)
@@ -299,9 +299,9 @@ def _arguments(
         reader.complain(
             "wrong-argument",
             span,
-            f"`{requirement.name}` needs a value for {names}",
+            f"`{requirement.name}` requires a value for {names}",
             related=related,
-            notes=(f"write `{requirement.name}({example})`, or give {names} a default where it is defined",),
+            notes=(f"write `{requirement.name}({example})`, or add a default to its definition",),
         )
     if missing or not complete:
         return None
@@ -312,16 +312,13 @@ def _arguments(
 def _no_parameter(reader: Reader, requirement: Requirement, argument: WrittenArgument) -> None:
     word: Word = argument.name
     known = [parameter.name for parameter in requirement.parameters]
-    fixes = tuple(
-        replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name)
-        for name in near(word.text, known)
-        if is_name(name)
-    )
-    notes = (f"it has {', '.join(f'`{name}`' for name in known)}",) if known else ("it has none",)
+    likely = [name for name in near(word.text, known) if is_name(name)]
+    fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in likely)
+    notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
     reader.complain(
         "wrong-argument",
         word.span,
-        f"`{requirement.name}` has no parameter `{word.text}`",
+        f"`{requirement.name}` has no parameter `{word.text}`{did_you_mean(likely)}",
         related=(Related(requirement.place, "defined here"),),
         notes=notes,
         fixes=fixes,
@@ -345,10 +342,10 @@ def _most_specific(reader: Reader, requirement: Requirement, uses: tuple[Use, ..
         diagnostic = Diagnostic(
             "ambiguous-application",
             other.span,
-            f"{node.shown} gets two values from `{requirement.name}`: {_said(best[0])} and {_said(other)}",
-            related=(Related(best[0].place, "the other one"), Related(node.place, "the node")),
+            f"`{requirement.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}",
+            related=(Related(best[0].place, "other value"), Related(node.place, "node")),
             notes=(
-                "a path counts before `every … under`, that before `every`, and what stands at the node before all",
+                "a clause at the node takes precedence over a path, a path over `every … under`, that over `every`",
             ),
         )
         reader.note(Problem(other.path, other.item, diagnostic))

@@ -30,7 +30,7 @@ from btq_lang.requirements.model import (
     Value,
     Window,
 )
-from btq_lang.requirements.reader import COUNT, PERCENT, TIME, Reader, Wanted
+from btq_lang.requirements.reader import COUNT, PERCENT, SORTS, TIME, Reader, Wanted
 from btq_lang.syntax import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
 from btq_lang.syntax import Claim as WrittenClaim
 from btq_lang.syntax import Clause as WrittenClause
@@ -45,7 +45,7 @@ from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.syntax import Subject as WrittenSubject
 from btq_lang.syntax import Window as WrittenWindow
 from btq_lang.text import Span as TextSpan
-from btq_lang.units import Dimension, Unit, dimension_name, parse_unit
+from btq_lang.units import Dimension, Unit, a_dimension, parse_unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -180,13 +180,15 @@ def _resource(reader: Reader, word: Word | None) -> tuple[Signal | None, Wanted 
         reader.unknown(word, ("signals",))
         return None, None
     if signal.sort != "number":
-        reader.complain("unit-mismatch", word.span, f"what is used is a number, `{signal.name}` is {signal.sort}")
+        reader.complain(
+            "unit-mismatch", word.span, f"`uses` requires a number, but `{signal.name}` is {SORTS[signal.sort]}"
+        )
         return None, None
     if signal.unit is None:
         return None, None
     unit = "K" if signal.unit.offset else signal.unit.symbol
     plain = signal.unit.dimension == NO_DIMENSION
-    what = f"{dimension_name(signal.unit)}, as `{signal.name}` measures it,"
+    what = f"{a_dimension(signal.unit)} (the dimension of `{signal.name}`)"
     return signal, Wanted(what, (signal.unit.dimension,), None if plain else unit, "difference")
 
 
@@ -240,7 +242,11 @@ def _odds(reader: Reader, written: WrittenOdds) -> Odds | None:
     if share is None or written.value is None:
         return None
     if not 0.0 < share.si <= 1.0:
-        reader.complain("impossible-odds", written.value.span, f"`{written.value.raw}` is no probability")
+        reader.complain(
+            "impossible-odds",
+            written.value.span,
+            f"expected a probability above 0 and up to 100 %, found `{written.value.raw}`",
+        )
         return None
     of_runs = written.experiments is not None and written.experiments.raw == "runs"
     text = reader.text(written.start, written.end)
@@ -256,7 +262,9 @@ def _window(reader: Reader, written: WrittenWindow) -> Window | None:
     if written.experiments is not None:
         count = float(written.size.raw)
         if not 1 <= count < inf or count != int(count):
-            reader.complain("impossible-odds", written.size.span, f"`{written.size.raw}` is no number of experiments")
+            reader.complain(
+                "impossible-odds", written.size.span, f"expected a positive whole number, found `{written.size.raw}`"
+            )
             return None
         of_runs = written.experiments.raw == "runs"
         return Window(int(count), "runs" if of_runs else "activations", None, text, place)

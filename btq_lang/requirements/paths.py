@@ -7,7 +7,7 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 from __future__ import annotations
 
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.near import near
+from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record
 from btq_lang.requirements.memory import Asker
 from btq_lang.syntax import Entry, Item, Path, Tree, Word, is_name, quote
@@ -198,7 +198,12 @@ class PathReader(Asker):
         if found:
             self.ambiguous(path.span, shown, found)
         elif self.knows_all_nodes:
-            self.complain("unmatched-path", path.span, self._missing(names, shown), fixes=self._meant(path))
+            likely = self._meant(path)
+            fixes = tuple(
+                replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)) for word, name in likely
+            )
+            message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
+            self.complain("unmatched-path", path.span, message, fixes=fixes)
         return None
 
     def none_of(self, name: Word) -> None:
@@ -209,14 +214,17 @@ class PathReader(Asker):
         notes: tuple[str, ...] = ()
         if self.find((name.text,)):
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
-        fixes = _replaced(name, known)
-        self.complain("unmatched-path", name.span, f"no node is a `{name.text}`", notes=notes, fixes=fixes)
+        self._no_match(name, f"no node matches `every {name.raw}`", known, notes)
 
     def no_tag(self, tag: Word) -> None:
         """Complain of `tagged x` where nothing has that tag."""
         if self.knows_all_nodes:
-            fixes = _replaced(tag, self.ask("tags"))
-            self.complain("unmatched-path", tag.span, f"no node has the tag `{tag.text}`", fixes=fixes)
+            self._no_match(tag, f"no node has the tag `{tag.text}`", self.ask("tags"))
+
+    def _no_match(self, word: Word, message: str, known: Iterable[str], notes: tuple[str, ...] = ()) -> None:
+        likely = near(word.text, known)
+        fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)) for name in likely)
+        self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
         """Complain of a path that names several nodes."""
@@ -225,27 +233,28 @@ class PathReader(Asker):
         self.complain(
             "ambiguous-path",
             span,
-            f"`{shown}` is the name of {len(found)} nodes",
+            f"ambiguous path `{shown}`: {len(found)} nodes match",
             related=related,
-            notes=("a path names one node; for all of them write `every`, in a claim or in `apply … to every …`",),
+            notes=("a path must match one node; write `every` for all of them, in a claim or in `apply … to every …`",),
             fixes=tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN]),
         )
 
     def _missing(self, names: tuple[str, ...], shown: str) -> str:
         if len(names) > 1 and self.find(names[-1:]):
-            return f"no node `{names[-1]}` stands below `{'/'.join(names[:-1])}`"
-        return f"nothing is called `{shown}`" if len(names) == 1 else f"no node is named by `{shown}`"
+            return f"no node `{names[-1]}` below `{'/'.join(names[:-1])}`"
+        return f"unknown node `{shown}`" if len(names) == 1 else f"no node matches `{shown}`"
 
-    def _meant(self, path: Path) -> tuple[Fix, ...]:
+    def _meant(self, path: Path) -> list[tuple[Word, str]]:
+        """Words of a path that names no node, each with a near name that makes it match one."""
         known = self.ask("nodes")
-        fixes = []
+        found = []
         for index, word in enumerate(path.names):
             for name in near(word.text, known) if word.text not in known else ():
                 names = [other.text for other in path.names]
                 names[index] = name
                 if len(self.find(tuple(names))) == 1:
-                    fixes.append(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)))
-        return tuple(fixes)
+                    found.append((word, name))
+        return found
 
     def _path_to(self, target: Target) -> str | None:
         """The shortest path that names that node alone."""
@@ -259,13 +268,6 @@ class PathReader(Asker):
             if len(found) == 1 and found[0].node is node:
                 return "/".join(map(_written, names))
         return None
-
-
-def _replaced(word: Word, known: Iterable[str]) -> tuple[Fix, ...]:
-    return tuple(
-        replace_fix(f"Replace `{word.text}` by `{other}`", word.span, _written(other))
-        for other in near(word.text, known)
-    )
 
 
 def _written(name: str) -> str:

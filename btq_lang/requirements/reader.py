@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import isfinite
 
 from btq_lang.diagnostics import Fix, replace_fix
-from btq_lang.near import near
+from btq_lang.near import did_you_mean, near
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
 from btq_lang.requirements.model import (
@@ -53,7 +53,7 @@ from btq_lang.syntax import Not as WrittenNot
 from btq_lang.syntax import Table as WrittenTable
 from btq_lang.text import Span
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.units import Dimension, Unit, dimension_name, parse_unit, to_si
+from btq_lang.units import Dimension, Unit, a_dimension, parse_unit, to_si
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -137,14 +137,12 @@ class Reader(PathReader):
             if unit is None:
                 return self.bounded(written, None)
             plain = unit.dimension == NO_DIMENSION
-            return self.bounded(
-                written, Wanted(dimension_name(unit), (unit.dimension,), None if plain else unit.symbol)
-            )
+            return self.bounded(written, Wanted(a_dimension(unit), (unit.dimension,), None if plain else unit.symbol))
         found = self.bounded(written, None)
         for value, place in _amounts(found, written):
             if _sort_of(value) != parameter.sort:
                 what = "a text in quotes" if parameter.sort == "text" else "`true` or `false`"
-                self.complain("unit-mismatch", place, f"{what} is expected, `{self._at(place)}` is none")
+                self.complain("unit-mismatch", place, f"expected {what}, found `{self._at(place)}`")
                 return None
         return found
 
@@ -177,7 +175,7 @@ class Reader(PathReader):
 
     def _is_finite(self, value: float, word: Word) -> bool:
         if not isfinite(value):
-            self.complain("invalid-literal", word.span, f"`{word.raw}` is more than any number")
+            self.complain("invalid-literal", word.span, f"`{word.raw}` exceeds the range of numbers")
         return isfinite(value)
 
     def _named(self, word: Word, beside: Term | None = None, unit: str | None = None) -> Term | None:
@@ -220,13 +218,12 @@ class Reader(PathReader):
             last = Span(word.end - 1, word.end)
             fix = replace_fix(f"Write `{power}`", last, power)
             self.complain(
-                "unknown-unit", word.span, f"`{word.text}` is no unit: powers are written `{power}`", fixes=(fix,)
+                "unknown-unit", word.span, f"unknown unit `{word.text}`; write the power as `{power}`", fixes=(fix,)
             )
             return
-        note = f"declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
-        if meant:
-            note = f"did you mean `{meant[0]}`? or {note}"
-        self.complain("unknown-signal", word.span, f"no signal `{word.text}` is declared", notes=(note,), fixes=fixes)
+        note = f"{'or ' if meant else ''}declare it: `signal {word.text} : {unit} from {{{word.text}}}`"
+        message = f"unknown signal `{word.text}`{did_you_mean(meant)}"
+        self.complain("unknown-signal", word.span, message, notes=(note,), fixes=fixes)
 
     def _is_subtraction(self, name: str) -> bool:
         known = frozenset(self.names("parameters", "signals", "contexts"))
@@ -235,9 +232,7 @@ class Reader(PathReader):
     def _fits(self, term: Term, wanted: Wanted) -> bool:
         """Whether a value is of what is wanted; else it is told."""
         if term.sort != "number":
-            self.complain(
-                "unit-mismatch", term.span, f"{wanted.what} is expected, `{self._at(term.span)}` is {_sort(term)}"
-            )
+            self._unexpected(wanted.what, term)
             return False
         if term.dimension is None:
             return True
@@ -247,19 +242,22 @@ class Reader(PathReader):
                 return False
             return True
         if term.is_bare and wanted.unit is not None:
-            self._bare(term, f"{wanted.what} is expected", wanted.unit)
+            self._bare(term, f"expected {wanted.what}", wanted.unit)
         else:
-            message = f"{wanted.what} is expected, `{self._at(term.span)}` is {_measures(term.dimension)}"
-            self.complain("unit-mismatch", term.span, message)
+            self._unexpected(wanted.what, term)
         return False
+
+    def _unexpected(self, what: str, term: Term) -> None:
+        message = f"expected {what}, found `{self._at(term.span)}` ({_sort(term)})"
+        self.complain("unit-mismatch", term.span, message)
 
     def _level(self, term: Term) -> None:
         fixes: tuple[Fix, ...] = ()
         if term.word is not None:
             kelvin = f"{term.word.raw.removesuffix(term.unit or '').rstrip()} K"
             fixes = (replace_fix(f"Write `{kelvin}`", term.span, kelvin),)
-        message = f"a difference of temperatures is expected, `{self._at(term.span)}` is a temperature"
-        self.complain("unit-mismatch", term.span, message, notes=("differences are written in K",), fixes=fixes)
+        message = f"expected a temperature difference, found `{self._at(term.span)}` (a temperature)"
+        self.complain("unit-mismatch", term.span, message, notes=("write the difference in K",), fixes=fixes)
 
     def _bare(self, term: Term, message: str, unit: str) -> None:
         assert term.word is not None, "the caller has looked"
@@ -267,7 +265,7 @@ class Reader(PathReader):
             return
         number = term.word.raw
         fix = replace_fix(f"Write `{number} {unit}`", term.span, f"{number} {unit}")
-        self.complain("number-without-unit", term.span, f"{message}, `{number}` has no unit", fixes=(fix,))
+        self.complain("number-without-unit", term.span, f"missing unit after `{number}`; {message}", fixes=(fix,))
 
     def _has_unknown_unit(self, term: Term) -> bool:
         """Whether the word behind a number is told to be no unit: `45 sek`."""
@@ -350,8 +348,7 @@ class Reader(PathReader):
     def _no_condition(self, term: Term) -> None:
         if term.sort == "number" and term.dimension is None:
             return
-        what = "a text" if term.sort == "text" else _measures(term.dimension) if term.dimension else "a value"
-        self.complain("unit-mismatch", term.span, f"a condition is expected, `{self._at(term.span)}` is {what}")
+        self._unexpected("a condition", term)
 
     def _as_path(self, written: Binary) -> Path | None:
         """`A/B`, which is read as a division, where no name in it is a signal."""
@@ -396,14 +393,13 @@ class Reader(PathReader):
 
     def _comparable(self, left: Term, right: Term, operator: str) -> bool:
         if left.sort != right.sort:
-            message = f"`{self._at(left.span)}` is {_sort(left)}, `{self._at(right.span)}` is {_sort(right)}"
-            self.complain("unit-mismatch", Span(left.span.start, right.span.end), message)
+            self._mismatch(left, right, "compare")
             return False
         if left.sort != "number":
             if operator in ("==", "!="):
                 return True
             span = Span(left.span.start, right.span.end)
-            self.complain("unit-mismatch", span, f"{_sort(left)} is neither more nor less: compare with `==` or `!=`")
+            self.complain("unit-mismatch", span, f"cannot order {_sort(left)}; compare with `==` or `!=`")
             return False
         if left.dimension is None or right.dimension is None:
             return True
@@ -413,7 +409,7 @@ class Reader(PathReader):
             if number.is_bare and other.unit is not None:
                 self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
                 return False
-        self._mismatch(left, right)
+        self._mismatch(left, right, "compare")
         return False
 
     def _same_level(self, left: Term, right: Term) -> bool:
@@ -422,15 +418,12 @@ class Reader(PathReader):
         self._level(left if left.level == "level" else right)
         return False
 
-    def _mismatch(self, left: Term, right: Term) -> None:
-        assert left.dimension is not None, "both are known, for they differ"
-        assert right.dimension is not None, "both are known, for they differ"
-        self.complain(
-            "unit-mismatch",
-            Span(left.span.start, right.span.end),
-            f"`{self._at(left.span)}` is {_measures(left.dimension)}, "
-            f"`{self._at(right.span)}` is {_measures(right.dimension)}",
-        )
+    def _mismatch(self, left: Term, right: Term, what: str) -> None:
+        """Complain that two values measure different things; `what` cannot be done with them."""
+        shown = [f"`{self._at(term.span)}` ({_sort(term)})" for term in (left, right)]
+        preposition = {"compare": "with", "add": "and", "subtract": "and"}[what]
+        message = f"cannot {what} {f' {preposition} '.join(shown)}"
+        self.complain("unit-mismatch", Span(left.span.start, right.span.end), message)
 
     def _at(self, span: Span) -> str:
         return self.text(span.start, span.end)
@@ -451,7 +444,7 @@ class Reader(PathReader):
             return self._arithmetic(written)
         if self.condition(written) is not None:
             span = Span(written.start, written.end)
-            self.complain("unit-mismatch", span, f"a value is expected, `{self._at(span)}` is a condition")
+            self.complain("unit-mismatch", span, f"expected a value, found the condition `{self._at(span)}`")
         return None
 
     def _call(self, written: Call) -> Term | None:
@@ -468,7 +461,7 @@ class Reader(PathReader):
         if function == "count":
             return Term(value, "number", NO_DIMENSION, None, span)
         if signal.sort != "number":
-            message = f"`{function}` is of numbers, `{signal.name}` is {'text' if signal.sort == 'text' else 'bool'}"
+            message = f"`{function}` requires a number, but `{signal.name}` is {SORTS[signal.sort]}"
             self.complain("unit-mismatch", span, message)
             return None
         unit = signal.unit
@@ -486,7 +479,7 @@ class Reader(PathReader):
         span = Span(written.start, written.end)
         for term in (left, right):
             if term.sort != "number":
-                message = f"`{written.operator}` is for numbers, `{self._at(term.span)}` is {_sort(term)}"
+                message = f"`{written.operator}` requires numbers, found `{self._at(term.span)}` ({_sort(term)})"
                 self.complain("unit-mismatch", span, message)
                 return None
         value = Arithmetic(written.operator, left.value, right.value)
@@ -499,7 +492,7 @@ class Reader(PathReader):
                 if number.is_bare and other.unit is not None:
                     self._bare(number, f"`{self._at(other.span)}` is in {other.unit}", other.unit)
                     return None
-            self._mismatch(left, right)
+            self._mismatch(left, right, "add" if written.operator == "+" else "subtract")
             return None
         level = _sum_level(written.operator, left.level, right.level)
         if level is None:
@@ -513,8 +506,8 @@ class Reader(PathReader):
         assert right.dimension is not None, "the caller has looked"
         for term in (left, right):
             if term.level == "level":
-                message = f"`{self._at(term.span)}` is a temperature in degC, which cannot be multiplied"
-                self.complain("unit-mismatch", term.span, message, notes=("in K it can",))
+                message = f"cannot multiply or divide `{self._at(term.span)}`, a temperature in degC"
+                self.complain("unit-mismatch", term.span, message, notes=("write it in K",))
                 return None
         sign = 1 if value.operator == "*" else -1
         pairs = zip(left.dimension, right.dimension, strict=True)
@@ -591,15 +584,12 @@ def _counts(term: Term, other: Term) -> bool:
 
 def _sort(term: Term) -> str:
     if term.sort != "number":
-        return "true or false" if term.sort == "bool" else "a text"
-    return _measures(term.dimension) if term.dimension is not None else "a number"
-
-
-def _measures(dimension: Dimension) -> str:
-    return dimension_name(Unit("", dimension, 1.0))
+        return SORTS[term.sort]
+    return a_dimension(Unit("", term.dimension, 1.0)) if term.dimension is not None else "a number"
 
 
 _OF_PYTHON: Final = ("True", "False")
+SORTS: Final = {"bool": "true or false", "text": "a text"}
 _ONE: Final = Unit("1", NO_DIMENSION, 1.0)
 
 

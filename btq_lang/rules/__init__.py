@@ -65,7 +65,9 @@ _TABLE = (
     Rule("unclosed-comment", _E, "a `/*` without its `*/`"),
     Rule("misplaced-comment", _E, "a comment sign inside a word or value that should be quoted"),
     Rule("unknown-escape", _H, "a backslash before a character that it does not escape"),
-    Rule("string-over-items", _H, "a string that continues past the start of another item: a quote is probably missing"),
+    Rule(
+        "string-over-items", _H, "a string that continues past the start of another item: a quote is probably missing"
+    ),
     Rule("unknown-unit", _E, "a unit that btq does not know"),
     Rule("nested-too-deep", _E, "more nested levels than the engine reads"),
     Rule("clause-after-children", _E, "satisfices, satisfies or tags after a node's children"),
@@ -101,7 +103,9 @@ _TABLE = (
     Rule("parallel-threshold", _E, "a Parallel threshold that its children cannot reach"),
     Rule("duplicate-instance-name", _H, "two nodes of one tree with the same name"),
     Rule("forbidden-name", _E, "a name that the engine refuses"),
-    Rule("classic-placeholder", _H, "a ScriptAction or ScriptCondition without code, used as a placeholder for a skill"),
+    Rule(
+        "classic-placeholder", _H, "a ScriptAction or ScriptCondition without code, used as a placeholder for a skill"
+    ),
     Rule("placeholder-clash", _E, "a placeholder whose node ID is already in use"),
     # Trees and files.
     Rule("unknown-tree", _E, "a SubTree whose tree does not exist"),

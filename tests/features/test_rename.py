@@ -119,7 +119,7 @@ def test_no_rename(text: str, reason: str) -> None:
             "Home",
             "`Home` is in use already: main.btq, line 5",
         ),
-        ("BehaviorTree Main\n    Pi$0ck\n", "Retry", "`Retry` is a node of the engine"),
+        ("BehaviorTree Main\n    Pi$0ck\n", "Retry", "`Retry` is a built-in node"),
         ("BehaviorTree Main\n    Pi$0ck\n", "my node", "the engine refuses the name: it contains a blank"),
         (
             "BehaviorTree Main\n    ->\n        Pick (to = {wo$0rk})\n        Script (code = \"work := 'x'\")\n",
