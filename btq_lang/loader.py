@@ -202,7 +202,7 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8").removeprefix(_BOM)
         is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-        found = "this is UTF-16, not UTF-8" if is_utf16 else f"this is no UTF-8: byte 0x{data[error.start]:02x}"
+        found = "this is UTF-16; save it as UTF-8" if is_utf16 else f"this is not UTF-8: byte 0x{data[error.start]:02x}"
         problem = LoadProblem(path, found, LineIndex(before).position(len(before)))
         text = data.decode("utf-16" if is_utf16 else "utf-8", "replace")
     return text.removeprefix(_BOM), problem
@@ -299,7 +299,7 @@ def _files_below(top: str, project: Project, problems: list[LoadProblem], suffix
                 if _is_file(path):
                     yield path
                 elif entry.is_symlink() and not os.path.exists(path):
-                    problems.append(LoadProblem(path, "cannot be read: a link to what is not there"))
+                    problems.append(LoadProblem(path, "cannot be read: the link has no target"))
 
 
 def excluder(project: Project) -> Callable[[str], bool]:

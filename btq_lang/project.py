@@ -162,7 +162,7 @@ def _engines(key: str, value: object) -> _Read:
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
     known = tuple(filter(_is_engine, wanted))
     complaints = [
-        _Complaint(f"unknown engine version `{version}`: {VERSIONS[0]} to {VERSIONS[-1]} are known", value=version)
+        _Complaint(f"unknown engine version `{version}`; btq supports {VERSIONS[0]} to {VERSIONS[-1]}", value=version)
         for version in wanted
         if version not in known
     ]
@@ -233,7 +233,7 @@ def _toml(text: str) -> object:
 
 def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
     if isinstance(error, RecursionError):
-        return ProjectProblem("nested too deep")
+        return ProjectProblem("nested too deeply")
     # The reader's messages say the place in words, from 1; only Python 3.14's errors have it as numbers too.
     message, _, place = str(error).partition(" (at ")
     if numbers := _DIGITS.findall(place):

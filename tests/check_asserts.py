@@ -27,7 +27,7 @@ Announced = Counter[tuple[str, int, str, str]]  # (file, line, severity, rule)
 
 
 def assert_problems(text: str, *problems: str, project: Project | None = None) -> None:
-    """All that is wrong with some files, in order: `3:9 error unknown-node «Rety» unknown node `Rety`; did you mean `Retry`?`.
+    """All that is wrong with some files, in order: `3:9 error unknown-node «Rety» unknown node `Rety``.
 
     Args:
         text: one file, or several that each begin with `//- path`; then each problem begins with `path:`.  A common

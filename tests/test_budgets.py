@@ -316,7 +316,7 @@ def test_why_there_is_no_bound() -> None:
     budgets, root = budget("->\n    A\n    X\n    Retry (num_attempts = -1)\n        B")
     assert [(gap.node.shown, gap.reason) for gap in budgets.gaps(root)] == [
         ("`X`", "has no `takes` clause"),
-        ("`Retry`", "has no end"),
+        ("`Retry`", "has no limit"),
     ]
 
 

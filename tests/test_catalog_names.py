@@ -28,7 +28,7 @@ from btq_lang.catalog.nodes import BUILTINS, VERSIONS
         ("Root", "`Root` is a reserved name"),
         ("root", "`Root` is a reserved name"),
         ("ROOT", None),
-        ("a b", "it contains a blank"),
+        ("a b", "it contains a space"),
         ("BatteryLow?", "it contains `?`"),
         ("a\tb", "it contains the control character U+0009"),
         ("a\x7f", "it contains the control character U+007F"),
@@ -49,7 +49,7 @@ def test_model_names(name: str, expected: str | None) -> None:
         ("größe", None),
         ("", "it is empty"),
         ("1st", "it begins with a digit"),
-        ("a b", "it contains a blank"),
+        ("a b", "it contains a space"),
         ("a.b", "it contains `.`"),
         *(
             (name, "it is the name of a reserved attribute")

@@ -69,7 +69,8 @@ def test_a_quality_that_a_missing_file_may_declare_is_not_called_unknown() -> No
     assert_problems(
         text.replace("{}", "relability"),
         missing,
-        "3:25 warning unknown-quality «relability» unknown quality `relability`; did you mean `reliability` or `maintainability.reusability`?",
+        "3:25 warning unknown-quality «relability» unknown quality `relability`; "
+        "did you mean `reliability` or `maintainability.reusability`?",
     )
 
 
@@ -132,7 +133,7 @@ def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
             "gone.xml",
             "cannot find the file `gone.xml`",
         ),
-        (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a blank"),
+        (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a space"),
     ],
 )
 def test_what_the_engine_would_refuse_in_included_xml_is_told_where_it_is_included(

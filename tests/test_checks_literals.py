@@ -125,7 +125,8 @@ def test_versions_read_differently() -> None:
     assert_clean(text, Project(engines=("4.6",)))
     assert_problems(
         text,
-        '2:25 error invalid-literal «"+1.5;2"» expected a number without a leading `+` or space as each item for `queue`, found the item `+1.5`',
+        '2:25 error invalid-literal «"+1.5;2"» '
+        "expected a number without a leading `+` or space as each item for `queue`, found the item `+1.5`",
         project=Project(engines=("4.10",)),
     )
 

@@ -23,7 +23,8 @@ def test_every_way_to_name_a_requirement() -> None:
         """,
         "1:7 error unknown-requirement «rq1» unknown requirement `rq1`; neither this file nor its includes define it",
         "3:15 error unknown-requirement «rq2» unknown requirement `rq2`; neither this file nor its includes define it",
-        '4:34 error unknown-requirement «"rq3"» unknown requirement `rq3`; neither this file nor its includes define it',
+        '4:34 error unknown-requirement «"rq3"» unknown requirement `rq3`; '
+        "neither this file nor its includes define it",
         "5:19 error unknown-requirement «rq4» unknown requirement `rq4`; neither this file nor its includes define it",
     )
 

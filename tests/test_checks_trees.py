@@ -54,7 +54,8 @@ def test_an_include_brings_the_tree() -> None:
         """
     assert_problems(
         text,
-        "missions/main.btq:3:13 error unknown-tree «Pick» unknown tree `Pick`; neither this file nor its includes define it",
+        "missions/main.btq:3:13 error unknown-tree «Pick» unknown tree `Pick`; "
+        "neither this file nor its includes define it",
     )
     fixed = text.replace('include "a.btq"\n', 'include "a.btq"\n        include "../parts/pick.btq"\n')
     assert_fix(text, "Include `../parts/pick.btq`", fixed)

@@ -375,7 +375,7 @@ def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path:
     file.write_bytes(b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n")
     done = btq("check", "--fix")
     assert done.returncode == 2
-    assert done.stderr == "btq: main.btq:3:19: this is no UTF-8: byte 0xe9\n"
+    assert done.stderr == "btq: main.btq:3:19: this is not UTF-8: byte 0xe9\n"
     for form, said in (("github", "::error file=main.btq,line=3,col=19,"), ("junit", "<error "), ("json", "io-error")):
         assert said in btq("check", "--output-format", form).stdout
     assert file.read_bytes() == b"BehaviorTree Main\n    SequenceStar\n        Dock # caf\xe9\n"
@@ -387,7 +387,7 @@ def test_bytes_that_are_no_text_are_told_once(btq: Run, tmp_path: Path) -> None:
     done = btq("check", "--output-format", "concise")
     assert done.returncode == 2
     assert done.stderr == (
-        "btq: latin.btq:1:15: this is no UTF-8: byte 0xfc\nbtq: program.btq:1:5: this is no UTF-8: byte 0xff\n"
+        "btq: latin.btq:1:15: this is not UTF-8: byte 0xfc\nbtq: program.btq:1:5: this is not UTF-8: byte 0xff\n"
     )
     assert [line.split(" ", 1)[1].split("]")[0] for line in done.stdout.splitlines()[:-1]] == [
         "warning[not-an-engine-node"

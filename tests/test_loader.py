@@ -85,9 +85,9 @@ def test_without_a_project_file_the_folder_is_the_root(folder: Path, monkeypatch
 
 def test_problems_of_the_project_file_say_where(folder: Path) -> None:
     make(folder, "btq.toml: \nengin = 1\n")
-    assert list(map(str, find_project(".").problems)) == ["btq.toml:2:1: unknown key `engin`: did you mean `engine`?"]
+    assert list(map(str, find_project(".").problems)) == ["btq.toml:2:1: unknown key `engin`; did you mean `engine`?"]
     (folder / "btq.toml").write_bytes(b'exclude = ["\xff"]')
-    assert list(map(str, find_project(".").problems)) == ["btq.toml:1:13: this is no UTF-8: byte 0xff"]
+    assert list(map(str, find_project(".").problems)) == ["btq.toml:1:13: this is not UTF-8: byte 0xff"]
     assert find_project(".").project.exclude == ("\ufffd",)
 
 
@@ -147,8 +147,8 @@ def test_links_are_followed_and_loops_end(folder: Path) -> None:
     files, problems = collect(["."], Project())
     assert names(files) == ["other/b.btq", "real/a.btq"]
     assert list(map(str, problems)) == [
-        "real/gone.btq: cannot be read: a link to what is not there",
-        "real/self.btq: cannot be read: a link to what is not there",
+        "real/gone.btq: cannot be read: the link has no target",
+        "real/self.btq: cannot be read: the link has no target",
     ]
     (folder / "real/up").unlink()
     (folder / "real/linked").symlink_to(folder / "other")
@@ -173,11 +173,11 @@ def test_a_folder_that_cannot_be_read_is_a_problem(folder: Path, monkeypatch: py
         (b"a\r\nb\rc\n", "a\r\nb\rc\n", None),
         (b"\xef\xbb\xbfab", "ab", None),
         ("日本\n".encode(), "日本\n", None),
-        (b"ab\xff", "ab\ufffd", (0, 2, "this is no UTF-8: byte 0xff")),
-        ("日\r\n本".encode() + b" \xe9t\xe9", "日\r\n本 \ufffdt\ufffd", (1, 2, "this is no UTF-8: byte 0xe9")),
-        (b"\xef\xbb\xbfa\x80", "a\ufffd", (0, 1, "this is no UTF-8: byte 0x80")),
-        (b"x\xe6\x97", "x\ufffd", (0, 1, "this is no UTF-8: byte 0xe6")),
-        ("a".encode("utf-16"), "a", (0, 0, "this is UTF-16, not UTF-8")),
+        (b"ab\xff", "ab\ufffd", (0, 2, "this is not UTF-8: byte 0xff")),
+        ("日\r\n本".encode() + b" \xe9t\xe9", "日\r\n本 \ufffdt\ufffd", (1, 2, "this is not UTF-8: byte 0xe9")),
+        (b"\xef\xbb\xbfa\x80", "a\ufffd", (0, 1, "this is not UTF-8: byte 0x80")),
+        (b"x\xe6\x97", "x\ufffd", (0, 1, "this is not UTF-8: byte 0xe6")),
+        ("a".encode("utf-16"), "a", (0, 0, "this is UTF-16; save it as UTF-8")),
     ],
 )
 def test_reading_bytes(folder: Path, data: bytes, text: str, problem: tuple[int, int, str] | None) -> None:
@@ -238,7 +238,7 @@ def test_damaged_files_are_loaded_and_named(folder: Path) -> None:
     loaded = load(["."], Project(), includes_of)
     assert names(loaded.given) == ["a.btq", "b.btq"]
     assert names(loaded.damaged) == ["b.btq"]
-    assert list(map(str, loaded.problems)) == ["b.btq:1:1: this is no UTF-8: byte 0xff"]
+    assert list(map(str, loaded.problems)) == ["b.btq:1:1: this is not UTF-8: byte 0xff"]
 
 
 def test_an_included_file_that_cannot_be_read_is_a_problem(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -378,7 +378,7 @@ def test_why_a_file_is_not_formatted(editor: Editor) -> None:
     editor.open("main.btq", "BehaviorTree Main\n  Dock )\n")
     options = {"tabSize": 4, "insertSpaces": True}
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 2, "character": 0}}
-    said = f"{editor.root / 'main.btq'}:2:8: not formatted, for there is an error: unexpected `)`: no bracket is open"
+    said = f"{editor.root / 'main.btq'}:2:8: cannot format a file with an error: unexpected `)`: no bracket is open"
     for method, more in (("formatting", {}), ("rangeFormatting", {"range": whole})):
         asked = {**editor.document("main.btq"), "options": options, **more}
         assert editor.request(f"textDocument/{method}", **asked) is None
@@ -728,7 +728,7 @@ def test_commands(editor: Editor) -> None:
     for command in ("xml", "picture", "overview", "build"):
         arguments = [{"uri": editor.uri("nowhere.btq")}]
         refused = editor.ask("workspace/executeCommand", command=f"btq.server.{command}", arguments=arguments)
-        assert refused["error"]["message"] == "this is no .btq file of the editor's folders"
+        assert refused["error"]["message"] == "this is not a .btq file of the open folders"
 
 
 def test_a_build_writes_what_the_command_line_writes(tmp_path: Path) -> None:
@@ -760,7 +760,7 @@ def test_a_build_that_is_not_done_says_why(editor: Editor) -> None:
     uri = "untitled:Untitled-1"
     editor.notify("textDocument/didOpen", textDocument={"uri": uri, "languageId": "btq", "version": 1, "text": RIGHT})
     refused = editor.ask("workspace/executeCommand", command="btq.server.build", arguments=[{"uri": uri}])
-    assert refused["error"]["message"] == "this document is no file: save it first"
+    assert refused["error"]["message"] == "save this document to a file first"
 
 
 # ---- documents in XML ----
@@ -866,9 +866,19 @@ def test_xml_is_never_edited(foreign: Editor) -> None:
     foreign.open("main.btq", 'include "dock.xml"\nBehaviorTree Main\n    SubTree Dock\n')
     foreign.open("other.btq", "BehaviorTree Other\n    Pick\n")
     for name, line, character, reason in (
-        ("dock.xml", 3, 21, f"`Home` is defined in {foreign.root}/dock.xml, which is no .btq file"),
-        ("main.btq", 2, 13, f"`Dock` is defined in {foreign.root}/dock.xml, which is no .btq file"),
-        ("other.btq", 1, 5, f"`Pick` stands in {foreign.root}/dock.xml, too, which is no .btq file"),
+        (
+            "dock.xml",
+            3,
+            21,
+            f"cannot rename `Home`: its definition is in {foreign.root}/dock.xml, which is not a .btq file",
+        ),
+        (
+            "main.btq",
+            2,
+            13,
+            f"cannot rename `Dock`: its definition is in {foreign.root}/dock.xml, which is not a .btq file",
+        ),
+        ("other.btq", 1, 5, f"cannot rename `Pick`: {foreign.root}/dock.xml, which is not a .btq file, also uses it"),
     ):
         refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
         assert refused["error"] == {"code": -32803, "message": reason}

@@ -104,7 +104,7 @@ def test_comments_in_xml_silence_rules_for_a_whole_element() -> None:
 def test_a_name_that_a_build_would_mend_is_an_error_in_xml() -> None:
     (found,) = problems('<root BTCPP_format="4"><BehaviorTree ID="a b"><A/></BehaviorTree></root>')
     assert (found.rule, found.effective_severity.value) == ("forbidden-name", "error")
-    assert found.message == "the engine refuses the tree name `a b`: it contains a blank"
+    assert found.message == "the engine refuses the tree name `a b`: it contains a space"
 
 
 def test_explicit_forms_are_refused_only_directly_below_a_reactive_sequence() -> None:
@@ -187,7 +187,7 @@ def test_notes_on_xml_speak_of_xml() -> None:
     main = ("unknown-main-tree", ('name the main tree with `main_tree_to_execute="…"` of <root>',))
     shortest = '`<Action ID="InitNeo4j"/>` in <TreeNodesModel>'
     node = ("unknown-node", (f"the other nodes of this file have models; the shortest is {shortest}",))
-    why = "SequenceStar is version 3's name of SequenceWithMemory"
+    why = "SequenceStar is the name of SequenceWithMemory in version 3"
     way = "`btq import` converts the file to .btq in the syntax of version 4"
     assert [(each.rule, each.notes) for each in problems(OLD)] == [main, ("not-an-engine-node", (why, way)), node]
     new = problems(OLD.replace("<root>", '<root BTCPP_format="4">'))

@@ -36,32 +36,30 @@ class AttributeKind(Record):
 _KINDS: Final = (
     # In the order in which the engine looks at them, whatever the order in the file.
     AttributeKind(
-        "_failureIf", "pre", "FAILURE without a tick, if true when the node starts; not looked at while it runs"
+        "_failureIf", "pre", "FAILURE without a tick, if true when the node starts; not checked while it runs"
     ),
     AttributeKind(
-        "_successIf", "pre", "SUCCESS without a tick, if true when the node starts; not looked at while it runs"
+        "_successIf", "pre", "SUCCESS without a tick, if true when the node starts; not checked while it runs"
     ),
-    AttributeKind(
-        "_skipIf", "pre", "SKIPPED without a tick, if true when the node starts; not looked at while it runs"
-    ),
-    AttributeKind("_while", "pre", "looked at in every tick; once false, the node is halted and SKIPPED: no failure"),
-    AttributeKind("_onHalted", "post", "run when the node is halted, also at the end of a tree that never reached it"),
-    AttributeKind("_onSuccess", "post", "run after the node has succeeded"),
-    AttributeKind("_onFailure", "post", "run after the node has failed"),
-    AttributeKind("_post", "post", "run after the node has completed, either way, and after _onSuccess or _onFailure"),
-    AttributeKind("_autoremap", "engine", "on a SubTree: give it every entry of this blackboard under its own name"),
-    AttributeKind("_description", "tool", "what the node is for, shown by Groot; btq writes requirements into it"),
-    AttributeKind("_collapsed", "tool", "Groot draws the subtree closed"),
+    AttributeKind("_skipIf", "pre", "SKIPPED without a tick, if true when the node starts; not checked while it runs"),
+    AttributeKind("_while", "pre", "checked at every tick; once false, the node is halted and SKIPPED, not failed"),
+    AttributeKind("_onHalted", "post", "runs when the node is halted, also at the end of a tree that never reached it"),
+    AttributeKind("_onSuccess", "post", "runs after the node has succeeded"),
+    AttributeKind("_onFailure", "post", "runs after the node has failed"),
+    AttributeKind("_post", "post", "runs after the node has completed, either way, and after _onSuccess or _onFailure"),
+    AttributeKind("_autoremap", "engine", "on a SubTree: passes every entry of this blackboard under the same name"),
+    AttributeKind("_description", "tool", "a description of the node, shown by Groot; btq writes requirements into it"),
+    AttributeKind("_collapsed", "tool", "Groot shows the subtree collapsed"),
     AttributeKind("_favorite", "tool", "Groot lists the tree among the favorites"),
-    AttributeKind("_hardcoded", "tool", "MoveIt Pro: the tree came with the robot and is not edited"),
-    AttributeKind("_subtreeOnly", "tool", "MoveIt Pro: the tree is offered as a subtree, not as a mission"),
+    AttributeKind("_hardcoded", "tool", "MoveIt Pro: the tree belongs to the robot and cannot be edited"),
+    AttributeKind("_subtreeOnly", "tool", "MoveIt Pro: the tree is available as a subtree, not as a mission"),
     AttributeKind("_fullpath", "tool", "the path of a tree's instance, in the XML of a log"),
     AttributeKind("_uid", "tool", "the number of a node, in the XML of a log"),
     AttributeKind("_btq", "tool", "the requirement that a generated node enforces"),
     AttributeKind(
         "__shared_blackboard", "tool", "version 3 shared the blackboard; version 4 ignores it: use _autoremap"
     ),
-    AttributeKind("__autoremap", "tool", "version 3's name of _autoremap; version 4 ignores it"),
+    AttributeKind("__autoremap", "tool", "the name of _autoremap in version 3; version 4 ignores it"),
 )
 
 # By name.

@@ -47,10 +47,10 @@ _CONTROL: Final = (
         "Control",
         (1, None),
         "Ticks its children in order until one fails.",
-        "SUCCESS when all children have succeeded, FAILURE as soon as one fails. While a child is RUNNING the next "
-        "tick goes on with that child: those before it are not looked at again, so a condition in front of a long "
-        "action is checked once. A failure starts from the first child again. Skipped children count as done; when "
-        "all are skipped, so is the Sequence.",
+        "SUCCESS when all children have succeeded, FAILURE as soon as one fails. While a child is RUNNING, "
+        "the next tick resumes that child and does not tick the children before it, so a condition in front "
+        "of a long action is checked once. After a failure it starts from the first child again. Skipped "
+        "children count as done; if all are skipped, so is the Sequence.",
         symbols=("->", "→"),
     ),
     NodeKind(
@@ -58,9 +58,9 @@ _CONTROL: Final = (
         "Control",
         (1, None),
         "Ticks its children in order until one succeeds.",
-        "SUCCESS as soon as a child succeeds, FAILURE when all have failed. While a child is RUNNING the next tick "
-        "goes on with that child: a condition that failed before it is not looked at again and cannot interrupt it "
-        "(ReactiveFallback can). It swallows the failure of every child but the last.",
+        "SUCCESS as soon as a child succeeds, FAILURE when all have failed. While a child is RUNNING, the "
+        "next tick resumes that child: a condition that failed before it is not checked again and cannot "
+        "interrupt it (ReactiveFallback can). It hides the failure of every child but the last.",
         symbols=("?",),
     ),
     NodeKind(
@@ -68,14 +68,14 @@ _CONTROL: Final = (
         "Control",
         (1, None),
         "Ticks all its children and succeeds or fails by counting.",
-        "SUCCESS when success_count children have succeeded, FAILURE when failure_count have failed or success_count "
-        "can no longer be reached; children that still run are then halted. A negative count is counted from the "
-        "end: -1 is all of them. The children share one thread: nothing runs at the same time, they are ticked one "
-        "after the other. A count above the number of children throws at the first tick. With the default "
-        "success_count skipped children count as succeeded.",
+        "SUCCESS when success_count children have succeeded, FAILURE when failure_count have failed or "
+        "success_count is out of reach; it then halts the children that still run. A negative count counts "
+        "from the end: -1 means all children. The children share one thread: they are ticked one after the "
+        "other, never at the same time. A count above the number of children throws at the first tick. With "
+        "the default success_count, skipped children count as succeeded.",
         (
-            _input("success_count", "int", "How many children must succeed; -1 is all of them", "-1"),
-            _input("failure_count", "int", "How many failures make it fail; -1 is all of them", "1"),
+            _input("success_count", "int", "How many children must succeed; -1 means all", "-1"),
+            _input("failure_count", "int", "How many failures make it fail; -1 means all", "1"),
         ),
         symbols=("||", "⇉"),
     ),
@@ -84,21 +84,21 @@ _CONTROL: Final = (
         "Control",
         (1, None),
         "Ticks all its children to their end, then counts the failures.",
-        "Unlike Parallel it halts nobody: it completes when every child has. FAILURE when max_failures or more have "
-        "failed, although the name suggests more than max_failures; 0 therefore always fails, -1 asks for all. When "
-        "all children are skipped, so is it.",
-        (_input("max_failures", "int", "From how many failures on it fails; -1 is all of them", "1"),),
+        "Unlike Parallel it halts no child: it completes when every child has. FAILURE when max_failures or "
+        "more have failed, although the name suggests more than max_failures; so 0 always fails, and -1 means "
+        "all children. If all children are skipped, so is the node.",
+        (_input("max_failures", "int", "How many failures make it fail; -1 means all", "1"),),
         symbols=("All||", "All⇉"),
     ),
     NodeKind(
         "ReactiveSequence",
         "Control",
         (1, None),
-        "A Sequence that begins with its first child at every tick.",
-        "Conditions in front of an action are checked at every tick while the action runs, and one that fails halts "
-        "it: this is how to keep a condition. Give it one asynchronous child, the last: a child that returns RUNNING "
-        "halts all others, so two of them restart each other for ever. From 4.7 on the engine refuses a child in the "
-        "explicit form (<Action ID=…>) directly inside it.",
+        "A Sequence that starts with its first child at every tick.",
+        "Conditions in front of an action are checked at every tick while the action runs, and one that fails "
+        "halts it: this is how to keep a condition. Give it only one asynchronous child, the last one: a "
+        "child that returns RUNNING halts all others, so two of them restart each other forever. From 4.7 on "
+        "the engine refuses a child in the explicit form (<Action ID=…>) directly inside it.",
         symbols=("R->", "R→"),
         reactive=True,
     ),
@@ -106,9 +106,10 @@ _CONTROL: Final = (
         "ReactiveFallback",
         "Control",
         (1, None),
-        "A Fallback that begins with its first child at every tick.",
-        "A condition in front of an action is checked at every tick while the action runs, and halts it when it "
-        "becomes true. Give it one asynchronous child, the last: a child that returns RUNNING halts all others.",
+        "A Fallback that starts with its first child at every tick.",
+        "A condition in front of an action is checked at every tick while the action runs, and halts it when "
+        "it becomes true. Give it only one asynchronous child, the last one: a child that returns RUNNING "
+        "halts all others.",
         symbols=("R?",),
         reactive=True,
     ),
@@ -116,10 +117,10 @@ _CONTROL: Final = (
         "SequenceWithMemory",
         "Control",
         (1, None),
-        "A Sequence that goes on, after a failure, with the child that failed.",
-        "Children that succeeded are not ticked again before the whole has succeeded: neither a failure nor a halt "
-        "takes it back to the first child. Between two children that complete at once it returns RUNNING. Version 3 "
-        "called it SequenceStar.",
+        "A Sequence that resumes, after a failure, with the child that failed.",
+        "It does not tick children that have succeeded again before the whole has succeeded: neither a "
+        "failure nor a halt takes it back to the first child. It returns RUNNING between two children that "
+        "complete at once. Version 3 called it SequenceStar.",
         symbols=("M->", "M→"),
         execution="asynchronous",
     ),
@@ -127,9 +128,9 @@ _CONTROL: Final = (
         "AsyncSequence",
         "Control",
         (1, None),
-        "A Sequence that lets others interrupt it between two children.",
-        "It returns RUNNING after each child that succeeded at once, and goes on with the next child at the next "
-        "tick. Otherwise it is a Sequence.",
+        "A Sequence that other nodes can interrupt between two children.",
+        "It returns RUNNING after each child that succeeds at once, and continues with the next child at the "
+        "next tick. Otherwise it is a Sequence.",
         symbols=("A->", "A→"),
         execution="asynchronous",
     ),
@@ -137,9 +138,9 @@ _CONTROL: Final = (
         "AsyncFallback",
         "Control",
         (1, None),
-        "A Fallback that lets others interrupt it between two children.",
-        "It returns RUNNING after each child that failed at once, and goes on with the next child at the next tick. "
-        "Otherwise it is a Fallback.",
+        "A Fallback that other nodes can interrupt between two children.",
+        "It returns RUNNING after each child that fails at once, and continues with the next child at the "
+        "next tick. Otherwise it is a Fallback.",
         symbols=("A?",),
         execution="asynchronous",
     ),
@@ -147,20 +148,20 @@ _CONTROL: Final = (
         "IfThenElse",
         "Control",
         (2, 3),
-        "Ticks its second or its third child, as its first one says.",
-        "The first child is the condition, ticked until it completes and then no more while the chosen branch runs. "
-        "Without a third child a failing condition is a FAILURE. A condition that is skipped throws. Two or three "
-        "children; another number is noticed at the first tick only.",
+        "Ticks its second child if its first child succeeds, else its third.",
+        "The first child is the condition: it is ticked until it completes, and not again while the chosen "
+        "branch runs. Without a third child a failing condition is a FAILURE. A skipped condition throws. The "
+        "node requires two or three children, which the engine checks only at the first tick.",
         late_count=True,
     ),
     NodeKind(
         "WhileDoElse",
         "Control",
         (2, 3),
-        "Like IfThenElse, but looks at the condition at every tick.",
-        "When the condition changes, the branch that runs is halted and the other one ticked. Without a third child a "
-        "failing condition is a FAILURE; then the branch is halted, too. A condition that is skipped throws. Two or "
-        "three children; another number is noticed at the first tick only.",
+        "Like IfThenElse, but checks the condition at every tick.",
+        "When the condition changes, the running branch is halted and the other one ticked. Without a third "
+        "child a failing condition is a FAILURE, which also halts the branch. A skipped condition throws. The "
+        "node requires two or three children, which the engine checks only at the first tick.",
         late_count=True,
     ),
     *(
@@ -174,7 +175,7 @@ _CONTROL: Final = (
             "child that runs is halted. An absent variable, or no case that fits, means the default. Another number "
             "of children is noticed at the first tick only.",
             (
-                _input("variable", _STRING, "What is compared: usually a blackboard entry"),
+                _input("variable", _STRING, "The value to compare, usually a blackboard entry"),
                 *(_input(f"case_{n}", _STRING, f"The value that chooses child {n}") for n in range(1, cases + 1)),
             ),
             aliases=("Switch",),
@@ -186,9 +187,10 @@ _CONTROL: Final = (
         "TryCatch",
         "Control",
         (2, None),
-        "Ticks its children as a Sequence, and the last one only when another fails.",
-        "All children but the last are the try block. If it succeeds, so does the node, and the last child is never "
-        "ticked. If it fails, the last child cleans up and the node returns FAILURE, whatever the clean-up returned.",
+        "Ticks its children as a Sequence, and the last one only if another fails.",
+        "All children but the last are the try block. If it succeeds, so does the node, and the last child is "
+        "never ticked. If it fails, the last child cleans up and the node returns FAILURE, whatever the last "
+        "child returns.",
         (_input("catch_on_halt", "bool", "Also clean up when the node is halted within the try block", "false"),),
         since="4.9",
     ),
@@ -203,9 +205,10 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
         "Decorator",
         (1, 1),
         f"Ticks its child once for each item of a queue of {type_}.",
-        "Takes an item from the front of the queue, writes it to value, and ticks the child with it; between two "
-        "items it returns RUNNING, so there is one item a tick. A child that fails ends the loop with FAILURE. An "
-        "empty queue gives if_empty, also at the end of a loop. A literal queue is a list with semicolons (1;2;3).",
+        "Takes an item from the front of the queue, writes it to value, and ticks the child with it; it "
+        "returns RUNNING between two items, so it handles one item a tick. A child that fails ends the loop "
+        "with FAILURE. An empty queue returns if_empty, also at the end of a loop. A literal queue is a list "
+        "with semicolons (1;2;3).",
         (
             PortKind(
                 "queue",
@@ -216,8 +219,8 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
                 literal=f"std::deque<{type_}>",
                 type_before=("4.9", queue_before),
             ),
-            _result("if_empty", "What an empty queue gives: SUCCESS, FAILURE or SKIPPED", "SUCCESS"),
-            PortKind("value", "output", type_, "The entry that gets the item"),
+            _result("if_empty", "The result for an empty queue: SUCCESS, FAILURE or SKIPPED", "SUCCESS"),
+            PortKind("value", "output", type_, "The entry that receives the item"),
         ),
         aliases=aliases,
         execution="asynchronous",
@@ -242,29 +245,29 @@ _DECORATORS: Final = (
         "Decorator",
         (1, 1),
         "Turns success into failure and failure into success.",
-        "RUNNING and SKIPPED are passed on as they are.",
+        "It passes RUNNING and SKIPPED on.",
     ),
     NodeKind(
         "ForceSuccess",
         "Decorator",
         (1, 1),
         "Succeeds whenever its child completes.",
-        "A failure of the child is swallowed; RUNNING and SKIPPED are passed on.",
+        "It turns a failure of the child into SUCCESS, and passes RUNNING and SKIPPED on.",
     ),
     NodeKind(
         "ForceFailure",
         "Decorator",
         (1, 1),
         "Fails whenever its child completes.",
-        "A success of the child is turned into FAILURE; RUNNING and SKIPPED are passed on.",
+        "It turns a success of the child into FAILURE, and passes RUNNING and SKIPPED on.",
     ),
     NodeKind(
         "KeepRunningUntilFailure",
         "Decorator",
         (1, 1),
         "Repeats its child until it fails.",
-        "A success of the child becomes RUNNING and the child starts anew at the next tick. It can only end in FAILURE "
-        "or by being halted: what stands behind it in a Sequence is never reached.",
+        "A success of the child becomes RUNNING, and the child restarts at the next tick. The node ends only "
+        "with FAILURE or when it is halted: a Sequence never reaches the nodes after it.",
         execution="asynchronous",
     ),
     NodeKind(
@@ -272,10 +275,10 @@ _DECORATORS: Final = (
         "Decorator",
         (1, 1),
         "Repeats its child as long as it succeeds, at most num_cycles times.",
-        "SUCCESS after num_cycles successes, FAILURE at the first failure. -1 repeats for ever: it then never "
-        "succeeds. 0 cycles succeed at once (4.6: are skipped). Between two cycles of a child that completes at once "
-        "it returns RUNNING. A child that is skipped skips the Repeat, and the count is kept.",
-        (_input("num_cycles", "int", "How often; -1 is for ever", required=True),),
+        "SUCCESS after num_cycles successes, FAILURE at the first failure. -1 repeats forever: it then never "
+        "succeeds. 0 cycles succeed at once (4.6: are skipped). It returns RUNNING between two cycles of a "
+        "child that completes at once. A skipped child skips the Repeat, which keeps its count.",
+        (_input("num_cycles", "int", "The number of cycles; -1 means forever", required=True),),
         execution="asynchronous",
     ),
     NodeKind(
@@ -283,10 +286,10 @@ _DECORATORS: Final = (
         "Decorator",
         (1, 1),
         "Tries its child again when it fails, at most num_attempts times in all.",
-        "SUCCESS at the first success, FAILURE after num_attempts failures. -1 tries for ever: it then never fails. "
-        "0 attempts fail at once (4.6: are skipped). Between two attempts of a child that completes at once it "
-        "returns RUNNING.",
-        (_input("num_attempts", "int", "How often in all; -1 is without end", required=True),),
+        "SUCCESS at the first success, FAILURE after num_attempts failures. -1 tries forever: it then never fails. "
+        "0 attempts fail at once (4.6: are skipped). It returns RUNNING between two attempts of a child that "
+        "completes at once.",
+        (_input("num_attempts", "int", "The total number of attempts; -1 means endless", required=True),),
         aliases=("Retry",),
         execution="asynchronous",
     ),
@@ -294,18 +297,18 @@ _DECORATORS: Final = (
         "Timeout",
         "Decorator",
         (1, 1),
-        "Halts its child and fails when a time has passed.",
-        "The clock starts with the first tick of the child. A child that completes in time passes its result on. Only "
-        "a child that returns RUNNING can be halted: around a synchronous action the Timeout does nothing. 0 means no "
-        "limit.",
-        (_duration("msec", "The time limit; 0 is none"),),
+        "Halts its child and fails after a time limit.",
+        "The clock starts with the first tick of the child. The result of a child that completes in time is "
+        "passed on. Only a child that returns RUNNING can be halted: around a synchronous action the Timeout "
+        "has no effect. 0 means no limit.",
+        (_duration("msec", "The time limit; 0 means no limit"),),
     ),
     NodeKind(
         "Delay",
         "Decorator",
         (1, 1),
         "Waits, then ticks its child.",
-        "RUNNING until the time has passed, then whatever the child returns.",
+        "RUNNING until the time has passed, then the result of the child.",
         (_duration("delay_msec", "How long to wait before the child's first tick"),),
         execution="asynchronous",
     ),
@@ -313,22 +316,22 @@ _DECORATORS: Final = (
         "RunOnce",
         "Decorator",
         (1, 1),
-        "Runs its child once in the life of the tree.",
-        "After the child has completed for the first time it is never ticked again: the node is then SKIPPED or, with "
-        "then_skip=false, returns the child's result again.",
-        (_input("then_skip", "bool", "Afterwards: skip, or else repeat the first result", "true"),),
+        "Runs its child once in the lifetime of the tree.",
+        "After the child has completed for the first time it is never ticked again: the node then returns "
+        "SKIPPED or, with then_skip=false, the child's result again.",
+        (_input("then_skip", "bool", "Afterwards return SKIPPED; false repeats the first result", "true"),),
     ),
     NodeKind(
         "Precondition",
         "Decorator",
         (1, 1),
         "Ticks its child only if a script is true.",
-        "Otherwise it returns else. From 4.7 on the script is looked at only when the child starts, so it does not "
-        "guard an action that runs (4.6 looks at every tick): for that put a ScriptCondition in front of it in a "
-        "ReactiveSequence.",
+        "Otherwise it returns else. From 4.7 on the engine checks the script only when the child starts, so "
+        "it does not guard a running action (4.6 checks it at every tick): for that, put a ScriptCondition in "
+        "front of it in a ReactiveSequence.",
         (
             _script("if", _STRING, "The condition"),
-            _result("else", "What a false condition returns: FAILURE, SUCCESS, SKIPPED", "FAILURE"),
+            _result("else", "The result of a false condition: FAILURE, SUCCESS or SKIPPED", "FAILURE"),
         ),
     ),
     _loop("Int", "int", _queue("int")),
@@ -339,8 +342,8 @@ _DECORATORS: Final = (
         "SkipUnlessUpdated",
         "Decorator",
         (1, 1),
-        "Ticks its child when a blackboard entry was written since the last look.",
-        "Otherwise it is SKIPPED, also where the entry does not exist. A child that runs is ticked on in any case.",
+        "Ticks its child if a blackboard entry was written since the last check.",
+        "Otherwise it returns SKIPPED, also if the entry does not exist. It keeps ticking a running child in any case.",
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedDecorator",),
     ),
@@ -349,7 +352,7 @@ _DECORATORS: Final = (
         "Decorator",
         (1, 1),
         "Waits until a blackboard entry is written, then ticks its child.",
-        "RUNNING until the entry was written since the last look. A child that runs is ticked on in any case.",
+        "RUNNING until the entry is written after the last check. It keeps ticking a running child in any case.",
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         execution="asynchronous",
     ),
@@ -371,7 +374,7 @@ _LEAVES: Final = (
         "Action",
         (0, 0),
         "Fails.",
-        "It does nothing else; useful as a placeholder and to test what happens then.",
+        "It does nothing else; useful as a placeholder and for testing failures.",
         execution="synchronous",
     ),
     NodeKind(
@@ -401,9 +404,9 @@ _LEAVES: Final = (
         "Action",
         (0, 0),
         "Writes a value into a blackboard entry.",
-        "output_key names the entry, without braces; {k} means the entry whose name k holds. A value {k} copies that "
-        "entry. From 4.7 on a literal written over an entry without a type stores an empty value: Script does it "
-        "right.",
+        "output_key names the entry, without braces; {k} means the entry whose name is the value of k. A "
+        "value {k} copies that entry. From 4.7 on, a literal written over an entry without a type stores an "
+        "empty value: use Script instead.",
         (
             _input("value", _ANYTHING, "The literal, or the entry to copy", required=True),
             _key("output_key", "inout", _ANYTHING, "The entry to write, without braces"),
@@ -415,7 +418,7 @@ _LEAVES: Final = (
         "Action",
         (0, 0),
         "Removes a blackboard entry.",
-        "Succeeds also where the entry does not exist. Scripts that read it afterwards throw.",
+        "Also succeeds if the entry does not exist. Scripts that read it afterwards throw.",
         (_key("key", "input", _STRING, "The entry to remove, without braces"),),
         execution="synchronous",
     ),
@@ -432,8 +435,8 @@ _LEAVES: Final = (
         "WasEntryUpdated",
         "Action",
         (0, 0),
-        "Succeeds if a blackboard entry was written since the last look, else fails.",
-        "It fails, too, where the entry does not exist. The first look at an entry that was ever written succeeds.",
+        "Succeeds if a blackboard entry was written since the last check, else fails.",
+        "It also fails if the entry does not exist. The first check of an entry that has been written succeeds.",
         (_key("entry", "input", _ENTRY, "The entry to watch, with or without braces"),),
         aliases=("EntryUpdatedAction",),
         execution="synchronous",
@@ -442,10 +445,11 @@ _LEAVES: Final = (
         "SubTree",
         "SubTree",
         (0, 0),
-        "Stands for another tree.",
-        "The other tree has a blackboard of its own: a port {key} gives it an entry of this one, a literal a constant, "
-        "{=} the entry of the same name, {@key} one of the root blackboard. A tree must not contain itself.",
-        (_input("_autoremap", "bool", "Give it every entry under its own name", "false"),),
+        "Runs another tree.",
+        "The other tree has its own blackboard: a port {key} passes it an entry of this one, a literal a "
+        "constant, {=} the entry of the same name, {@key} one of the root blackboard. A tree must not contain "
+        "itself.",
+        (_input("_autoremap", "bool", "Pass every entry under its own name", "false"),),
     ),
 )
 

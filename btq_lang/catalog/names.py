@@ -94,7 +94,7 @@ def _forbidden_character(name: str) -> str | None:
     found = next(character for character in name if character in _REFUSED)
     if found in _CONTROLS:
         return f"it contains the control character {_code(found)}"
-    return "it contains a blank" if found == " " else f"it contains `{found}`"
+    return "it contains a space" if found == " " else f"it contains `{found}`"
 
 
 def _reserved(name: str) -> str | None:

@@ -580,7 +580,7 @@ AI: Final = (
         "societal-and-ethical-risk-mitigation",
         "It reduces risk to society and to what people hold right.",
     ),
-    ("satisfaction", "transparency", "Stakeholders are content with what they are told about the system."),
+    ("satisfaction", "transparency", "Stakeholders are content with the information that they get about the system."),
 )
 
 # Names that are not the id's words with blanks.

@@ -101,7 +101,7 @@ AMBIGUOUS: Final = {
         ("safety", "freedom-from-risk.health-and-safety-risk-mitigation"),
     ),
     "robustness": (
-        "no name of ISO/IEC 25010: robotics texts mean nearly fault tolerance, ISO/IEC 25059 has it as a part of "
+        "not defined by ISO/IEC 25010: robotics texts usually mean fault tolerance, ISO/IEC 25059 has it as a part of "
         "reliability for systems with artificial intelligence",
         ("reliability.fault-tolerance", "reliability.robustness"),
     ),

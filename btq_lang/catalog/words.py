@@ -45,7 +45,7 @@ _WORDS: Final = (
         "Test",
         "Action",
         "TestNode",
-        "TestNode is the engine's stand-in for substitution rules and is not registered: register an action TestNode",
+        "TestNode is the engine's substitution placeholder and is not registered: register an action TestNode",
     ),
     _custom("ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: name your own action"),
     _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: name your own action"),
@@ -60,20 +60,20 @@ _WORDS: Final = (
     _old(
         "SequenceStar",
         "Control",
-        "SequenceStar is version 3's name of SequenceWithMemory",
+        "SequenceStar is the name of SequenceWithMemory in version 3",
         "SequenceWithMemory",
     ),
-    _old("FallbackStar", "Control", "FallbackStar is version 2's name of Fallback", "Fallback"),
+    _old("FallbackStar", "Control", "FallbackStar is the name of Fallback in version 2", "Fallback"),
     _old(
         "RetryUntilSuccesful",
         "Decorator",
-        "RetryUntilSuccesful is version 3's misspelling of RetryUntilSuccessful",
+        "RetryUntilSuccesful is the version 3 misspelling of RetryUntilSuccessful",
         "RetryUntilSuccessful",
     ),
     _old(
         "SubTreePlus",
         "SubTree",
-        "SubTreePlus is version 3's name of what SubTree does now; its __autoremap is _autoremap",
+        "SubTreePlus is the name of SubTree in version 3; its __autoremap is now _autoremap",
     ),
     *(
         _old(

@@ -99,7 +99,7 @@ def _in_braces(workspace: Workspace, path: str, place: Place, text: str, offset:
     entry = entry_at(workspace, path, offset)
     keys = [] if entry is None else list(offer.keys(workspace, path, entry, bool(begun[1])))
     if not begun[1] and place.node is not None:
-        keys.insert(0, Proposal("=", "key", "the entry that is called as the port", "="))
+        keys.insert(0, Proposal("=", "key", "the entry with the name of the port", "="))
     found = tuple(replace(one, insert=f"{one.insert}{closing}") for one in keys)
     return Completion(Span(offset - len(begun[2]), end), found)
 

@@ -45,7 +45,7 @@ def node_kind(workspace: Workspace, path: str, name: str, quoted: bool = False, 
         return "\n\n".join(filter(None, (shown, text, _ports(ports_of_kind(workspace, path, name)))))
     if not quoted and name in KNOWN_WORDS:
         return f"`{name}`: {KNOWN_WORDS[name].why}."
-    return f"`{name}`: a custom node; no model in this file or in what it includes declares its ports."
+    return f"`{name}`: a custom node without a model in this file or its includes."
 
 
 def _head(kind: NodeKind) -> str:
@@ -72,7 +72,7 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
     """A tree: its ports, what is attached to it, and who runs it."""
     found = workspace.scope(path).find(Kind.TREE, name) or next(defined_elsewhere(workspace, Kind.TREE, name), None)
     if found is None:
-        return f"`{name}`: no tree of this name is known."
+        return f"`{name}`: unknown tree."
     item = found.symbol.target
     shown = f"```btq\nBehaviorTree {name}\n```"
     attached = clauses_detail(item.clauses) if isinstance(item, Tree) else ""
@@ -109,7 +109,7 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
         from btq_lang.features.held import held  # most hovers need no plan of a build
 
         said = held(workspace, path, found, is_attached=bool(attached))
-        lines.append(f"What `btq build` does about it:\n{said}" if said else "")
+        lines.append(f"Enforcement by `btq build`:\n{said}" if said else "")
     return "\n\n".join(filter(None, (*lines, attached)))
 
 

@@ -51,8 +51,8 @@ def _explained(workspace: Workspace, found: Found, wanted: Subject) -> str | Non
         if match.quality is not None:
             return describe.quality(workspace, path, match.quality, match.explanation)
         meant = ", ".join(f"`{one.id}`" for one in match.candidates) or ", ".join(f"`{one}`" for one in match.near)
-        return f"`{mention.name}`: {match.explanation or 'no quality of this name is known'}" + (
-            f"\n\nPerhaps {meant}" if meant else ""
+        return f"`{mention.name}`: {match.explanation or 'unknown quality'}" + (
+            f"\n\nDid you mean {meant}?" if meant else ""
         )
     if wanted.what is What.REQUIREMENT:
         place = definition(workspace, path, wanted)

@@ -308,7 +308,7 @@ def unknown_nodes(workspace: Workspace, path: str) -> Iterator[Proposal]:
     scope = workspace.scope(path)
     for name in _unknown(workspace, workspace.files):
         if scope.find(Kind.MODEL, name) is None:
-            yield Proposal(name, "node", "has no model yet", written(name))
+            yield Proposal(name, "node", "used here, not declared", written(name))
 
 
 def ports(known: tuple[NodePort, ...], given: tuple[str, ...], node: LineNode) -> Iterator[Proposal]:
@@ -346,7 +346,7 @@ def port_values(workspace: Workspace, path: str, entry: Entry | None, port: Node
     if port is not None and port.content == "script":
         yield from words(('""',), "keyword")
         return
-    yield Proposal("{=}", "key", "the entry that is called as the port", "{=}")
+    yield Proposal("{=}", "key", "the entry with the name of the port", "{=}")
     for one in keys(workspace, path, entry, False) if entry is not None else ():
         yield replace(one, label=f"{{{one.label}}}", insert=f"{{{one.insert}}}")
     if port is not None and port.default:

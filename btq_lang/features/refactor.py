@@ -258,7 +258,7 @@ def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Ref
         return  # a comment would be lost
     first, *others = shifts(file, child, own.blanks)
     removed = Edit(Span(own.span.start - len(own.blanks), first.span.end), own.blanks)
-    title = f"Unwrap: take `{node.head.text}` away"
+    title = f"Unwrap: remove `{node.head.text}`"
     yield Refactoring(title, "refactor.rewrite", {path: (removed, *others)})
 
 
@@ -304,7 +304,7 @@ def _lift(workspace: Workspace, path: str, entry: Entry, offset: int) -> Iterato
                     continue
                 refer = Edit(Span(opened, closed + 1), f"satisfies {name}")
             yield Refactoring(
-                f"Lift `{requirement.name.text}` to the file's level", "refactor.extract", {path: (put, refer)}
+                f"Move `{requirement.name.text}` to the top level of the file", "refactor.extract", {path: (put, refer)}
             )
 
 

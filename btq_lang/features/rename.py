@@ -44,7 +44,7 @@ def prepare_rename(workspace: Workspace, path: str, offset: int) -> Renamable | 
     """Whether what stands here can be renamed."""
     found = at(workspace, path, offset)
     if found is None:
-        return Refusal("there is no name here")
+        return Refusal("nothing to rename here")
     wanted = subject(workspace, found)
     reason = _refusal(workspace, wanted, found)
     return Refusal(reason) if reason else Renamable(found.span, found.mention.name)
@@ -59,7 +59,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     ready = prepare_rename(workspace, path, offset)
     found = at(workspace, path, offset)
     if isinstance(ready, Refusal) or found is None:
-        return ready if isinstance(ready, Refusal) else Refusal("there is no name here")
+        return ready if isinstance(ready, Refusal) else Refusal("nothing to rename here")
     wanted = subject(workspace, found)
     reason = _unfit(wanted, name)
     if reason:
@@ -67,9 +67,9 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     places = tuple(everywhere(workspace, wanted))
     foreign = next((place.path for place in places if not is_btq(place.path)), None)
     if foreign is not None:  # a node without a model means the same in files that know nothing of each other
-        return Refusal(f"`{wanted.name}` stands in {foreign}, too, which is no .btq file")
+        return Refusal(f"cannot rename `{wanted.name}`: {foreign}, which is not a .btq file, also uses it")
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
-        return Refusal("names in scripts hold only the letters A to Z, digits and `_`")
+        return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
     reasons: list[str] = []
     for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
@@ -87,41 +87,41 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     """Why a subject is renamed by nobody; empty where it can be."""
     mention = found.mention
     if wanted.what in _FIXED:
-        return f"{_FIXED[wanted.what]} cannot be renamed"
+        return f"cannot rename {_FIXED[wanted.what]}"
     if wanted.home == STANDARD:
-        return f"`{wanted.name}` is a name of the quality model"
+        return f"cannot rename `{wanted.name}`: the quality model defines it"
     if wanted.home.startswith(ENGINE):
-        return f"`{wanted.name}` is a name of the engine"
+        return f"cannot rename `{wanted.name}`: the engine defines it"
     place = definition(workspace, found.path, wanted)
     if place is not None and not is_btq(place.path):
-        return f"`{wanted.name}` is defined in {place.path}, which is no .btq file"
+        return f"cannot rename `{wanted.name}`: its definition is in {place.path}, which is not a .btq file"
     if place is not None and not wanted.home:
-        return f"`{wanted.name}` is defined in {place.path}, which this file does not include"
+        return f"cannot rename `{wanted.name}`: its definition is in {place.path}, which this file does not include"
     unresolved = (What.TREE, What.REQUIREMENT, What.SIGNAL, What.CONTEXT, What.QUALITY, What.PARAMETER)
     if wanted.what in unresolved and place is None and wanted.what is not What.PARAMETER:
-        return f"`{wanted.name}` is defined nowhere"
+        return f"cannot rename `{wanted.name}`: it is not defined"
     if wanted.what is What.KEY and mention.node is not None and mention.node.attribute("_autoremap") is not None:
-        return "`_autoremap` gives the other tree every entry under its own name"
+        return "cannot rename: `_autoremap` passes every entry under its own name"
     for path in workspace.scope(found.path).paths:
         file = workspace.files[path]
         if not is_btq(path) and wanted.name in file.text:
-            return f"{path} may name it too, and is no .btq file"
+            return f"cannot rename `{wanted.name}`: {path}, which is not a .btq file, may also use it"
     return ""
 
 
 def _unfit(wanted: Subject, name: str) -> str:
     """Why a name cannot be one of such a thing; empty where it can."""
     if not name.strip() or "\n" in name or "\r" in name:
-        return "a name has at least one character and stands on one line"
+        return "a name needs at least one character, on one line"
     if wanted.what in _PLAIN and not is_name(name):
-        return f"a {wanted.what.value} is a plain name: letters, digits and `_`"
+        return f"the name of a {wanted.what.value} may contain only letters, digits and `_`"
     if wanted.what is What.KEY and any(character in "{}\"'@= \t" for character in name):
-        return "an entry's name has no braces, quotes, blanks, `@` or `=`"
+        return "the name of an entry must not contain braces, quotes, spaces, `@` or `=`"
     if wanted.what is What.PORT and (not is_port_name(name) or name in RESERVED_ATTRIBUTES):
-        return f"the engine takes no port of the name `{name}`"
+        return f"the engine refuses the port name `{name}`"
     if wanted.what in (What.TREE, What.NODE):
         if lookup(name) is not None:
-            return f"`{name}` is a node of the engine"
+            return f"`{name}` is a built-in node"
         problem = model_name_problem(name)
         return f"the engine refuses the name: {problem}" if problem else ""
     if wanted.what is What.INSTANCE and (problem := instance_name_problem(name)):
@@ -167,15 +167,15 @@ def _changes_meaning(
     moved = _after(found.span.start, edits[path])
     now = at(after, path, moved)
     if now is None or not _is_called(now.mention, name):
-        return f"`{name}` would be read as something else here"
+        return f"`{name}` would have another meaning here"
     meant = subject(after, now)
     expected = {(one.path, _after(one.span.start, edits[one.path])) for one in places}
     reached = {(one.path, one.span.start) for one in everywhere(after, meant)}
     for taken, start in sorted(reached - expected):
         line = after.files[taken].lines.position(start).line + 1
-        return f"`{name}` is in use already: {taken}, line {line}"
+        return f"`{name}` is already in use: {taken}, line {line}"
     if expected - reached:
-        return f"`{name}` would be read as something else in another place"
+        return f"`{name}` would have another meaning in another place"
     return ""
 
 
@@ -198,6 +198,6 @@ _FIXED = {
     What.UNIT: "a unit",
     What.EDITION: "an edition",
     What.RULE: "a rule",
-    What.INCLUDE: "a file is renamed in its folder; it",
+    What.INCLUDE: "a file here: rename it in its folder",
 }
 _PLAIN = frozenset((What.SIGNAL, What.CONTEXT, What.PARAMETER))

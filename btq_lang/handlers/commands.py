@@ -35,7 +35,7 @@ def register(server: Server) -> None:
     def mission(document: types.TextDocumentIdentifier) -> tuple[Workspace, str]:
         place = server.at(document)
         if place is None:
-            raise Refused("this is no .btq file of the editor's folders")
+            raise Refused("this is not a .btq file of the open folders")
         return place
 
     @server.command(XML)
@@ -48,7 +48,7 @@ def register(server: Server) -> None:
 
         done = export(workspace, path)
         for problem in done.problems:
-            raise Refused(f"this cannot be written as XML: {problem.message}")
+            raise Refused(f"cannot write this as XML: {problem.message}")
         return write(enforced(workspace, path, done).export.document)
 
     @server.command(PICTURE)
@@ -75,7 +75,7 @@ def register(server: Server) -> None:
         """Write the XML of a mission as `btq build` does; what is open counts as it is in the editor."""
         _, path = mission(document)
         if not document.uri.startswith("file:"):
-            raise Refused("this document is no file: save it first")
+            raise Refused("save this document to a file first")
         from btq_lang.commands.for_editors import build_open  # as above
 
         code, files, said = build_open(path, session.open)

@@ -48,6 +48,6 @@ def _is_refused(server: Server, workspace: Workspace, path: str) -> bool:
     if error is None:
         return False
     line, column = file.lines.position(error.span.start)
-    message = f"{path}:{line + 1}:{column + 1}: not formatted, for there is an error: {error.message}"
+    message = f"{path}:{line + 1}:{column + 1}: cannot format a file with an error: {error.message}"
     server.window_log_message(types.LogMessageParams(types.MessageType.Warning, message))
     return True

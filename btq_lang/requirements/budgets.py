@@ -260,11 +260,11 @@ class Budgets:
             if root is not None:
                 return _without_terms(self._in(self._nodes.within(root.item)).held[id(root)])
             is_known = self._nodes.run_by(node) is not None
-            return unknown("is a tree that runs itself" if is_known else "is a tree that nobody knows")
+            return unknown("is a tree that contains itself" if is_known else "is an unknown tree")
         if node.kind is None and not node.node.children:
             return _CONDITION if node.category == "Condition" else _NO_CLAUSE
         if node.kind is None:
-            return unknown("is a node of which nobody knows how it runs its children")
+            return unknown("is a custom control or decorator node")
         if not node.node.children:
             return compose(node, ())
         parts = {id(child.node): _as_part(child, at.held[id(child)]) for child in node.children}

@@ -91,10 +91,10 @@ def compose(node: SourceNode, children: Sequence[Budget]) -> Budget:
         return _sleep(node)
     rule = _RULES.get("Switch" if node.tag.startswith("Switch") else node.tag)
     if rule is None or not children or (node.category == "Decorator" and len(children) != 1):
-        return unknown("is a node of which nobody knows how long it takes")
+        return unknown("is a node of unknown duration")
     found = rule(node, children)
     if found is None:
-        return unknown("has children that do not fit it")
+        return unknown("has the wrong number of children")
     if found.waits or node.kind is None or node.kind.execution != "asynchronous":
         return found
     return replace(found, waits=True)
@@ -178,7 +178,7 @@ def _reactive(node: SourceNode, children: Sequence[Budget], found: Budget, ends:
     """A child in front of the one that runs is asked at every tick, and may end the whole."""
     waiting = [index for index, child in enumerate(children) if child.waits]
     if len(waiting) > 1:
-        reason = "has several children that take time, and each of them may be started again and again"
+        reason = "has several children that take time, and may restart each of them without limit"
         return replace(
             found,
             success=ANY if found.success is not None else None,
@@ -234,7 +234,7 @@ def _with_skips(node: SourceNode, children: Sequence[Budget], asks_again: bool) 
     if not skips:
         return None
     if asks_again or any(child.endless for child in children) or sum(skip.high > 0.0 for skip in skips) > 1:
-        reason = "asks a child that was skipped again and again"
+        reason = "ticks a skipped child without limit"
         likely = _likely([child.probability for child in children], None)
         return Budget(ANY, ANY, ANY, probability=likely, reason=reason, endless=True)
     longest = total(child.running for child in children)
@@ -294,7 +294,7 @@ def _while_do_else(node: SourceNode, children: Sequence[Budget]) -> Budget | Non
     if condition.waits or (len(branches) == 2 and all(branch.waits for branch in branches)):
         changes = condition.success is not None and condition.failure is not None
         if condition.waits or changes:
-            reason = "asks its condition at every tick, so its branches may be started again and again"
+            reason = "checks its condition at every tick, so it may restart its branches without limit"
             return Budget(
                 ANY, ANY, ANY, reason=reason, probability=0.0 if found.probability < 1.0 else 1.0, endless=True
             )
@@ -379,7 +379,7 @@ def _again(
     if count == 0 or (count is not None and count < -1):
         return ZERO, None, ZERO, ""
     if count is None or count == -1:
-        reason = "has no end" if count == -1 else "is told by the blackboard how often it runs its child"
+        reason = "has no limit" if count == -1 else "reads from the blackboard how often it runs its child"
         if count == -1:
             return None, _before(go, end, inf), _before(go, skip, inf), reason
         return without_end(hull(go, ZERO)), _before(go, end, inf), hull(_before(go, skip, inf), ZERO), reason
@@ -421,7 +421,7 @@ def _delay(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     seconds = port_seconds(node, "delay_msec")
     wait = ANY if seconds is None else Range(seconds, seconds)
-    reason = "" if seconds is not None else "is told by the blackboard how long it waits"
+    reason = "" if seconds is not None else "reads from the blackboard how long it waits"
     return replace(
         child,
         success=plus(wait, child.success),
@@ -468,7 +468,7 @@ def _loop(node: SourceNode, children: Sequence[Budget]) -> Budget:
     (child,) = children
     if child.running.high == 0.0:
         return Budget(ZERO, ZERO, ZERO, True, child.probability)
-    reason = "runs its child for each item of a queue, and nobody knows how many there are"
+    reason = "runs its child for each item of a queue of unknown length"
     return Budget(ANY, ANY, ANY, True, 0.0 if child.probability < 1.0 else 1.0, reason, True)
 
 
@@ -485,7 +485,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
         failure=without_end(child.failure),
         skip=without_end(child.skip),
         waits=True,
-        reason="waits for somebody to write an entry",
+        reason="waits until an entry is written",
         endless=True,
     )
 
@@ -493,7 +493,7 @@ def _wait_value_update(node: SourceNode, children: Sequence[Budget]) -> Budget:
 def _sleep(node: SourceNode) -> Budget:
     seconds = port_seconds(node, "msec")
     if seconds is None:
-        return Budget(ANY, None, reason="is told by the blackboard how long it waits")
+        return Budget(ANY, None, reason="reads from the blackboard how long it waits")
     return Budget(Range(seconds, seconds), None)
 
 

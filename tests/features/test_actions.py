@@ -241,7 +241,7 @@ def test_wrap_and_unwrap() -> None:
         "            )\n        Place\n"
     )
     check_action(bare.format("$0"), "Wrap in Retry", wrapped.format(""))
-    check_action(wrapped.format("$0"), "Unwrap: take `Retry` away", bare.format(""))
+    check_action(wrapped.format("$0"), "Unwrap: remove `Retry`", bare.format(""))
 
 
 def test_what_is_not_unwrapped() -> None:
@@ -259,7 +259,7 @@ def test_lift_a_requirement() -> None:
                     takes at most 30 s
                     on violation fail
         """,
-        "Lift `rq1` to the file's level",
+        "Move `rq1` to the top level of the file",
         """
         QualityReq rq1 : safety "Slow"
             takes at most 30 s
@@ -283,7 +283,7 @@ def test_lift_a_classic_requirement() -> None:
                            at most 30 sec")
             )
         """,
-        "Lift `rq1` to the file's level",
+        "Move `rq1` to the top level of the file",
         """
         QualityReq rq1 : performance "It shall take at most 30 sec"
 
@@ -304,14 +304,14 @@ def test_lift_to_where_the_tree_stands(item: str, step: str) -> None:
     after = f"{item}BehaviorTree Other\n{item}{step}Wave\n"
     check_action(
         "Root Main\n" + tree.format('QualityReq r$0 : safety "x" takes at most 3 s') + after,
-        "Lift `r` to the file's level",
+        "Move `r` to the top level of the file",
         f'Root Main\n{item}QualityReq r : safety "x"\n{item}{step}takes at most 3 s\n\n{tree.format("r")}{after}',
     )
 
 
 def test_lifts_in_examples() -> None:
-    lifted = [title for example in EXAMPLES for title in check_all_actions(example, "Lift", Severity.ERROR)]
-    assert lifted == [f"Lift `rq{number}` to the file's level" for number in (1, 2, 3)]
+    lifted = [title for example in EXAMPLES for title in check_all_actions(example, "Move `rq", Severity.ERROR)]
+    assert lifted == [f"Move `rq{number}` to the top level of the file" for number in (1, 2, 3)]
 
 
 def test_what_is_not_lifted() -> None:

@@ -36,7 +36,7 @@ def test_a_builtin() -> None:
 
         Turns success into failure and failure into success.
 
-        RUNNING and SKIPPED are passed on as they are.
+        It passes RUNNING and SKIPPED on.
         """,
     )
 
@@ -67,7 +67,7 @@ def test_a_requirement_from_another_file() -> None:
         on violation fail
         ```
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 30 s`: **enforced**
 
         Attached to:
@@ -100,7 +100,7 @@ def test_a_requirement_in_si_units_and_what_a_build_does_about_it() -> None:
         in at least 95 % of runs  # 95 % = 0.95
         ```
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 2 min`: **monitored**
         - `keeps speed <= 36 kmh`: **monitored**
 
@@ -130,7 +130,7 @@ def test_what_a_build_does_may_differ_from_node_to_node() -> None:
         on violation fail
         ```
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 2 s`: **enforced** at `Go`; **not enforced, monitored** at `At`: `At` completes within one tick
 
         Attached to:
@@ -173,7 +173,7 @@ def test_what_a_build_does_about_a_requirement_that_missions_share() -> None:
         verified by monitor
         ```
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 2 s`: **enforced** at `Go`; **not enforced, monitored** at `At`: `At` completes within one tick
 
         Attached to:
@@ -202,7 +202,7 @@ def test_a_requirement_that_people_judge() -> None:
         verified by review
         ```
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 3 s`: **reviewed**: verified by review
 
         Attached to:
@@ -223,7 +223,7 @@ def test_a_requirement_of_a_classic_file() -> None:
 
         SuccessIf takes at most 1 min
 
-        What `btq build` does about it:
+        Enforcement by `btq build`:
         - `takes at most 1 min`: **enforced**
 
         Attached to:
@@ -299,11 +299,11 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         ),
         (
             "BehaviorTree Main\n    Timeout (<hover>ms$0ec</hover> = 30 s)\n        Pick\n",
-            "`input msec : unsigned int` (in ms, required): The time limit; 0 is none",
+            "`input msec : unsigned int` (in ms, required): The time limit; 0 means no limit",
         ),
         (
             "BehaviorTree Main\n    Pick (<hover>_skip$0If</hover> = x)\n",
-            "`_skipIf`: SKIPPED without a tick, if true when the node starts; not looked at while it runs",
+            "`_skipIf`: SKIPPED without a tick, if true when the node starts; not checked while it runs",
         ),
         (
             "signal <hover>spe$0ed</hover> : m/s from {v}\n",
@@ -311,7 +311,7 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         ),
         (
             "BehaviorTree Main\n    <hover>Pi$0ck</hover>\n",
-            "`Pick`: a custom node; no model in this file or in what it includes declares its ports.",
+            "`Pick`: a custom node without a model in this file or its includes.",
         ),
         (
             "Root <hover>Ma$0in</hover>\nBehaviorTree Main\n    Pick\n",
@@ -333,12 +333,12 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         (
             "QualityReq r\n    takes at most 3 s\n    <hover>on viol$0ation</hover> fail\n",
             "**on violation** (clause) · `on violation fail`\n\n"
-            "What the robot does: `fail` the node, `halt` the mission, `warn`, `log`; else it is only monitored.",
+            "What the robot does: `fail` the node, `halt` the mission, `warn` or `log`; default: only monitored.",
         ),
         (
             "BehaviorTree Main\n    Pick <hover>satis$0fies</hover> r\n",
             "**satisfies** (clause of a node) · `satisfies in_time`\n\n"
-            "Late design: a requirement, which can be measured, holds for the node.",
+            "Late design: a measurable requirement holds for the node.",
         ),
     ],
 )

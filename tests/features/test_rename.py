@@ -91,19 +91,22 @@ def test_rename(text: str, name: str, after: str) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("BehaviorTree Main\n    $0->\n        Pick\n", "`Sequence` is a name of the engine"),
-        ("BehaviorTree Main\n    Timeout (ms$0ec = 1 s)\n        Pick\n", "`msec` is a name of the engine"),
-        ("BehaviorTree Main\n    Pick satisfices safe$0ty\n", "`safety` is a name of the quality model"),
-        ("BehaviorTree Main\n    Pick (_ski$0pIf = x)\n", "an attribute of the engine cannot be renamed"),
-        ("BehaviorTree Main\n    SubTree Do$0ck\n", "`Dock` is defined nowhere"),
-        ("BehaviorTree Main\n  $0  Pick\n", "there is no name here"),
+        ("BehaviorTree Main\n    $0->\n        Pick\n", "cannot rename `Sequence`: the engine defines it"),
+        (
+            "BehaviorTree Main\n    Timeout (ms$0ec = 1 s)\n        Pick\n",
+            "cannot rename `msec`: the engine defines it",
+        ),
+        ("BehaviorTree Main\n    Pick satisfices safe$0ty\n", "cannot rename `safety`: the quality model defines it"),
+        ("BehaviorTree Main\n    Pick (_ski$0pIf = x)\n", "cannot rename an attribute of the engine"),
+        ("BehaviorTree Main\n    SubTree Do$0ck\n", "cannot rename `Dock`: it is not defined"),
+        ("BehaviorTree Main\n  $0  Pick\n", "nothing to rename here"),
         (
             "//- main.btq\nBehaviorTree Main\n    SubTree Do$0ck\n//- lib.btq\nBehaviorTree Dock\n    Pick\n",
-            "`Dock` is defined in lib.btq, which this file does not include",
+            "cannot rename `Dock`: its definition is in lib.btq, which this file does not include",
         ),
         (
             "BehaviorTree Main\n    SubTree Dock (_autoremap = true at = {a$0t})\n",
-            "`_autoremap` gives the other tree every entry under its own name",
+            "cannot rename: `_autoremap` passes every entry under its own name",
         ),
     ],
 )
@@ -117,28 +120,28 @@ def test_no_rename(text: str, reason: str) -> None:
         (
             "BehaviorTree Main\n    SubTree Do$0ck\nBehaviorTree Dock\n    Pick\nBehaviorTree Home\n    Pick\n",
             "Home",
-            "`Home` is in use already: main.btq, line 5",
+            "`Home` is already in use: main.btq, line 5",
         ),
         ("BehaviorTree Main\n    Pi$0ck\n", "Retry", "`Retry` is a built-in node"),
-        ("BehaviorTree Main\n    Pi$0ck\n", "my node", "the engine refuses the name: it contains a blank"),
+        ("BehaviorTree Main\n    Pi$0ck\n", "my node", "the engine refuses the name: it contains a space"),
         (
             "BehaviorTree Main\n    ->\n        Pick (to = {wo$0rk})\n        Script (code = \"work := 'x'\")\n",
             "wörk",
-            "names in scripts hold only the letters A to Z, digits and `_`",
+            "a name in a script may contain only the letters A to Z, digits and `_`",
         ),
-        ("signal sp$0eed : m/s\n", "top speed", "a signal is a plain name: letters, digits and `_`"),
-        ("signal v : m/s\ncontext c : v$0 > 0\n", "not", "`not` would be read as something else here"),
+        ("signal sp$0eed : m/s\n", "top speed", "the name of a signal may contain only letters, digits and `_`"),
+        ("signal v : m/s\ncontext c : v$0 > 0\n", "not", "`not` would have another meaning here"),
         (
             "BehaviorTree Main\n    Pick (a = {b$0})\n",
             "x y",
-            "an entry's name has no braces, quotes, blanks, `@` or `=`",
+            "the name of an entry must not contain braces, quotes, spaces, `@` or `=`",
         ),
-        ('QualityReq r$0q "x"\n', "", "a name has at least one character and stands on one line"),
-        ("Action Pick\n    input fr$0om : string\n", "_skipIf", "the engine takes no port of the name `_skipIf`"),
+        ('QualityReq r$0q "x"\n', "", "a name needs at least one character, on one line"),
+        ("Action Pick\n    input fr$0om : string\n", "_skipIf", "the engine refuses the port name `_skipIf`"),
         (
             "Action Pick\n    input fr$0om\n    input to\nBehaviorTree Main\n    Pick (from = a to = b)\n",
             "to",
-            "`to` is in use already: main.btq, line 3",
+            "`to` is already in use: main.btq, line 3",
         ),
     ],
 )
