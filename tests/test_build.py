@@ -176,7 +176,7 @@ def test_a_bundle_with_two_trees_of_one_name_is_refused(btq: Btq) -> None:
     code, _, messages = btq.build("a.btq", "--bundle", "--verbatim")
     assert (code, messages) == (
         1,
-        "a.btq:2:14: error: duplicate tree `Main`: a bundle holds one\nnothing was written\n",
+        "a.btq:2:14: error: there are two trees `Main`: a bundle holds one\nnothing was written\n",
     )
     assert btq.files == ["a.btq", "b.btq"]
 

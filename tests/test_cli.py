@@ -111,7 +111,7 @@ def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG)
     done = btq("check")
     assert done.returncode == 1
-    assert done.stdout.startswith("warning[unknown-node]: unknown node `Sequnce`\n --> main.btq:3:9\n")
+    assert done.stdout.startswith("warning[unknown-node]: unknown node `Sequnce`; did you mean `Sequence`?\n --> main.btq:3:9\n")
     assert "  = help: Replace `Sequnce` by `Sequence`\n" in done.stdout
     assert done.stdout.endswith("Found 1 error, 1 warning\n")
 
@@ -119,8 +119,8 @@ def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
 def test_check_concise_and_json_agree(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG)
     lines = btq("check", "--output-format", "concise").stdout.splitlines()
-    assert lines[0] == "main.btq:3:9: warning[unknown-node] unknown node `Sequnce`"
-    assert lines[1].startswith("main.btq:5:25: error[invalid-literal] `-5` ")
+    assert lines[0] == "main.btq:3:9: warning[unknown-node] unknown node `Sequnce`; did you mean `Sequence`?"
+    assert lines[1].startswith("main.btq:5:25: error[invalid-literal] expected ")
     found = json.loads(btq("check", "--output-format", "json").stdout)
     assert [each["rule"] for each in found["diagnostics"]] == ["unknown-node", "invalid-literal"]
 

@@ -16,12 +16,12 @@ CHANGES = {
     "a value in another unit": (
         "laboratory/mission.btq",
         ("leaves battery >= 3 %", "leaves battery >= 3 V"),
-        "unit-mismatch: `battery` is percentage, `3 V` is voltage",
+        "unit-mismatch: cannot compare `battery` (a percentage) with `3 V` (a voltage)",
     ),
     "a value without a unit": (
         "pick-and-place/cell.btq",
         ("apply grip(limit = 8 N)", "apply grip(limit = 8)"),
-        "number-without-unit: force is expected, `8` has no unit",
+        "number-without-unit: missing unit after `8`; expected a force",
     ),
     "a window in which the odds cannot be shown": (
         "navigation/navigation.btq",
@@ -32,12 +32,12 @@ CHANGES = {
     "a way to a node that is not there": (
         "pick-and-place/cell.btq",
         ("to SortPart succeeds", "to SortParts succeeds"),
-        "unmatched-path: nothing is called `SortParts`",
+        "unmatched-path: unknown node `SortParts`; did you mean `SortPart`?",
     ),
     "two values for one node": (
         "hospital/missions/deliver.btq",
         ("apply locked to ToWard", "apply locked to ToWard\napply slow(limit = 0.2 m/s) to ToWard"),
-        "ambiguous-application: `MoveBase ToWard` gets two values from `slow`: limit = 0.3 m/s and limit = 0.2 m/s",
+        "ambiguous-application: `slow` has two values for `MoveBase ToWard`: limit = 0.3 m/s and limit = 0.2 m/s",
     ),
     "a failure that is only the next attempt": (
         "pick-and-place/cell.btq",

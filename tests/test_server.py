@@ -754,7 +754,7 @@ def test_a_build_that_is_not_done_says_why(editor: Editor) -> None:
     document = editor.document("main.btq")["textDocument"]
     refused = editor.ask("workspace/executeCommand", command="btq.server.build", arguments=[document])
     line, _, last = refused["error"]["message"].splitlines()
-    assert "main.btq:2:13: error[unknown-tree] there is no tree `Dock`" in line
+    assert "main.btq:2:13: error[unknown-tree] unknown tree `Dock`" in line
     assert last == "nothing was written"
     assert not (editor.root / "main.xml").exists()
     uri = "untitled:Untitled-1"
