@@ -111,7 +111,9 @@ def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "main.btq").write_text(WRONG)
     done = btq("check")
     assert done.returncode == 1
-    assert done.stdout.startswith("warning[unknown-node]: unknown node `Sequnce`; did you mean `Sequence`?\n --> main.btq:3:9\n")
+    assert done.stdout.startswith(
+        "warning[unknown-node]: unknown node `Sequnce`; did you mean `Sequence`?\n --> main.btq:3:9\n"
+    )
     assert "  = help: Replace `Sequnce` by `Sequence`\n" in done.stdout
     assert done.stdout.endswith("Found 1 error, 1 warning\n")
 
