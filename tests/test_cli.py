@@ -614,7 +614,7 @@ def test_a_tree_that_runs_itself_as_a_declared_one_is_a_finding(btq: Run) -> Non
     text = "BehaviorTree A\n    Go\n        value = {x}\n            A\nTreeNodesModel\n    SubTree A\n"
     done = btq("check", "--output-format", "concise", "-", stdin=text)
     assert done.stdout.splitlines() == [
-        "<stdin>:3:9: error[syntax-error] attributes stand in brackets: `( key = value )`",
+        "<stdin>:3:9: error[syntax-error] attributes go in brackets: `(key = value)`",
         "<stdin>:4:13: error[recursive-tree] the tree `A` contains itself",
         "Found 2 errors",
     ]

@@ -54,7 +54,7 @@ FROM_XML: Final[list[Case]] = [
     ),
     (
         tree('Script (code = "a := True")'),
-        "2:26 warning misspelt-entry «True» in a script `True` is the name of an entry: the engine's word is `true`",
+        "2:26 warning misspelt-entry «True» a script reads `True` as the name of an entry; did you mean `true`?",
         tree('Script (code = "a := true")'),
     ),
     (
@@ -207,7 +207,7 @@ FROM_PYTHON: Final[list[Case]] = [
     ),
     (
         tree("Retry (attempts=3)", "    Go"),
-        "2:12 error unknown-port «attempts» `Retry` has no port `attempts` | it has `num_attempts`",
+        "2:12 error unknown-port «attempts» `Retry` has no port `attempts`; did you mean `num_attempts`? | it has `num_attempts`",
         tree("Retry (num_attempts=3)", "    Go"),
     ),
     (
@@ -277,8 +277,8 @@ FROM_PYTHON: Final[list[Case]] = [
     (condition("far = 2 m"), "3:31 error syntax-error «=» values are compared with `==`", condition("far == 2 m")),
     (
         condition("lit == True"),
-        "3:34 error unknown-signal «True» no signal `True` is declared | "
-        "did you mean `true`? or declare it: `signal True : bool from {True}`",
+        "3:34 error unknown-signal «True» unknown signal `True`; did you mean `true`? | "
+        "or declare it: `signal True : bool from {True}`",
         condition("lit == true"),
     ),
     (
@@ -445,7 +445,7 @@ FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
     ),
     (
         requirement("takes at most 30"),
-        "4:19 error number-without-unit «30» a time is expected, `30` has no unit",
+        "4:19 error number-without-unit «30» missing unit after `30`; expected a time",
         requirement("takes at most 30 s"),
     ),
     (
