@@ -1,0 +1,135 @@
+"""What a log says: the tree that ran, and what its nodes did.
+
+One invariant: times are whole microseconds since the epoch, and values are as they were logged, in whatever unit.
+Nothing in here knows a file format, a requirement or a verdict.
+"""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_left, bisect_right
+
+from btq_lang.record import Record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import Final, Literal, TypeAlias
+
+    Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
+    SampleValue: TypeAlias = float | bool | str
+    Outcome: TypeAlias = Literal["S", "F", "H", "O"]
+    Timing: TypeAlias = Literal["exact", "latest", "broken"]
+
+IDLE: Final = 0
+RUNNING: Final = 1
+SUCCESS: Final = 2
+FAILURE: Final = 3
+SKIPPED: Final = 4
+ROOT: Final = 1  # the uid of the node whose activations are the runs
+
+
+class LoggedNode(Record):
+    """A node of the tree in a log.
+
+    Attributes:
+        kind: the ID it is registered under.
+        parent: the uid of its parent; 0 for the root.
+        last: the largest uid below it; its own for a leaf.
+    """
+
+    uid: int
+    kind: str
+    path: str
+    parent: int
+    last: int
+
+
+class LoggedTree:
+    """The tree in a log, with its nodes by uid."""
+
+    def __init__(self, nodes: Sequence[LoggedNode]) -> None:
+        self.nodes: Final = {node.uid: node for node in nodes}
+        self.parent: Final = {node.uid: node.parent for node in nodes}
+        self.last: Final = {node.uid: node.last for node in nodes}
+
+
+class Activation:
+    """A node from its start to its end.
+
+    Attributes:
+        outcome: succeeded, failed, halted, or still open when the log ends.
+        timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile.
+    """
+
+    __slots__ = ("begin", "end", "outcome", "timing", "uid")
+
+    def __init__(self, uid: int, begin: int, end: int, outcome: Outcome, timing: Timing = "exact") -> None:
+        self.uid: Final = uid
+        self.begin: Final = begin
+        self.end: Final = end
+        self.outcome: Final[Outcome] = outcome
+        self.timing: Final[Timing] = timing
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasted."""
+        return (self.end - self.begin) / 1e6
+
+    def __repr__(self) -> str:
+        return f"<{self.uid} {self.begin}..{self.end} {self.outcome} {self.timing}>"
+
+
+class Series:
+    """The samples of one signal, in the order of their times."""
+
+    def __init__(self) -> None:
+        self.times: Final = array("q")
+        self.values: Final[list[SampleValue]] = []
+
+    def add(self, time: int, value: SampleValue) -> None:
+        """Add a sample, mostly the latest one; of two at one time the later one counts."""
+        at = len(self.times)
+        if at and time < self.times[-1]:
+            at = bisect_right(self.times, time)
+        self.times.insert(at, time)
+        self.values.insert(at, value)
+
+    def at(self, time: int) -> tuple[int, SampleValue] | None:
+        """The last sample with a time up to this one, with its time; None before the first."""
+        index = bisect_right(self.times, time) - 1
+        return (self.times[index], self.values[index]) if index >= 0 else None
+
+    def between(self, begin: int, end: int) -> Sequence[int]:
+        """The times of the samples after `begin`, up to `end`."""
+        return self.times[bisect_right(self.times, begin) : bisect_right(self.times, end)]
+
+    def forget_before(self, time: int) -> None:
+        """Drop the samples that no question about this time or a later one needs."""
+        index = bisect_left(self.times, time) - 1
+        if index > 0:
+            del self.times[:index], self.values[:index]
+
+
+class Session:
+    """What one logger object wrote: a tree and its transitions, to be read once.
+
+    Attributes:
+        source: the file.
+        transitions: in the order of the file.
+        samples: of the log's own entries, by entry; they grow while the transitions are read.
+        remarks: what is to be said of the file, complete when the transitions have been read.
+    """
+
+    def __init__(
+        self,
+        source: str,
+        tree: LoggedTree,
+        transitions: Iterator[Transition],
+        samples: dict[str, Series] | None = None,
+    ) -> None:
+        self.source: Final = source
+        self.tree: Final = tree
+        self.transitions: Final = transitions
+        self.samples: Final = {} if samples is None else samples
+        self.remarks: Final[list[str]] = []

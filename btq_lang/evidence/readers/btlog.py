@@ -1,0 +1,64 @@
+"""`.btlog`, the file of BehaviorTree.CPP's FileLogger2: the tree as XML, then nine bytes a status change.
+
+One invariant: sizes in the file are checked before they are used, and of a file that was cut off anywhere what is whole
+is read.
+
+Source: src/loggers/bt_file_logger_v2.cpp.
+"""
+
+from __future__ import annotations
+
+import os
+from struct import Struct
+
+from btq_lang.evidence.model import Session
+from btq_lang.evidence.readers.tree import NotALog, read_tree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import BinaryIO, Final
+
+    from btq_lang.evidence.model import Transition
+
+MAGIC: Final = b"BTCPP4-FileLogger2"
+
+
+def read(path: str) -> Iterator[Session]:
+    """The one session of a file.
+
+    Raises:
+        NotALog: it is no such file, of a version that is not known, or ends before the first transition could stand.
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        head = file.read(_HEAD.size)
+        if len(head) < _HEAD.size or not head.startswith(MAGIC):
+            raise NotALog(f"expected a file that begins with {MAGIC.decode()}, as FileLogger2 writes it")
+        _, version, length = _HEAD.unpack(head)
+        if version != _VERSION:
+            raise NotALog(f"version {version} of the format; btq reads version {_VERSION}")
+        if not 0 <= length <= size - _HEAD.size - _START.size:
+            raise NotALog(f"the tree should take {length} bytes, but the file has only {size}")
+        tree = read_tree(file.read(length))
+        (start,) = _START.unpack(file.read(_START.size))
+        session = Session(path, tree, _transitions(file, start))
+        yield session
+        left = (size - _HEAD.size - length - _START.size) % _RECORD.size
+        if left:
+            session.remarks.append(f"cut off: the last {left} bytes are no whole transition and are left out")
+
+
+def _transitions(file: BinaryIO, start: int) -> Iterator[Transition]:
+    while block := file.read(_RECORD.size * _RECORDS_AT_ONCE):
+        whole = len(block) - len(block) % _RECORD.size
+        for low, high, uid, status in _RECORD.iter_unpack(block[:whole]):
+            yield start + low + (high << 32), uid, status
+
+
+_VERSION: Final = 1
+_HEAD: Final = Struct("<18sBi")  # magic, version, length of the tree
+_START: Final = Struct("<q")  # µs since the epoch
+_RECORD: Final = Struct("<IHHB")  # µs since the start in 48 bits, uid, status
+_RECORDS_AT_ONCE: Final = 4096

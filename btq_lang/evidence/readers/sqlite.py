@@ -1,0 +1,77 @@
+"""`.db3` and `.btdb`, the database of BehaviorTree.CPP's SqliteLogger: sessions, each with its tree and transitions.
+
+One invariant: the database is opened to be read only, so a robot can write it meanwhile; a damaged one gives what can
+be read.
+
+Source: src/loggers/bt_sqlite_logger.cpp.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from urllib.request import pathname2url
+
+from btq_lang.evidence.model import Series, Session
+from btq_lang.evidence.readers.tree import NotALog, read_tree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Final
+
+    from btq_lang.evidence.model import Transition
+
+
+def read(path: str) -> Iterator[Session]:
+    """The sessions of a database, in their order.
+
+    Raises:
+        NotALog: it is no database, or has other tables than SqliteLogger's.
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as file:  # for the reason, which SQLite does not give
+        if file.read(len(MAGIC)) != MAGIC:
+            raise NotALog("expected a SQLite database, as SqliteLogger writes it")
+    database = sqlite3.connect(f"file:{pathname2url(path)}?mode=ro", uri=True)
+    try:
+        database.text_factory = lambda data: data.decode("utf-8", "replace")
+        yield from _sessions(path, database)
+    except sqlite3.Error as error:
+        raise NotALog(f"the database cannot be read: {error}") from error
+    finally:
+        database.close()
+
+
+def _sessions(path: str, database: sqlite3.Connection) -> Iterator[Session]:
+    tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+    if missing := sorted({"Definitions", "Transitions"} - tables):
+        raise NotALog(f"expected the tables of SqliteLogger; it has no {' and no '.join(missing)}")
+    for number, xml in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id").fetchall():
+        samples: dict[str, Series] = {}
+        yield Session(path, read_tree(str(xml)), _transitions(database, number, samples), samples)
+
+
+def _transitions(database: sqlite3.Connection, session: int, samples: dict[str, Series]) -> Iterator[Transition]:
+    rows = database.execute(
+        "SELECT timestamp, node_uid, state, extra_data FROM Transitions WHERE session_id = ? ORDER BY timestamp",
+        (session,),
+    )
+    for time, uid, status, extra in rows:
+        if extra:
+            _add_samples(samples, time, extra)
+        yield time, uid, status
+
+
+def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
+    """What a logger's callback has put beside a row, where it is a JSON object: each number, text or bool is a sample."""
+    try:
+        values = json.loads(extra) if isinstance(extra, str) else None
+    except (ValueError, RecursionError):
+        return
+    for name, value in values.items() if isinstance(values, dict) else ():
+        if isinstance(value, float | int | str):
+            samples.setdefault(name, Series()).add(time, value)
+
+
+MAGIC: Final = b"SQLite format 3\0"

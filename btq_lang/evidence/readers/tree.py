@@ -1,0 +1,87 @@
+"""The tree in a log, from the XML that the engine's loggers write.
+
+One invariant: a tree's numbers are what BehaviorTree.CPP makes of it, 1, 2, 3 … depth first, each node's after its
+parent's; what is numbered otherwise is no tree.
+
+The engine writes one `<BehaviorTree>` for each instance of a subtree, and a `SubTree` element says nothing about which
+of them is its own: it is the one whose first node has the number after the SubTree's.
+"""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.document import Element
+from btq_lang.btcpp.reader import read as read_xml
+from btq_lang.evidence.model import ROOT, LoggedNode, LoggedTree
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+
+class NotALog(Exception):
+    """A file is not the log that it was taken for; the message says what was expected."""
+
+
+def read_tree(xml: bytes | str) -> LoggedTree:
+    """The tree of a log.
+
+    Raises:
+        NotALog: there is no tree in the XML.
+    """
+    text = xml.decode("utf-8", "replace") if isinstance(xml, bytes) else xml
+    document = read_xml(text).document
+    if document is None or document.root.tag != "root":
+        raise NotALog("the tree in it is no XML of BehaviorTree.CPP")
+    tops: dict[int, tuple[Element, str]] = {}  # the top node of each tree, by uid, with the path of the tree
+    for tree in document.root.elements:
+        if tree.tag == "BehaviorTree":
+            for element in tree.elements:
+                tops[_uid(element)] = element, tree.get("_fullpath") or ""
+    if ROOT not in tops:
+        raise NotALog("the tree in it has no node with `_uid` 1")
+    nodes = _numbered(tops)
+    if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
+        raise NotALog("the nodes of the tree in it are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
+    last = {uid: uid for uid, *_ in nodes}
+    for uid, _, _, parent in reversed(nodes):
+        if parent:
+            last[parent] = max(last[parent], last[uid])
+    return LoggedTree([LoggedNode(uid, kind, path, parent, last[uid]) for uid, kind, path, parent in nodes])
+
+
+def _numbered(tops: dict[int, tuple[Element, str]]) -> list[tuple[int, str, str, int]]:
+    """uid, kind, path and parent of each node, in the order of the document with subtrees in their places."""
+    found: list[tuple[int, str, str, int]] = []
+    waiting = [(*tops.pop(ROOT), 0)]
+    while waiting:
+        element, prefix, parent = waiting.pop()
+        uid = _uid(element)
+        found.append((uid, _kind(element), _path(element, uid, prefix), parent))
+        if element.tag == "SubTree":
+            if uid + 1 in tops:  # taken out: no tree is below two nodes, or below itself
+                waiting.append((*tops.pop(uid + 1), uid))
+        else:
+            waiting += [(child, prefix, uid) for child in reversed([*element.elements])]
+    return found
+
+
+def _uid(element: Element) -> int:
+    uid = element.get("_uid") or ""
+    return int(uid) if uid.isascii() and uid.isdecimal() and len(uid) <= _MOST_DIGITS else 0
+
+
+def _kind(element: Element) -> str:
+    return element.get("ID") or element.tag if element.tag in _EXPLICIT else element.tag
+
+
+def _path(element: Element, uid: int, prefix: str) -> str:
+    if element.tag == "SubTree":
+        return element.get("_fullpath") or ""
+    kind = _kind(element)
+    name = element.get("name") or kind
+    own = name if name != kind else f"{kind}::{uid}"
+    return f"{prefix}/{own}" if prefix else own
+
+
+_EXPLICIT: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))
+_MOST_DIGITS: Final = 5  # the engine numbers nodes with 16 bits

@@ -1,0 +1,143 @@
+"""Status changes to activations and runs, as the engine and Nav2's control nodes write them.
+
+One invariant: an activation comes out when it has ended, after those below it, so the activation of the root ends its
+run; whatever the log says, none is merged with the next one of its node.
+
+What real logs do beside the plain sequence RUNNING, result, IDLE:
+
+* A node writes IDLE and then its own result (Nav2's RecoveryNode): one row is held back to see.
+* A node writes its first row after rows of its children (Nav2's PipelineSequence): it began with the first of those.
+* Nothing is written when a node is halted (logs without rows to IDLE): it had ended by the time a node above it ended,
+  or by its next start.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SUCCESS, Activation, LoggedTree, Session
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Final
+
+    from btq_lang.evidence.model import Outcome, Timing
+
+
+def activations(session: Session) -> Iterator[Activation]:
+    """The activations of a session, each when it has ended; those of the root are the runs."""
+    tree = session.tree
+    nodes = _OpenNodes(tree)
+    parent = tree.parent
+    begun, running = nodes.begun, nodes.running
+    odd = _Oddities(session)
+    idle: tuple[int, int] | None = None  # a halt that may turn out to be part of the node's own completion
+    last = 0
+    for time, uid, status in session.transitions:
+        if uid not in parent:
+            odd.count("unknown", f"rows of nodes that the tree lacks, the first of uid {uid}", time)
+            continue
+        if time < last:
+            odd.count("backwards", "rows with a time before that of the row above", time)
+            nodes.distrust()
+        completes = status in (SUCCESS, FAILURE)
+        if idle is not None:
+            halted, halted_at = idle
+            idle = None
+            if not (halted == uid and completes and time - halted_at <= _ONE_COMPLETION):
+                yield from nodes.end(halted, halted_at, "H")
+        if status == RUNNING:
+            if uid in running:
+                if uid == ROOT:
+                    yield from nodes.end(ROOT, last, "O", below="O")
+                else:
+                    odd.count("unwritten", _UNWRITTEN, time)
+                    yield from nodes.end(uid, time, "H", "latest")
+            running.add(uid)
+            nodes.begin(uid, time)
+        elif completes:
+            nodes.begin(uid, time)
+            ended = nodes.end(uid, time, "S" if status == SUCCESS else "F")
+            if len(ended) > 1:
+                odd.count("unwritten", _UNWRITTEN, time)
+            yield from ended
+        elif uid in running:
+            idle = uid, time
+        else:
+            begun.pop(uid, None)
+        last = time
+    if idle is not None:
+        yield from nodes.end(*idle, "H")
+    if ROOT in begun:
+        yield from nodes.end(ROOT, last, "O", below="O")
+    odd.tell()
+
+
+class _OpenNodes:
+    """The nodes that have begun and not ended.
+
+    Attributes:
+        begun: when each of them began: with its own first row, or the first one below it.
+        running: those of them that have written RUNNING.
+    """
+
+    def __init__(self, tree: LoggedTree) -> None:
+        self.begun: Final[dict[int, int]] = {}
+        self.running: Final[set[int]] = set()
+        self._tree: Final = tree
+        self._distrusted: Final[set[int]] = set()
+
+    def begin(self, uid: int, time: int) -> None:
+        """A node is active, and so are those above it, whether they have written so or not."""
+        begun, parent = self.begun, self._tree.parent
+        time = begun.setdefault(uid, time)
+        above = parent[uid]
+        while above and above not in begun:
+            begun[above] = time
+            above = parent[above]
+
+    def end(
+        self, uid: int, time: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
+    ) -> list[Activation]:
+        """What ends with a node: what was active below it, innermost first, and the node itself."""
+        found: list[Activation] = []
+        last = self._tree.last[uid]
+        if last > uid:
+            inside = sorted([each for each in self.begun if uid < each <= last], reverse=True)
+            for each in inside:
+                begin = self.begun.pop(each)
+                if each in self.running:
+                    self.running.discard(each)
+                    found.append(self._made(each, begin, time, below, "latest" if below == "H" else "exact"))
+        self.running.discard(uid)
+        found.append(self._made(uid, self.begun.pop(uid), time, outcome, timing))
+        return found
+
+    def distrust(self) -> None:
+        """The clock was set back: nobody can say how long what is active now takes."""
+        self._distrusted.update(self.begun)
+
+    def _made(self, uid: int, begin: int, end: int, outcome: Outcome, timing: Timing) -> Activation:
+        if uid in self._distrusted:
+            self._distrusted.discard(uid)
+            timing = "broken"
+        return Activation(uid, begin, end, outcome, timing)
+
+
+class _Oddities:
+    """What is unusual in a log: counted, and told once each with its first place."""
+
+    def __init__(self, session: Session) -> None:
+        self._session: Final = session
+        self._found: Final[dict[str, tuple[str, int, int]]] = {}
+
+    def count(self, key: str, what: str, time: int) -> None:
+        said, first, number = self._found.get(key, (what, time, 0))
+        self._found[key] = said, first, number + 1
+
+    def tell(self) -> None:
+        for what, first, number in self._found.values():
+            self._session.remarks.append(f"{number} {what}, at {first / 1e6:.6f} s")
+
+
+_ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
+_UNWRITTEN: Final = "halts without a row: their ends are known only at the latest"

@@ -1,0 +1,93 @@
+"""How sure k of n makes one: exact binomial limits, and how many more runs would decide.
+
+One invariant: the limits are Clopper and Pearson's, one-sided, so each holds with the confidence asked for, and for one
+look at the data.  SciPy has the same in `scipy.stats.beta`, but takes a second to import.
+"""
+
+from __future__ import annotations
+
+from math import exp, inf, lgamma, log, log1p
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Final
+
+
+def lower_limit(k: int, n: int, confidence: float) -> float:
+    """The largest probability that k or more of n exclude from above: with this confidence it is larger.
+
+    Args:
+        k: of the n that were counted, those that hold.
+        confidence: of the one side, a fraction of one.
+    """
+    if k <= 0:
+        return 0.0
+    return _root(lambda p: beta_cdf(p, k, n - k + 1) - (1 - confidence))
+
+
+def upper_limit(k: int, n: int, confidence: float) -> float:
+    """The smallest probability that k or fewer of n exclude from below: with this confidence it is smaller."""
+    return 1.0 - lower_limit(n - k, n, confidence)
+
+
+def runs_to_decide(k: int, n: int, confidence: float, probability: float) -> int | None:
+    """How many more, all of them holding, lift the lower limit to a probability; None: none do."""
+    if probability >= 1.0:
+        return None
+
+    def decides(more: int) -> bool:
+        return lower_limit(k + more, n + more, confidence) >= probability
+
+    high = 1
+    while not decides(high):
+        high *= 2
+        if high > _MOST_RUNS:
+            return None
+    low = high // 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if decides(middle) else (middle, high)
+    return high
+
+
+def beta_cdf(x: float, a: float, b: float) -> float:
+    """The regularised incomplete beta function I_x(a, b), by its continued fraction (DLMF 8.17.22)."""
+    if x <= 0.0 or x >= 1.0:
+        return min(max(x, 0.0), 1.0)
+    if x > (a + 1) / (a + b + 2):  # where the other tail converges faster
+        return 1.0 - beta_cdf(1 - x, b, a)
+    front = exp(lgamma(a + b) - lgamma(a) - lgamma(b) + a * log(x) + b * log1p(-x)) / a
+    c, d = 1.0, 1.0 / _nonzero(1 - (a + b) * x / (a + 1))
+    fraction = d
+    for m in range(1, _MOST_TERMS):
+        step = inf
+        for term in (
+            m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+            -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)),
+        ):
+            d = 1.0 / _nonzero(1 + term * d)
+            c = _nonzero(1 + term / c)
+            step = c * d
+            fraction *= step
+        if abs(step - 1) < _PRECISION:
+            break
+    return front * fraction
+
+
+def _root(function: Callable[[float], float]) -> float:
+    """Where a function that grows from below 0 to above it, on [0, 1], is 0."""
+    low, high = 0.0, 1.0
+    while (middle := (low + high) / 2) not in (low, high):
+        low, high = (middle, high) if function(middle) < 0 else (low, middle)
+    return high
+
+
+def _nonzero(value: float) -> float:
+    return value if abs(value) > _TINY else _TINY
+
+
+_PRECISION: Final = 1e-15
+_TINY: Final = 1e-300
+_MOST_TERMS: Final = 100_000
+_MOST_RUNS: Final = 10**9
