@@ -86,7 +86,7 @@ def side_file(workspace: Workspace, built: Built) -> str | None:
         loose.setdefault(requirement.name, []).append(claim.text)
     place = _Places(workspace, posixpath.dirname(built.place))
     main = built.documents[-1].root.get("main_tree_to_execute")
-    running = _Running(built, found.nodes, main)
+    running = RunningTree(built, found.nodes, main)
     return _text(
         {
             "format": FORMAT,
@@ -153,8 +153,12 @@ def _text(data: dict[str, Json]) -> str:
 # ---- the tree that runs ----
 
 
-class _Running:
-    """The nodes of the tree that runs, each with what it was written as; None where that is no node of a mission."""
+class RunningTree:
+    """The nodes of the tree that runs.
+
+    Attributes:
+        all: each with what it was written as; None where that is not a node of a mission.
+    """
 
     def __init__(self, built: Built, nodes: Nodes, main: str | None) -> None:
         written = {id(built.elements[id(node.node)]): node for node in nodes.all if id(node.node) in built.elements}
@@ -175,7 +179,11 @@ class _Running:
 
     def uids(self, target: Target) -> list[Json]:
         """The numbers of a node's instances, of those that the path goes through."""
-        return [each.uid for each in self._of.get(id(target.node), ()) if self._leads_to(each, target.through)]
+        return [each.uid for each in self.instances(target)]
+
+    def instances(self, target: Target) -> list[Instance]:
+        """A node's instances, of those that the path goes through."""
+        return [each for each in self._of.get(id(target.node), ()) if self._leads_to(each, target.through)]
 
     def _leads_to(self, instance: Instance, through: tuple[str, ...]) -> bool:
         """Whether the names are met, in their order, on the way to an instance."""
@@ -208,7 +216,7 @@ def _requirement(requirement: Requirement, loose: list[Json] | None, place: _Pla
     return {**plain, "clauses_without_nodes": loose} if loose else plain
 
 
-def _applied(applied: Applied, held: tuple[Held, ...], running: _Running, place: _Places) -> Json:
+def _applied(applied: Applied, held: tuple[Held, ...], running: RunningTree, place: _Places) -> Json:
     subject = applied.subject
     found: dict[str, Json] = {"requirement": applied.requirement.name, "how": applied.how}
     if applied.arguments:
@@ -227,7 +235,7 @@ def _applied(applied: Applied, held: tuple[Held, ...], running: _Running, place:
     return found
 
 
-def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, running: _Running) -> Iterator[Json]:
+def _concerns(workspace: Workspace, paths: tuple[str, ...], nodes: Nodes, running: RunningTree) -> Iterator[Json]:
     """What `satisfices` says, of a tree as of its node."""
     for path in paths:
         for entry in workspace.files[path].parsed.entries:

@@ -8,6 +8,7 @@ from argparse import ArgumentParser, ArgumentTypeError, Namespace, RawDescriptio
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
+from btq_lang.evidence import FORMATS as EVIDENCE_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.near import near
@@ -40,6 +41,7 @@ def add_commands(commands: _SubParsersAction[Parser]) -> None:
     _add_build(commands)
     _add_import(commands)
     _add_trace(commands)
+    _add_verify(commands)
     _add_graph(commands)
     _add_preview(commands)
     _add_diff(commands)
@@ -184,6 +186,35 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--bundle", action="store_true", help="what is enforced where missions are built with --bundle")
     parser.add_argument("--format", choices=TRACE_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    _add_color(parser)
+
+
+def _add_verify(commands: _SubParsersAction[Parser]) -> None:
+    parser = _command(
+        commands,
+        "verify",
+        "judge what robots did, by their logs, against what the mission demands",
+        epilog="exit codes: 0 nothing violated; 1 a requirement violated (--strict: or not satisfied); 2 usage, I/O, or\n"
+        "nothing to read\n\n"
+        "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
+        "  btq verify run.db3 --mission mission.btq           or named\n"
+        "  btq verify run.db3 --signals battery.csv           with samples of signals\n",
+    )
+    parser.add_argument(
+        "logs", nargs="+", metavar="LOG", help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), and folders"
+    )
+    parser.add_argument(
+        "--mission",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="the mission, may be repeated; default: all of the project, and those of side files beside the logs",
+    )
+    parser.add_argument(
+        "--signals", metavar="FILE", help="samples as CSV: seconds since the epoch, then a column a signal or entry"
+    )
+    parser.add_argument("--format", choices=EVIDENCE_FORMATS, help="default: table")
+    parser.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
     _add_color(parser)
 
 

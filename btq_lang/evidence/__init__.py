@@ -1,0 +1,86 @@
+"""Run-time evidence: a verdict for each requirement, from logs of what robots did.
+
+One invariant: what a log does not say is unknown, with the reason; nothing is guessed, and no clause is left out.
+
+    readers/       a module a format: files to sessions
+    model.py       what a log says: the tree that ran, transitions, activations, samples
+    runs.py        transitions to activations and runs
+    identity.py    which node of a log is which written node
+    signals.py, conditions.py   what signals were at a moment, and whether conditions held
+    guards.py      what the nodes did that a build has put around others
+    verbs/         a module a verb: what an activation came to
+    evaluate.py    all clauses of a mission, judged while a log is read
+    tally.py, statistics.py   what was counted, and how sure it makes one
+    verdicts.py    what comes out, as data
+    table.py, json_document.py   the writers
+"""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from typing import Final
+
+    from btq_lang.evidence.identity import Mission
+    from btq_lang.evidence.model import Series
+    from btq_lang.evidence.verdicts import Report
+
+# The command line asks for them whatever it is to do, so nothing else is imported here.
+FORMATS: Final = ("table", "json")
+
+
+def verify(
+    logs: Iterable[str], missions: Sequence[Mission], samples: Mapping[str, Series], shown: Callable[[str], str]
+) -> Report:
+    """The verdicts of missions by what logs say.
+
+    Args:
+        logs: the files; one that cannot be read is a problem of the report, and the others are judged.
+        samples: of signals, by the signal's name or its entry.
+        shown: a path as people read it.
+    """
+    from btq_lang.evidence.evaluate import MissionEvaluation
+    from btq_lang.evidence.identity import join
+    from btq_lang.evidence.readers import NotALog, read
+    from btq_lang.evidence.runs import count_runs
+    from btq_lang.evidence.verdicts import Foreign, Report
+
+    evaluations = {mission.path: MissionEvaluation(mission) for mission in missions}
+    foreign: list[Foreign] = []
+    problems: list[str] = []
+    runs = 0
+    for log in logs:
+        try:
+            for session in read(log):
+                joined = join(missions, session.tree)
+                if joined is None:
+                    foreign.append(Foreign(shown(log), count_runs(session)))
+                else:
+                    runs += evaluations[joined.mission.path].read(session, joined, samples, runs + 1, shown(log))
+        except NotALog as error:
+            problems.append(f"{shown(log)}: {error}")
+        except OSError as error:
+            problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
+    results = tuple(each.result() for each in evaluations.values())
+    return Report(tuple(each for each in results if each.sources), tuple(foreign), tuple(problems))
+
+
+def write(report: Report, form: str, *, colour: bool = False) -> str:
+    """The report in one of FORMATS.
+
+    Args:
+        colour: ANSI colours, for `table`.
+
+    Raises:
+        ValueError: there is no such format.
+    """
+    if form == "table":
+        from btq_lang.evidence.table import table
+
+        return table(report, colour)
+    if form == "json":
+        from btq_lang.evidence.json_document import json_text
+
+        return json_text(report)
+    raise ValueError(f"unknown format {form!r}; the formats are {', '.join(FORMATS)}")

@@ -115,7 +115,6 @@ class Session:
     """What one logger object wrote: a tree and its transitions, to be read once.
 
     Attributes:
-        source: the file.
         transitions: in the order of the file.
         samples: of the log's own entries, by entry; they grow while the transitions are read.
         remarks: what is to be said of the file, complete when the transitions have been read.
@@ -123,13 +122,12 @@ class Session:
 
     def __init__(
         self,
-        source: str,
         tree: LoggedTree,
         transitions: Iterator[Transition],
         samples: dict[str, Series] | None = None,
+        remarks: list[str] | None = None,
     ) -> None:
-        self.source: Final = source
         self.tree: Final = tree
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
-        self.remarks: Final[list[str]] = []
+        self.remarks: Final = [] if remarks is None else remarks

@@ -72,6 +72,11 @@ def activations(session: Session) -> Iterator[Activation]:
     odd.tell()
 
 
+def count_runs(session: Session) -> int:
+    """How many runs a session holds."""
+    return sum(activation.uid == ROOT for activation in activations(session))
+
+
 class _OpenNodes:
     """The nodes that have begun and not ended.
 

@@ -43,11 +43,10 @@ def read(path: str) -> Iterator[Session]:
             raise NotALog(f"the tree should take {length} bytes, but the file has only {size}")
         tree = read_tree(file.read(length))
         (start,) = _START.unpack(file.read(_START.size))
-        session = Session(path, tree, _transitions(file, start))
+        session = Session(tree, _transitions(file, start))
+        if left := (size - _HEAD.size - length - _START.size) % _RECORD.size:
+            session.remarks.append(f"cut off: {left} bytes at the end are not a whole transition and are left out")
         yield session
-        left = (size - _HEAD.size - length - _START.size) % _RECORD.size
-        if left:
-            session.remarks.append(f"cut off: the last {left} bytes are no whole transition and are left out")
 
 
 def _transitions(file: BinaryIO, start: int) -> Iterator[Transition]:

@@ -36,31 +36,40 @@ def read(path: str) -> Iterator[Session]:
     database = sqlite3.connect(f"file:{pathname2url(path)}?mode=ro", uri=True)
     try:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
-        yield from _sessions(path, database)
+        yield from _sessions(database)
     except sqlite3.Error as error:
         raise NotALog(f"the database cannot be read: {error}") from error
     finally:
         database.close()
 
 
-def _sessions(path: str, database: sqlite3.Connection) -> Iterator[Session]:
+def _sessions(database: sqlite3.Connection) -> Iterator[Session]:
     tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
     if missing := sorted({"Definitions", "Transitions"} - tables):
         raise NotALog(f"expected the tables of SqliteLogger; it has no {' and no '.join(missing)}")
     for number, xml in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id").fetchall():
         samples: dict[str, Series] = {}
-        yield Session(path, read_tree(str(xml)), _transitions(database, number, samples), samples)
+        remarks: list[str] = []
+        yield Session(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
 
 
-def _transitions(database: sqlite3.Connection, session: int, samples: dict[str, Series]) -> Iterator[Transition]:
-    rows = database.execute(
-        "SELECT timestamp, node_uid, state, extra_data FROM Transitions WHERE session_id = ? ORDER BY timestamp",
-        (session,),
-    )
-    for time, uid, status, extra in rows:
-        if extra:
-            _add_samples(samples, time, extra)
-        yield time, uid, status
+def _transitions(
+    database: sqlite3.Connection, session: int, samples: dict[str, Series], remarks: list[str]
+) -> Iterator[Transition]:
+    """The transitions of a session; samples and remarks are added to while they are read."""
+    malformed = 0
+    try:
+        for time, uid, status, extra in database.execute(_TRANSITIONS, (session,)):
+            if type(time) is int and type(uid) is int:
+                if extra:
+                    _add_samples(samples, time, extra)
+                yield time, uid, status
+            else:
+                malformed += 1
+    except sqlite3.Error as error:
+        remarks.append(f"the database is damaged, and what comes after that is left out: {error}")
+    if malformed:
+        remarks.append(f"rows left out, for their time or uid is not a whole number: {malformed}")
 
 
 def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
@@ -75,3 +84,6 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
 
 
 MAGIC: Final = b"SQLite format 3\0"
+_TRANSITIONS: Final = (
+    "SELECT timestamp, node_uid, state, extra_data FROM Transitions WHERE session_id = ? ORDER BY timestamp"
+)

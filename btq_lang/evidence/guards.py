@@ -1,0 +1,85 @@
+"""What the nodes that a build has put around others did: whom they stopped, and whose start they refused.
+
+One invariant: an activation that was halted is passed on only when it is known who halted it: the nearest node above it
+that was not halted itself.
+"""
+
+from __future__ import annotations
+
+from btq_lang.record import Record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Final
+
+    from btq_lang.evidence.model import Activation, LoggedTree
+
+
+class Guard(Record):
+    """A node that was put around others.
+
+    Attributes:
+        kind: `Timeout`, `ReactiveSequence`, `Sequence` or `ScriptCondition`.
+        requirement: the one that asks for it.
+    """
+
+    kind: str
+    requirement: str
+
+
+class Refusal(Record):
+    """A node was not started, for what a requirement needs did not hold."""
+
+    uid: int
+    time: int
+    requirement: str
+
+
+class Guards:
+    """The guards around some nodes of a tree, while a log is read."""
+
+    def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Iterable[int]) -> None:
+        """
+        Args:
+            enforcing: the nodes that were put around others, with their requirements.
+            judged: the nodes that somebody asks about.
+        """
+        self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
+        self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
+        self._refuse: Final[dict[int, list[int]]] = {}
+        self._waiting: Final[dict[int, list[tuple[Activation, tuple[int, ...]]]]] = {}
+        for uid in judged:
+            around: list[int] = []
+            above = tree.parent[uid]
+            while above in self._guards:
+                around.append(above)
+                above = tree.parent[above]
+            self._around[uid] = tuple(around)
+            for guard in self._guards:
+                is_before = guard < uid and self._guards[guard].kind == "ScriptCondition"
+                if is_before and tree.parent[guard] in around and self._guards[tree.parent[guard]].kind == "Sequence":
+                    self._refuse.setdefault(guard, []).append(uid)
+
+    def settled(self, activation: Activation) -> list[tuple[Activation, Guard | None]]:
+        """The activations that can be judged now that this one has ended, each with the guard that stopped it."""
+        uid = activation.uid
+        around = self._around.get(uid)
+        found: list[tuple[Activation, Guard | None]] = []
+        if around and activation.outcome == "H":
+            self._waiting.setdefault(around[0], []).append((activation, around[1:]))
+        elif around is not None:
+            found.append((activation, None))
+        for halted, further in self._waiting.pop(uid, ()):
+            if activation.outcome == "H" and further:
+                self._waiting.setdefault(further[0], []).append((halted, further[1:]))
+            else:
+                found.append((halted, self._guards[uid] if activation.outcome == "F" else None))
+        return found
+
+    def refused(self, activation: Activation) -> list[Refusal]:
+        """The starts that are refused by what has just ended."""
+        if activation.outcome != "F" or activation.uid not in self._refuse:
+            return []
+        requirement = self._guards[activation.uid].requirement
+        return [Refusal(uid, activation.end, requirement) for uid in self._refuse[activation.uid]]

@@ -1,0 +1,183 @@
+"""Which node of a log is which written node.
+
+One invariant: a node of a log is joined with a written one only where both have the same number and path in one build
+of the mission, or the same path that no other node has; what is not joined is not judged.
+"""
+
+from __future__ import annotations
+
+from btq_lang.btcpp.enforcement import enforced
+from btq_lang.btcpp.export import export, is_mission
+from btq_lang.btcpp.side_file import Built, RunningTree
+from btq_lang.btcpp.wrappers import MARK
+from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.record import Record, replace
+from btq_lang.requirements import requirements
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from typing import Final
+
+    from btq_lang.btcpp.document import Element
+    from btq_lang.btcpp.instances import Instance
+    from btq_lang.evidence.model import LoggedTree
+    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.model import Target
+    from btq_lang.workspace import Workspace
+
+
+class Mission:
+    """A mission that logs may be of, and the trees that `btq build` makes of it, made when they are asked for.
+
+    Attributes:
+        name: what people call it.
+        side: the nodes that its side file lists, uid and path of each; None where there is none.
+    """
+
+    def __init__(self, workspace: Workspace, path: str, name: str, side: Sequence[tuple[int, str]] | None) -> None:
+        self.workspace: Final = workspace
+        self.path: Final = path
+        self.name: Final = name
+        self.side: Final = side
+        self.requirements: Final[Requirements] = requirements(workspace, path)
+        self._builds: Final[list[_Build]] = []
+        self._unmade: Final = _builds(self)
+
+    def builds(self) -> Iterator[_Build]:
+        """What `btq build` makes of it: as it does without options first."""
+        yield from self._builds
+        for build in self._unmade:
+            self._builds.append(build)
+            yield build
+
+
+class Joined(Record):
+    """The nodes of a mission in a log.
+
+    Attributes:
+        tree: of the log.
+        how: how they were found.
+        uids: of the nodes that were found, by the number that they have in the build.
+        number: how many of the log's nodes were found.
+    """
+
+    mission: Mission
+    tree: LoggedTree
+    how: str
+    uids: Mapping[int, int]
+    number: int
+    build: _Build
+
+    def instances(self, target: Target) -> list[tuple[str, int | None]]:
+        """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
+        return [
+            (instance.path, self.uids.get(_number(instance))) for instance in self.build.running.instances(target)
+        ]
+
+    def enforcing(self) -> dict[int, str]:
+        """The nodes of the log that a build has put around others, with the requirement of each."""
+        found: dict[int, str] = {}
+        for instance, _ in self.build.running.all:
+            mark, uid = instance.element.get(MARK), self.uids.get(_number(instance))
+            if mark is not None and uid is not None:
+                found[uid] = mark
+        return found
+
+
+class _Build(Record):
+    """What a build makes of a mission; how: with which options, in words."""
+
+    how: str
+    running: RunningTree
+
+
+def join(missions: Sequence[Mission], tree: LoggedTree) -> Joined | None:
+    """The mission that a log's tree is of, with its nodes; None where none of the missions has half of the nodes."""
+    wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
+    best: Joined | None = None
+    for mission in missions:
+        for build in mission.builds():
+            found = _same(mission, build, tree, wanted) or _by_path(mission, build, tree)
+            if found.number == len(wanted):
+                return found
+            if best is None or found.number > best.number:
+                best = found
+    return best if best is not None and best.number * 2 >= len(wanted) else None
+
+
+def _same(mission: Mission, build: _Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
+    """All nodes, where the tree is just the one that a build makes."""
+    made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
+    if made != wanted:
+        return None
+    is_side = mission.side is not None and list(mission.side) == [(uid, path) for uid, _, path in wanted]
+    how = "side file matches" if is_side else build.how
+    return Joined(mission, tree, how, {uid: uid for uid, *_ in wanted}, len(wanted), build)
+
+
+def _by_path(mission: Mission, build: _Build, tree: LoggedTree) -> Joined:
+    """The nodes whose path is the same, and no other node's on either side."""
+    logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
+    made = _unique(
+        [((_kind(each.element), _without_number(each.path)), _number(each)) for each, _ in build.running.all]
+    )
+    uids = {number: logged[key] for key, number in made.items() if key in logged}
+    return Joined(mission, tree, "built from another version", uids, len(uids), build)
+
+
+def _builds(mission: Mission) -> Iterator[_Build]:
+    """The trees that builds with different options make, without those that cannot be made."""
+    workspace = mission.workspace
+    targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
+    for target in targets:
+        project = replace(workspace.project, engines=(target,))
+        for is_enforced in (True, False):
+            running = _running(mission, workspace.with_project(project), is_enforced)
+            if running is not None:
+                how = "as built now" if target == targets[0] else f"as built for {target}"
+                yield _Build(how if is_enforced else f"{how} with --no-enforce", running)
+
+
+def _running(mission: Mission, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
+    """The tree that runs, as `btq build` makes it; None where it makes none."""
+    path = mission.path
+    exports = [export(workspace, each) for each in workspace.closure(path)]
+    if any(each.problems for each in exports):
+        return None
+    if is_enforced:
+        exports = [
+            enforced(workspace, file, each).export if is_mission(workspace, file) else each
+            for file, each in zip(workspace.closure(path), exports, strict=True)
+        ]
+    elements = {key: element for each in exports for key, element in each.elements.items()}
+    documents = tuple(each.document for each in exports)
+    main = documents[-1].root.get("main_tree_to_execute")
+    if main is None:
+        return None
+    return RunningTree(Built(path, path, "", documents, elements), mission.requirements.nodes, main)
+
+
+def _number(instance: Instance) -> int:
+    """Its number in the build; 0 behind a tree that is not at hand."""
+    return instance.uid or 0
+
+
+def _kind(element: Element) -> str:
+    return element.get("ID") or element.tag if element.tag in _EXPLICIT else element.tag
+
+
+def _without_number(path: str) -> str:
+    """A path without the numbers of nodes without names, which change wherever a node before them comes or goes."""
+    parts = [(name, *name.rpartition("::")) for name in path.split("/")]
+    return "/".join(own if own and number.isdecimal() else name for name, own, _, number in parts)
+
+
+def _unique(pairs: list[tuple[tuple[str, str], int]]) -> dict[tuple[str, str], int]:
+    seen: dict[tuple[str, str], list[int]] = {}
+    for key, number in pairs:
+        seen.setdefault(key, []).append(number)
+    return {key: numbers[0] for key, numbers in seen.items() if len(numbers) == 1}
+
+
+_EXPLICIT: Final = frozenset(("Action", "Condition", "Control", "Decorator", "SubTree"))

@@ -1,0 +1,92 @@
+"""Verdicts for programs: a document that `verdicts.schema.json` describes."""
+
+from __future__ import annotations
+
+import json
+
+from btq_lang.evidence.wording import timestamp
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source
+
+    Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+
+FORMAT: Final = "btq-verdicts"
+VERSION: Final = 1
+
+
+def json_text(report: Report) -> str:
+    """The document."""
+    document: Json = {
+        "format": FORMAT,
+        "version": VERSION,
+        "runs": sum(mission.runs for mission in report.missions),
+        "sources": [
+            *(_source(source, mission) for mission in report.missions for source in mission.sources),
+            *({"file": each.file, "mission": None, "runs": each.runs, "remarks": []} for each in report.foreign),
+        ],
+        "requirements": [
+            _requirement(requirement, mission) for mission in report.missions for requirement in mission.requirements
+        ],
+    }
+    return json.dumps(document, indent=1, allow_nan=False) + "\n"
+
+
+def _source(source: Source, mission: MissionVerdicts) -> Json:
+    return {
+        "file": source.file,
+        "mission": mission.name,
+        "runs": source.runs,
+        "first_run": source.first_run,
+        "start": timestamp(source.begin) if source.begin is not None else None,
+        "end": timestamp(source.end) if source.end is not None else None,
+        "identity": source.identity,
+        "joined": source.joined,
+        "nodes": source.nodes,
+        "remarks": list(source.remarks),
+    }
+
+
+def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> Json:
+    return {
+        "id": requirement.id,
+        "mission": mission.name,
+        "title": requirement.title,
+        "verdict": requirement.verdict,
+        "clauses": [_clause(each) for each in requirement.clauses],
+    }
+
+
+def _clause(clause: ClauseVerdict) -> Json:
+    worst = clause.worst
+    return {
+        "text": clause.text,
+        "path": clause.path,
+        "verdict": clause.verdict,
+        "why": clause.why,
+        "unit": clause.unit,
+        "counted": clause.counted,
+        "violated": clause.violated,
+        "unknown": clause.unknown,
+        "cut_off": clause.cut_off,
+        "worst": {"si": worst.si, "text": worst.text, "run": worst.run} if worst is not None else None,
+        "interval": list(clause.interval) if clause.interval is not None else None,
+        "confidence": clause.confidence,
+        "more": clause.more,
+        "violations": [
+            {
+                "run": each.run,
+                "source": each.source,
+                "path": each.path,
+                "start": timestamp(each.start),
+                "at": each.at,
+                "measured": each.measured or None,
+                "bound": each.bound or None,
+                "why": each.why,
+            }
+            for each in clause.violations
+        ],
+    }

@@ -1,0 +1,99 @@
+"""What signals were at a moment, from samples: those of `--signals` first, else the log's own entries.
+
+One invariant: an answer is a value in SI or the reason why nobody knows; a value holds until the next sample, at most
+for `fresh within`.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.model import Series
+from btq_lang.record import Record
+from btq_lang.requirements.model import Value
+from btq_lang.units import to_si
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Final
+
+    from btq_lang.evidence.model import SampleValue
+    from btq_lang.requirements.model import Signal
+
+
+class Unknown(Record):
+    """Nobody can say, and why."""
+
+    why: str
+
+
+class Signals:
+    """The samples that a session is judged with.
+
+    Attributes:
+        logged: of the session's own entries, by entry.
+    """
+
+    def __init__(self, given: Mapping[str, Series], logged: Mapping[str, Series]) -> None:
+        self._given: Final = given
+        self.logged: Final = logged
+
+    def reading(self, signal: Signal, time: int) -> SampleValue | Unknown:
+        """The value of a signal at a time, in SI."""
+        series = self._series(signal)
+        found = series.at(time) if series is not None else None
+        if found is None:
+            return _initially(signal, is_sampled=bool(series is not None and series.times))
+        sampled, value = found
+        if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
+            return Unknown(f"the sample of `{signal.name}` is older than it says with `fresh within`")
+        return _as_declared(signal, value)
+
+    def moments(self, signals: Iterable[Signal], begin: int, end: int) -> list[int]:
+        """The times from `begin` to `end` at which a condition on these signals may change: samples, and where one
+        grows too old."""
+        found = {begin}
+        for signal in signals:
+            series = self._series(signal)
+            if series is None:
+                continue
+            times = series.between(begin, end)
+            found.update(times)
+            if signal.fresh is not None and (before := series.at(begin)) is not None:
+                age = round(signal.fresh * 1e6) + 1
+                found.update([time + age for time in (before[0], *times) if begin < time + age <= end])
+        return sorted(found)
+
+    def forget_before(self, time: int) -> None:
+        """Drop what the log said of its entries before a time that nobody asks about any more."""
+        for series in self.logged.values():
+            series.forget_before(time)
+
+    def _series(self, signal: Signal) -> Series | None:
+        entry = (signal.key or "").removeprefix("@")
+        for series in (self._given.get(signal.name), self._given.get(entry), self.logged.get(entry)):
+            if series is not None:
+                return series
+        return None
+
+
+def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
+    first = signal.initially
+    if first is None:
+        return Unknown(f"no sample of `{signal.name}` {'so early' if is_sampled else 'anywhere'}")
+    return first.si if isinstance(first, Value) else first.value
+
+
+def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:
+    """A sample in the unit of its signal as what the signal is declared as."""
+    if signal.sort == "text":
+        return value if isinstance(value, str) else f"{value:g}"
+    if signal.sort == "bool":
+        if isinstance(value, str):
+            return _BOOLS.get(value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, and no bool"))
+        return bool(value)
+    if isinstance(value, str):
+        return Unknown(f"a sample of `{signal.name}` is `{value}`, and no number")
+    return to_si(value, signal.unit) if signal.unit is not None else float(value)
+
+
+_BOOLS: Final[dict[str, SampleValue | Unknown]] = {"true": True, "1": True, "false": False, "0": False}

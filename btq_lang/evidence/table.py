@@ -1,0 +1,131 @@
+"""Verdicts for people at a terminal."""
+
+from __future__ import annotations
+
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.wording import counted, duration, moment, share
+from btq_lang.render.cells import laid_out, printable
+from btq_lang.render.colour import painter
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import Final
+
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source, Verdict
+    from btq_lang.render.colour import Paint
+
+
+def table(report: Report, colour: bool = False) -> str:
+    """The verdicts of all missions, the ones to look at first."""
+    paint = painter(colour)
+    lines: list[str] = []
+    for mission in report.missions:
+        lines += [*_heading(mission), "", *_rows(mission, paint), "", _summary(mission), ""]
+    return "\n".join(lines[:-1]) + "\n" if lines else ""
+
+
+def _heading(mission: MissionVerdicts) -> Iterator[str]:
+    """What was read."""
+    for source in mission.sources:
+        found = f"{source.joined} of {source.nodes} nodes"
+        identity = f"{source.identity}, {found}"
+        if source.joined < source.nodes:
+            identity = f"{found} joined: {source.identity}"
+        period = f", {_period(source)}" if source.begin is not None else ""
+        yield printable(f"{counted(source.runs, 'run')} in {source.file}{period}, mission {mission.name} ({identity})")
+        for remark in source.remarks:
+            yield printable(f"  note: {remark}")
+
+
+def _period(source: Source) -> str:
+    """When the runs were, to the minute."""
+    begin = moment(source.begin) if source.begin is not None else None
+    end = moment(source.end) if source.end is not None else None
+    if begin is None or end is None:
+        return "times that no calendar has"
+    until = end.strftime("%H:%M" if begin.date() == end.date() else "%Y-%m-%d %H:%M")
+    since = begin.strftime("%Y-%m-%d %H:%M")
+    return f"{since} UTC" if since.endswith(until) else f"{since}–{until} UTC"
+
+
+def _rows(mission: MissionVerdicts, paint: Paint) -> Iterator[str]:
+    rows: list[tuple[Verdict, list[str]]] = []
+    for requirement in sorted(mission.requirements, key=lambda each: _ORDER.index(each.verdict)):
+        title = requirement.title
+        name = requirement.id
+        for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
+            texts = [name, title, _clause(clause, requirement), *_result(clause)]
+            rows.append((clause.verdict, [printable(text) for text in texts]))
+            name = title = ""  # once is enough
+    widths = [max(_cells(row[column]) for _, row in rows) if rows else 0 for column in range(4)]
+    for verdict, row in rows:
+        cells = [text + " " * (width - _cells(text)) for text, width in zip(row, widths, strict=False) if width]
+        word = verdict + " " * (len(NEVER) - len(verdict))
+        yield f"  {paint(_STYLES[verdict], word)}  {'  '.join([*cells, *row[4:]])}".rstrip()
+    if not rows:
+        yield "  the mission has no requirement that logs can show"
+
+
+def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
+    """The clause, with its node where the requirement has the same at another one."""
+    is_lone = sum(each.text == clause.text for each in requirement.clauses) == 1
+    return clause.text if is_lone or not clause.path else f"{clause.text} at {clause.path}"
+
+
+def _result(clause: ClauseVerdict) -> Sequence[str]:
+    """What was counted, and what to do about it."""
+    said = [_counted(clause)]
+    if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
+        said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
+    if clause.cut_off and clause.verdict != NEVER:
+        said.append(f"{clause.cut_off} cut off by the end of a log")
+    hint = "give them with --signals FILE" if clause.why.endswith(NO_SAMPLES) else ""
+    return ", ".join(said), hint
+
+
+def _counted(clause: ClauseVerdict) -> str:
+    held = clause.counted - clause.violated
+    if clause.verdict == UNKNOWN:
+        others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
+        return f"{clause.why}{others}"
+    if clause.verdict == NEVER:
+        return clause.why
+    if clause.interval is None:
+        if clause.verdict == VIOLATED:
+            unknown = f", {clause.unknown} unknown" if clause.unknown else ""
+            return f"{clause.violated} of {_units(clause.counted, clause.unit)}{unknown}"
+        return f"held so far in {_units(clause.counted, clause.unit)}"
+    of = f"{held} of {clause.counted}"
+    if clause.verdict == UNDECIDED:
+        decided = "no number of further ones decides it"
+        if clause.more is not None:
+            decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
+        return f"{of}; {decided}"
+    low, high = clause.interval
+    limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
+    return f"{of}, {limit} with confidence {share(clause.confidence or 0)}"
+
+
+def _units(number: int, unit: str) -> str:
+    return counted(number, unit.removesuffix("s"))
+
+
+def _summary(mission: MissionVerdicts) -> str:
+    parts = [f"runs: {', '.join(f'{number} {outcome}' for outcome, number in mission.outcomes) or 'none'}"]
+    parts.append(f"nodes exercised {mission.exercised} of {mission.nodes}")
+    if mission.slowest is not None:
+        each = mission.slowest
+        parts.append(f"slowest: {printable(each.path)} p50 {duration(each.p50)}, p95 {duration(each.p95)}")
+    if mission.by_people:
+        parts.append(f"verified by people, not here: {', '.join(mission.by_people)}")
+    return " · ".join(parts)
+
+
+def _cells(text: str) -> int:
+    return laid_out(text)[1][-1]
+
+
+NO_SAMPLES: Final = "anywhere"
+_ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
+_STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}

@@ -1,0 +1,142 @@
+"""The judgements of a clause at a written node, counted to a verdict.
+
+One invariant: what was counted is enough for the verdict, so no judgement is kept but the violations that are shown.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.statistics import lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
+from btq_lang.evidence.wording import quantity
+from btq_lang.record import Record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.evidence.verbs import Judgement, Measure
+    from btq_lang.evidence.verdicts import Verdict
+    from btq_lang.requirements.model import Odds
+
+
+class Run(Record):
+    """A run that has ended: its number, its file, and when it began."""
+
+    number: int
+    source: str
+    begin: int
+
+
+class Tally:
+    """What has been counted so far.
+
+    Attributes:
+        counted, violated, unknown, cut_off, why, violations, worst: as of a `ClauseVerdict`.
+    """
+
+    def __init__(self, odds: Odds | None, confidence: float | None) -> None:
+        self.counted = 0
+        self.violated = 0
+        self.unknown = 0
+        self.cut_off = 0
+        self.why = ""
+        self.violations: Final[list[Violation]] = []
+        self.worst: Worst | None = None
+        self.counts_runs: Final = odds is not None and odds.experiments == "runs"
+        self._odds: Final = odds
+        self._confidence: Final = confidence
+        self._worst_excess = float("-inf")
+        self._broken: Final[list[tuple[Judgement, str]]] = []  # of the run that is open
+        self._kept = self._unclear = 0  # likewise
+        self._worst_now: Measure | None = None
+
+    def add(self, judgement: Judgement, path: str) -> None:
+        """Count what an activation of the run that is open came to."""
+        if judgement.holds is None:
+            self._unclear += 1
+            self.why = self.why or judgement.said
+            return
+        if judgement.holds:
+            self._kept += 1
+        else:
+            self._broken.append((judgement, path))
+        measure = judgement.measure
+        if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
+            self._worst_now = measure
+
+    def end_run(self, run: Run) -> None:
+        """The run that was open has ended."""
+        broken, kept, unclear = len(self._broken), self._kept, self._unclear
+        shown = self._broken
+        if self.counts_runs:  # a run holds where something in it was judged and all of it holds
+            broken, kept, unclear = int(broken > 0), int(kept > 0), int(unclear > 0)
+            shown = self._broken[:1]
+            unclear = int(unclear and not broken)
+            kept = int(kept and not broken and not unclear)
+        self.counted += broken + kept
+        self.violated += broken
+        self.unknown += unclear
+        room = max(_MOST_VIOLATIONS - len(self.violations), 0)
+        self.violations.extend(_violation(judgement, path, run) for judgement, path in shown[:room])
+        worst = self._worst_now
+        if worst is not None and worst.excess > self._worst_excess:
+            self._worst_excess = worst.excess
+            self.worst = Worst(worst.si, quantity(worst.si, worst.unit, worst.bound), run.number)
+        self._broken.clear()
+        self._kept = self._unclear = 0
+        self._worst_now = None
+
+    def verdict(self) -> Verdict:
+        """Without odds one violation decides; with odds the unknown ones are judged as false and as true, and only a
+        verdict that both give stands."""
+        n, k, unknown = self.counted, self.counted - self.violated, self.unknown
+        if n + unknown == 0:
+            return NEVER
+        if self._odds is None:
+            return VIOLATED if self.violated else UNKNOWN if unknown else SATISFIED
+        low, high = self._by_odds(k, n + unknown), self._by_odds(k + unknown, n + unknown)
+        return low if low == high else UNKNOWN
+
+    def confidence(self) -> float | None:
+        """That the limits have; None without odds."""
+        if self._odds is None:
+            return None
+        return self._confidence if self._confidence is not None else _USUAL_CONFIDENCE
+
+    def interval(self) -> tuple[float, float] | None:
+        """The limits of the probability; None without odds, or where nothing was counted."""
+        confidence = self.confidence()
+        if confidence is None or not self.counted:
+            return None
+        n, k = self.counted, self.counted - self.violated
+        return lower_limit(k, n, confidence), upper_limit(k, n, confidence)
+
+    def more(self) -> int | None:
+        """How many more that hold decide an undecided verdict."""
+        if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
+            return None
+        n = self.counted + self.unknown
+        return runs_to_decide(self.counted - self.violated, n, self._confidence, self._odds.probability)
+
+    def _by_odds(self, k: int, n: int) -> Verdict:
+        assert self._odds is not None, "there are odds"
+        wanted = self._odds.probability
+        if self._confidence is None:
+            share = k / n
+            return SATISFIED if share > wanted or (share == wanted and self._odds.relation == ">=") else VIOLATED
+        if lower_limit(k, n, self._confidence) >= wanted:
+            return SATISFIED
+        return VIOLATED if upper_limit(k, n, self._confidence) < wanted else UNDECIDED
+
+
+def _violation(judgement: Judgement, path: str, run: Run) -> Violation:
+    measure = judgement.measure
+    measured = quantity(measure.si, measure.unit, measure.bound) if measure is not None else ""
+    bound = measure.bound_text if measure is not None else ""
+    at = (judgement.at - run.begin) / 1e6
+    why = judgement.said.format(measured)
+    return Violation(run.number, run.source, path, run.begin, at, measured, bound, why)
+
+
+_USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none
+_MOST_VIOLATIONS: Final = 1000

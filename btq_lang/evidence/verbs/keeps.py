@@ -1,0 +1,44 @@
+"""`keeps φ`: a condition from the start of an activation to its end, at each moment at which it may change."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.conditions import signals_in
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verbs.leaves import judged_at
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.requirements.model import Claim, Condition
+
+
+def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+    """Whether the condition holds all the time."""
+    assert claim.condition is not None, "it keeps a condition"
+    return judged_all_along(claim.condition, activation, signals, VERBS["keeps"].said)
+
+
+def judged_all_along(condition: Condition, activation: Activation, signals: Signals, said: str) -> Judgement:
+    """Whether a condition holds at every moment of an activation: the first at which it does not decides, else one at
+    which nobody knows, else the one that came closest to breaking it."""
+    unknown: Judgement | None = None
+    closest: Judgement | None = None
+    for time in signals.moments(signals_in(condition), activation.begin, activation.end):
+        found = judged_at(condition, time, signals, said)
+        if found.holds is False:
+            if activation.timing == "exact" or time == activation.begin:
+                return found
+            return Judgement(None, time, "the log does not say whether it was still running")
+        if found.holds is None:
+            unknown = unknown or found
+        elif closest is None or _excess(found) > _excess(closest):
+            closest = found
+    found = unknown or closest
+    assert found is not None, "the start is one of the moments"
+    return found
+
+
+def _excess(judgement: Judgement) -> float:
+    return judgement.measure.excess if judgement.measure is not None else 0.0

@@ -1,0 +1,38 @@
+"""`succeeds [within d]`: an activation's result, and how long it takes to come."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verbs.takes import UNKNOWN_END, measure
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.requirements.model import Claim
+
+
+def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+    """Whether an activation succeeds, and in time; where it is halted, or cut off, before that it does not count."""
+    said = VERBS["succeeds"].said
+    if claim.limit is None:
+        if activation.outcome in ("S", "F"):
+            holds = activation.outcome == "S"
+            return Judgement(holds, activation.end, said.format("succeeded" if holds else "failed"))
+        return None
+    found = measure(claim.limit, activation, signals)
+    if activation.outcome == "F":
+        return Judgement(False, activation.end, said.format("failed"))
+    if isinstance(found, Unknown):
+        return Judgement(None, activation.end, found.why)
+    _, duration = found
+    if duration.excess > 0:
+        if activation.timing == "latest":
+            return Judgement(None, activation.end, UNKNOWN_END)
+        how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
+        return Judgement(False, activation.end, said.format(how), duration)
+    if activation.outcome == "S":
+        return Judgement(True, activation.end, said.format("succeeded after {}"), duration)
+    return None

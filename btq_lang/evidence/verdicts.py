@@ -1,0 +1,182 @@
+"""What comes out: a verdict for each requirement, with what it rests on, as data.
+
+One invariant: nothing in here has to be worked out again, so a table, JSON and a page say the same.
+"""
+
+from __future__ import annotations
+
+from btq_lang.record import Record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from typing import Final, Literal, TypeAlias
+
+    Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
+
+VIOLATED: Final = "violated"
+UNKNOWN: Final = "unknown"
+UNDECIDED: Final = "undecided"
+SATISFIED: Final = "satisfied"
+NEVER: Final = "never exercised"
+_WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
+
+
+class Violation(Record):
+    """An activation that breaks a clause.
+
+    Attributes:
+        run: its number; runs count from 1, over all files in their order.
+        source: the file.
+        path: of the node, as the engine names it.
+        start: when the run began, in µs since the epoch.
+        at: how far into the run the clause was broken, in seconds.
+        measured, bound: in the bound's unit; empty where there is no number to compare.
+        why: what happened, in words.
+    """
+
+    run: int
+    source: str
+    path: str
+    start: int
+    at: float
+    measured: str
+    bound: str
+    why: str
+
+
+class Worst(Record):
+    """What came closest to the bound, or went furthest beyond it."""
+
+    si: float
+    text: str
+    run: int
+
+
+class ClauseVerdict(Record):
+    """A clause at a written node.
+
+    Attributes:
+        text: as typed, with its scopes and odds.
+        path: of the node, as the engine names it; of a subtree that is used several times all of them.
+        counted: how many activations, or with odds of runs how many runs, were judged true or false.
+        violated, unknown: how many of them, and of those beside them.
+        cut_off: activations that were left out, for the log ends while they are open.
+        unit: what is counted: `activations` or `runs`.
+        interval: the limits of the probability that it holds, each with `confidence`; None without odds.
+        confidence: that the limits have.
+        more: how many more runs (or activations) without a violation decide; None: no number is known to.
+        violations: the first thousand of them.
+        why: why the verdict is unknown; else empty.
+    """
+
+    text: str
+    path: str
+    verdict: Verdict
+    counted: int
+    violated: int
+    unknown: int
+    cut_off: int
+    unit: Literal["activations", "runs"]
+    worst: Worst | None
+    interval: tuple[float, float] | None
+    confidence: float | None
+    more: int | None
+    violations: tuple[Violation, ...]
+    why: str
+
+
+class RequirementVerdict(Record):
+    """A requirement; its verdict is the worst of its clauses."""
+
+    id: str
+    title: str
+    verdict: Verdict
+    clauses: tuple[ClauseVerdict, ...]
+
+
+class Source(Record):
+    """What was read of a file.
+
+    Attributes:
+        runs, first_run: how many runs of the mission are in it, and the number of the first.
+        begin, end: of the first and the last of them, in µs since the epoch; None where there are none.
+        identity: how the nodes were found in the mission.
+        joined, nodes: how many of the log's nodes were found, of how many.
+        remarks: what is to be known of the file.
+    """
+
+    file: str
+    runs: int
+    first_run: int
+    begin: int | None
+    end: int | None
+    identity: str
+    joined: int
+    nodes: int
+    remarks: tuple[str, ...]
+
+
+class NodeTimes(Record):
+    """A leaf's durations in seconds: the median, and what 95 of 100 do not exceed."""
+
+    path: str
+    p50: float
+    p95: float
+
+
+class MissionVerdicts(Record):
+    """A mission with the files that it was judged by.
+
+    Attributes:
+        file: of the mission.
+        outcomes: how many runs ended how.
+        exercised, nodes: how many of its nodes ran, of how many.
+        slowest: the leaf that takes longest; None where none takes any time.
+        by_people: the requirements that are verified by review, test or analysis, and not judged here.
+    """
+
+    name: str
+    file: str
+    sources: tuple[Source, ...]
+    requirements: tuple[RequirementVerdict, ...]
+    outcomes: tuple[tuple[str, int], ...]
+    exercised: int
+    nodes: int
+    slowest: NodeTimes | None
+    by_people: tuple[str, ...]
+
+    @property
+    def runs(self) -> int:
+        """How many runs were judged."""
+        return sum(source.runs for source in self.sources)
+
+
+class Foreign(Record):
+    """Runs of a tree that is of no mission: counted, and left alone."""
+
+    file: str
+    runs: int
+
+
+class Report(Record):
+    """All that `btq verify` found.
+
+    Attributes:
+        missions: those that some log is of.
+        problems: the files that could not be read, each with the reason.
+    """
+
+    missions: tuple[MissionVerdicts, ...]
+    foreign: tuple[Foreign, ...]
+    problems: tuple[str, ...]
+
+    @property
+    def verdicts(self) -> frozenset[Verdict]:
+        """Those that occur."""
+        return frozenset(each.verdict for mission in self.missions for each in mission.requirements)
+
+
+def worst_of(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict of several together: `never exercised` only where all of them are."""
+    return min(verdicts, key=_WORST_FIRST.index, default=NEVER)

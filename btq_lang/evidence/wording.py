@@ -1,0 +1,59 @@
+"""Measures and times as people read them."""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta, timezone
+
+from btq_lang.units import from_si
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.units import Unit
+
+
+def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
+    """A value in a unit, with three digits, and more where these would put it on the other side of its bound."""
+    value = from_si(si, unit) if unit is not None else si
+    limit = None if bound is None else from_si(bound, unit) if unit is not None else bound
+    shown = value
+    for digits in range(3, 16):
+        shown = float(f"{value:.{digits}g}")
+        if limit is None or ((shown > limit) == (value > limit) and (shown < limit) == (value < limit)):
+            break
+    number = f"{shown:.15g}"
+    return number if unit is None or unit.symbol == "1" else f"{number} {unit.symbol}"
+
+
+def duration(seconds: float) -> str:
+    """A duration in ms, s, min or h, whichever is read easily."""
+    for size, symbol in ((3600.0, "h"), (60.0, "min"), (1.0, "s")):
+        if seconds >= 2 * size or (size == 1.0 and seconds >= 1.0):
+            return f"{float(f'{seconds / size:.3g}'):.15g} {symbol}"
+    return f"{float(f'{seconds * 1000:.3g}'):.15g} ms"
+
+
+def share(probability: float) -> str:
+    """A fraction of one as a percentage."""
+    return f"{float(f'{probability * 100:.3g}'):.15g} %"
+
+
+def moment(time: int) -> datetime | None:
+    """A time in µs since the epoch, in UTC; None where no calendar has it."""
+    try:
+        return _EPOCH + timedelta(microseconds=time)
+    except OverflowError:
+        return None
+
+
+def timestamp(time: int) -> str:
+    """A time as ISO 8601 has it; the bare number where no calendar has it."""
+    found = moment(time)
+    return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
+
+
+def counted(number: int, one: str) -> str:
+    """`1 run`, `2 runs`."""
+    return f"{number} {one}{'' if number == 1 else 's'}"
+
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)
