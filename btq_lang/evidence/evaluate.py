@@ -253,7 +253,7 @@ class _Clause:
             unit="runs" if tally.counts_runs else "activations",
             worst=tally.worst,
             interval=tally.interval(),
-            confidence=tally.confidence(),
+            confidence=self.requirement.confidence,
             more=tally.more(),
             violations=tuple(tally.violations),
             why=why,

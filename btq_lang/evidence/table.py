@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import counted, duration, moment, share
 from btq_lang.render.cells import laid_out, printable
@@ -103,8 +104,11 @@ def _counted(clause: ClauseVerdict) -> str:
             decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
         return f"{of}; {decided}"
     low, high = clause.interval
+    if clause.confidence is None:
+        limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)} each"
+        return f"{of}, {share(held / clause.counted)}; limits {limits}"
     limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
-    return f"{of}, {limit} with confidence {share(clause.confidence or 0)}"
+    return f"{of}, {limit} with confidence {share(clause.confidence)}"
 
 
 def _units(number: int, unit: str) -> str:

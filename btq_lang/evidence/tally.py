@@ -97,17 +97,11 @@ class Tally:
         low, high = self._by_odds(k, n + unknown), self._by_odds(k + unknown, n + unknown)
         return low if low == high else UNKNOWN
 
-    def confidence(self) -> float | None:
-        """That the limits have; None without odds."""
-        if self._odds is None:
-            return None
-        return self._confidence if self._confidence is not None else _USUAL_CONFIDENCE
-
     def interval(self) -> tuple[float, float] | None:
         """The limits of the probability; None without odds, or where nothing was counted."""
-        confidence = self.confidence()
-        if confidence is None or not self.counted:
+        if self._odds is None or not self.counted:
             return None
+        confidence = self._confidence if self._confidence is not None else USUAL_CONFIDENCE
         n, k = self.counted, self.counted - self.violated
         return lower_limit(k, n, confidence), upper_limit(k, n, confidence)
 
@@ -138,5 +132,5 @@ def _violation(judgement: Judgement, path: str, run: Run) -> Violation:
     return Violation(run.number, run.source, path, run.begin, at, measured, bound, why)
 
 
-_USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none
+USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none
 _MOST_VIOLATIONS: Final = 1000

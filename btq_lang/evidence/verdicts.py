@@ -63,8 +63,8 @@ class ClauseVerdict(Record):
         violated, unknown: how many of them, and of those beside them.
         cut_off: activations that were left out, for the log ends while they are open.
         unit: what is counted: `activations` or `runs`.
-        interval: the limits of the probability that it holds, each with `confidence`; None without odds.
-        confidence: that the limits have.
+        interval: the lower and the upper limit of the probability that it holds; None without odds.
+        confidence: that the requirement asks for; None where it asks for none, and each limit has 95 %.
         more: how many more runs (or activations) without a violation decide; None: no number is known to.
         violations: the first thousand of them.
         why: why the verdict is unknown; else empty.
