@@ -53,7 +53,9 @@ VERBS: Final = {
         Verb("uses", "use", "the change of a signal", _END, "used {}", "uses at most 20 Wh of energy"),
         Verb("tries", "count", "the number of its starts", _RUN, "tried {}", "tries at most 3 per PickTray"),
         Verb("runs", "rate", "the times between its starts", _RUN, "{} between two starts", "runs every 500 ms"),
-        Verb("starts", "reaction", "the time since an event", _RUN, "after {}", "starts within 2 s after Dock succeeds"),
+        Verb(
+            "starts", "reaction", "the time since an event", _RUN, "after {}", "starts within 2 s after Dock succeeds"
+        ),
         Verb("ends", "reaction", "the time since an event", _RUN, "after {}", "ends within 2 s after Dock succeeds"),
         Verb("follows", "event", "an event since its last start", _START, "{}", "follows Dock succeeds"),
     )

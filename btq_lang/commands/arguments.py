@@ -194,8 +194,8 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         commands,
         "verify",
         "judge what robots did, by their logs, against what the mission demands",
-        epilog="exit codes: 0 nothing violated; 1 a requirement violated (--strict: or not satisfied); 2 usage, I/O, or\n"
-        "nothing to read\n\n"
+        epilog="exit codes: 0 nothing violated; 1 a requirement violated (--strict: or not satisfied);\n"
+        "2 usage, I/O, or nothing to read\n\n"
         "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
         "  btq verify run.db3 --mission mission.btq           or named\n"
         "  btq verify run.db3 --signals battery.csv           with samples of signals\n",

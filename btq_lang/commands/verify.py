@@ -7,7 +7,7 @@ import os
 import sys
 from argparse import Namespace
 
-from btq_lang.btcpp.export import is_mission, xml_name
+from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, usage_problem, write_stdout

@@ -181,7 +181,7 @@ def _number(part: Number | Flag | Text, signals: Signals, time: int) -> SampleVa
         return bound if isinstance(bound, Unknown) else bound.si
     if isinstance(part, Minus):
         value = _number(part.operand, signals, time)
-        return value if isinstance(value, Unknown) or isinstance(value, str) else -value
+        return value if isinstance(value, Unknown | str) else -value
     if isinstance(part, Arithmetic):
         left, right = _number(part.left, signals, time), _number(part.right, signals, time)
         if isinstance(left, Unknown) or isinstance(right, Unknown):
@@ -206,10 +206,10 @@ def _not_judged(part: object) -> str:
 
 
 _COMPARISONS: Final[dict[str, Callable[[object, object], bool]]] = {
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
+    "<": operator.lt,  # type: ignore[dict-item]  # what is compared is of one sort
+    "<=": operator.le,  # type: ignore[dict-item]
+    ">": operator.gt,  # type: ignore[dict-item]
+    ">=": operator.ge,  # type: ignore[dict-item]
     "==": operator.eq,
     "!=": operator.ne,
 }

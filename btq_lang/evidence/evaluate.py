@@ -48,27 +48,26 @@ class MissionEvaluation:
     def __init__(self, mission: GivenMission) -> None:
         self.mission: Final = mission
         found = mission.requirements
-        self._clauses: Final = [
+        clauses = [
             _Clause(applied.requirement, claim, applied)
             for applied in found.applied
             for claim in applied.requirement.claims
             if not _is_by_people(applied.requirement)
         ]
-        used = {(clause.requirement.name, clause.claim.text) for clause in self._clauses}
-        self._clauses += [
+        used = {(clause.requirement.name, clause.claim.text) for clause in clauses}
+        clauses += [
             _Clause(requirement, claim, None)
             for requirement in found.all.values()
             for claim in requirement.claims
             if not _is_by_people(requirement) and (requirement.name, claim.text) not in used
         ]
+        self._clauses: Final = clauses
         self._sources: Final[list[Source]] = []
         self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(_OUTCOMES, 0)
         self._exercised: Final[dict[tuple[int, str], bool]] = {}  # by uid and path
         self._leaves: Final[dict[str, array[float]]] = {}
 
-    def read(
-        self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str
-    ) -> int:
+    def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
         """Judge the runs of a session; how many there are.
 
         Args:
@@ -293,12 +292,11 @@ def _is_by_people(requirement: Requirement) -> bool:
 def _within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
     """A claim about all of an activation, which with `while C` is about the time with C alone."""
     for scope in scopes:
-        if scope.word != "while" or claim.condition is None:
-            continue
-        if claim.verb == "keeps":
-            claim = replace(claim, condition=Any((Not(scope.condition), claim.condition)))
-        elif claim.verb == "never":
-            claim = replace(claim, condition=All((scope.condition, claim.condition)))
+        condition = claim.condition
+        if scope.word == "while" and condition is not None and claim.verb == "keeps":
+            claim = replace(claim, condition=Any((Not(scope.condition), condition)))
+        elif scope.word == "while" and condition is not None and claim.verb == "never":
+            claim = replace(claim, condition=All((scope.condition, condition)))
     return claim
 
 

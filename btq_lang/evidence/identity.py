@@ -71,9 +71,7 @@ class Joined(Record):
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
-        return [
-            (instance.path, self.uids.get(_number(instance))) for instance in self.build.running.instances(target)
-        ]
+        return [(instance.path, self.uids.get(_number(instance))) for instance in self.build.running.instances(target)]
 
     def enforcing(self) -> dict[int, str]:
         """The nodes of the log that a build has put around others, with the requirement of each."""

@@ -20,14 +20,13 @@ VERSION: Final = 1
 
 def json_text(report: Report) -> str:
     """The document."""
+    sources = [_source(source, mission) for mission in report.missions for source in mission.sources]
+    sources += [{"file": each.file, "mission": None, "runs": each.runs, "remarks": []} for each in report.foreign]
     document: Json = {
         "format": FORMAT,
         "version": VERSION,
         "runs": sum(mission.runs for mission in report.missions),
-        "sources": [
-            *(_source(source, mission) for mission in report.missions for source in mission.sources),
-            *({"file": each.file, "mission": None, "runs": each.runs, "remarks": []} for each in report.foreign),
-        ],
+        "sources": sources,
         "requirements": [
             _requirement(requirement, mission) for mission in report.missions for requirement in mission.requirements
         ],

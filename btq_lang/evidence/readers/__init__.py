@@ -7,7 +7,7 @@ that says what was expected.
 from __future__ import annotations
 
 from btq_lang.evidence.readers import btlog, sqlite
-from btq_lang.evidence.readers.tree import NotALog
+from btq_lang.evidence.readers.tree import NotALog as NotALog
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -27,8 +27,9 @@ def read(path: str) -> Iterator[Session]:
         OSError: it cannot be read.
     """
     with open(path, "rb") as file:
-        start = file.read(max(map(len, (btlog.MAGIC, sqlite.MAGIC))))
-    for reader in (btlog, sqlite):
-        if start.startswith(reader.MAGIC):
-            return reader.read(path)
+        start = file.read(max(len(btlog.MAGIC), len(sqlite.MAGIC)))
+    if start.startswith(btlog.MAGIC):
+        return btlog.read(path)
+    if start.startswith(sqlite.MAGIC):
+        return sqlite.read(path)
     raise NotALog("expected a log of BehaviorTree.CPP: .btlog of FileLogger2, or .db3 or .btdb of SqliteLogger")

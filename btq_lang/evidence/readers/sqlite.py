@@ -73,7 +73,7 @@ def _transitions(
 
 
 def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
-    """What a logger's callback has put beside a row, where it is a JSON object: each number, text or bool is a sample."""
+    """What a logger's callback has put beside a row: of a JSON object each number, text or bool is a sample."""
     try:
         values = json.loads(extra) if isinstance(extra, str) else None
     except (ValueError, RecursionError):

@@ -35,9 +35,9 @@ def judged_all_along(condition: Condition, activation: Activation, signals: Sign
             unknown = unknown or found
         elif closest is None or _excess(found) > _excess(closest):
             closest = found
-    found = unknown or closest
-    assert found is not None, "the start is one of the moments"
-    return found
+    result = unknown or closest
+    assert result is not None, "the start is one of the moments"
+    return result
 
 
 def _excess(judgement: Judgement) -> float:
