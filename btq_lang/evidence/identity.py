@@ -71,7 +71,8 @@ class Joined(Record):
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
-        return [(instance.path, self.uids.get(_number(instance))) for instance in self.build.running.instances(target)]
+        uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
+        return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
 
     def enforcing(self) -> dict[int, str]:
         """The nodes of the log that a build has put around others, with the requirement of each."""
@@ -93,14 +94,12 @@ class _Build(Record):
 def join(missions: Sequence[Mission], tree: LoggedTree) -> Joined | None:
     """The mission that a log's tree is of, with its nodes; None where none of the missions has half of the nodes."""
     wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
-    best: Joined | None = None
-    for mission in missions:
-        for build in mission.builds():
-            found = _same(mission, build, tree, wanted) or _by_path(mission, build, tree)
-            if found.number == len(wanted):
-                return found
-            if best is None or found.number > best.number:
-                best = found
+    builds = [(mission, build) for mission in missions for build in mission.builds()]
+    for mission, build in builds:
+        if (same := _same(mission, build, tree, wanted)) is not None:
+            return same
+    found = [_by_path(mission, build, tree) for mission, build in builds]
+    best = max(found, key=lambda each: each.number, default=None)
     return best if best is not None and best.number * 2 >= len(wanted) else None
 
 

@@ -45,7 +45,7 @@ class Signals:
             return _initially(signal, is_sampled=bool(series is not None and series.times))
         sampled, value = found
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
-            return Unknown(f"the sample of `{signal.name}` is older than it says with `fresh within`")
+            return Unknown(f"the last sample of `{signal.name}` is too old")
         return _as_declared(signal, value)
 
     def moments(self, signals: Iterable[Signal], begin: int, end: int) -> list[int]:
@@ -79,7 +79,7 @@ class Signals:
 def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
     first = signal.initially
     if first is None:
-        return Unknown(f"no sample of `{signal.name}` {'so early' if is_sampled else 'anywhere'}")
+        return Unknown(f"no sample of `{signal.name}` up to then" if is_sampled else f"{NO_SAMPLES} `{signal.name}`")
     return first.si if isinstance(first, Value) else first.value
 
 
@@ -89,11 +89,12 @@ def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:
         return value if isinstance(value, str) else f"{value:g}"
     if signal.sort == "bool":
         if isinstance(value, str):
-            return _BOOLS.get(value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, and no bool"))
+            return _BOOLS.get(value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a bool"))
         return bool(value)
     if isinstance(value, str):
-        return Unknown(f"a sample of `{signal.name}` is `{value}`, and no number")
+        return Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a number")
     return to_si(value, signal.unit) if signal.unit is not None else float(value)
 
 
+NO_SAMPLES: Final = "no samples of"
 _BOOLS: Final[dict[str, SampleValue | Unknown]] = {"true": True, "1": True, "false": False, "0": False}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import counted, duration, moment, share
@@ -81,7 +82,7 @@ def _result(clause: ClauseVerdict) -> Sequence[str]:
         said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
     if clause.cut_off and clause.verdict != NEVER:
         said.append(f"{clause.cut_off} cut off by the end of a log")
-    hint = "give them with --signals FILE" if clause.why.endswith(NO_SAMPLES) else ""
+    hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
     return ", ".join(said), hint
 
 
@@ -130,6 +131,5 @@ def _cells(text: str) -> int:
     return laid_out(text)[1][-1]
 
 
-NO_SAMPLES: Final = "anywhere"
 _ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
 _STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}

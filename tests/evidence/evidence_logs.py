@@ -6,13 +6,16 @@ the rows at that time: I(DLE), R(UNNING), S(UCCESS), F(AILURE).
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
+import shutil
 import sqlite3
 import struct
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
@@ -93,10 +96,21 @@ class Verify:
 
     def text(self, *arguments: str) -> str:
         """What the command prints."""
+        self._output.readouterr()
         self.code = main(["verify", *arguments])
         printed = self._output.readouterr()
         self.errors = printed.err
         return printed.out
+
+    def build(self, mission: str, *options: str) -> str:
+        """What the engine writes in its logs as the tree of a mission, which is built and then forgotten."""
+        source = self.folder / "built" / "main.btq"
+        source.parent.mkdir()
+        source.write_text(mission, encoding="utf-8")
+        assert main(["build", str(source), *options]) == 0
+        xml = source.with_suffix(".xml").read_text(encoding="utf-8")
+        shutil.rmtree(source.parent)
+        return as_logged(xml)
 
     def json(self, *arguments: str) -> dict[str, Any]:
         """What it prints as JSON."""
@@ -135,4 +149,34 @@ class Verify:
         return found
 
 
-Clause = Callable[..., dict[str, Any]]
+
+def as_logged(xml: str) -> str:
+    """The tree of an XML file as a logger of the engine writes it: numbered, with a tree for each instance of a subtree.
+
+    An independent reading of `recursivelyCreateSubtree` and `WriteTreeToXML` in BehaviorTree.CPP's src/xml_parsing.cpp.
+    """
+    root = ElementTree.fromstring(xml.encode())
+    trees = {tree.attrib["ID"]: tree for tree in root.iter("BehaviorTree")}
+    logged = ElementTree.Element("root", BTCPP_format="4")
+    numbers = itertools.count(1)
+
+    def write_tree(name: str, path: str) -> None:
+        tree = ElementTree.SubElement(logged, "BehaviorTree", ID=name, _fullpath=path)
+        write(trees[name][0], tree, path)
+
+    def write(node: ElementTree.Element, parent: ElementTree.Element, path: str) -> None:
+        number = next(numbers)
+        prefix = f"{path}/" if path else ""
+        if node.tag == "SubTree":
+            name = node.get("name", node.attrib["ID"])
+            own = prefix + (name if name != node.get("ID") else f"{name}::{number}")
+            ElementTree.SubElement(parent, "SubTree", ID=node.attrib["ID"], _fullpath=own, _uid=str(number))
+            write_tree(node.attrib["ID"], own)
+            return
+        kind = node.attrib["ID"] if node.tag in ("Action", "Condition", "Control", "Decorator") else node.tag
+        made = ElementTree.SubElement(parent, kind, name=node.get("name", kind), _uid=str(number))
+        for child in node:
+            write(child, made, path)
+
+    write_tree(root.attrib["main_tree_to_execute"], "")
+    return ElementTree.tostring(logged, encoding="unicode")

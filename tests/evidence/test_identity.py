@@ -1,0 +1,223 @@
+"""Which node of a log is which written node: builds of today, other builds, older texts, other missions."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from evidence_logs import MAIN, MAIN_XML, Verify, as_logged, btlog, rows
+
+from btq_lang.cli import main
+
+DEMAND = "QualityReq rq : safety\n    Carry/Move takes at most 10 ms\n    on violation fail\n"
+MISSION = (
+    DEMAND + "Root Main\nBehaviorTree Main\n    ->\n        Action Undock\n        SubTree Carry\n        SubTree Carry Back\n"
+    "BehaviorTree Carry\n    ->\n        Action Move\n        Action Pick\nAction Undock\nAction Move\nAction Pick\n"
+)
+OTHER = MAIN.replace("Main", "Other").replace("Move", "Wash").replace("Pick", "Rinse")
+
+
+def log_of(verify: Verify, mission: str, text: str, *options: str) -> None:
+    """Write a log of what a build makes of a mission."""
+    (verify.folder / "run.btlog").write_bytes(btlog(verify.build(mission, *options), rows(text)))
+
+
+def identity(verify: Verify, *missions: str) -> tuple[str, int, int]:
+    """How the nodes of the log are found, how many, and of how many."""
+    given = [word for mission in missions or ("main.btq",) for word in ("--mission", mission)]
+    (source,) = verify.json("run.btlog", *given)["sources"]
+    return source["identity"], source["joined"], source["nodes"]
+
+
+# With guards: 1 Sequence, 2 Undock, 3 Carry, 4 Sequence, 5 Timeout, 6 Move, 7 Pick, 8 Back, 9 Sequence, 10 Timeout, 11 …
+GUARDED = "0 1R 2S 3R 4R 5R 6R 8 6S 5S 7S 4S 3S 8R 9R 10R 11R 20 11S 10S 12S 9S 8S 1S"
+PLAIN = "0 1R 2S 3R 4R 5R 8 5S 6S 4S 3S 7R 8R 9R 20 9S 10S 8S 7S 1S"
+
+
+def test_a_log_of_the_build_of_today(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    log_of(verify, MISSION, GUARDED)
+    assert identity(verify) == ("as built now", 12, 12)
+    assert main(["build", "main.btq"]) == 0
+    assert identity(verify) == ("side file matches", 12, 12)
+
+
+def test_a_log_of_a_build_without_guards(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(MISSION, encoding="utf-8")
+    log_of(verify, MISSION, PLAIN, "--no-enforce")
+    assert identity(verify) == ("as built now with --no-enforce", 10, 10)
+
+
+def test_instances_are_judged_apart_and_counted_together(verify: Verify) -> None:
+    """`Carry/Move` means both instances: of the tree, not of the SubTree node of that name."""
+    (verify.folder / "main.btq").write_text(MISSION.replace("Carry/Move", "Move"), encoding="utf-8")
+    log_of(verify, MISSION.replace("Carry/Move", "Move"), PLAIN, "--no-enforce")
+    (clause,) = verify.json("run.btlog", "--mission", "main.btq")["requirements"][0]["clauses"]
+    assert clause["path"] == "Carry::3/Move::5, Back/Move::9"
+    assert (clause["counted"], [each["path"] for each in clause["violations"]]) == (2, ["Back/Move::9"])
+
+
+def test_a_log_of_an_older_text(verify: Verify) -> None:
+    """Nodes are found by their path; one that the log does not have is unknown."""
+    (verify.folder / "main.btq").write_text(
+        MISSION.replace("        Action Pick\n", "        Action Wave\n        Action Pick\n").replace("Action Undock\nAc", "Action Wave\nAction Undock\nAc")
+        + "QualityReq new : safety\n    Wave takes at most 1 s\n",
+        encoding="utf-8",
+    )
+    log_of(verify, MISSION, PLAIN, "--no-enforce")
+    assert identity(verify) == ("built from another version", 10, 10)
+    rq, new = (each["clauses"][0] for each in verify.json("run.btlog", "--mission", "main.btq")["requirements"])
+    assert (rq["verdict"], rq["counted"]) == ("violated", 2)
+    assert (new["verdict"], new["why"]) == (
+        "unknown",
+        "`Carry::3/Wave::7` was not found in a log of another version of the mission",
+    )
+
+
+def test_the_first_line_says_that_only_some_nodes_were_found(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(MISSION.replace("Action Undock", "Action Leave"), encoding="utf-8")
+    log_of(verify, MISSION, PLAIN, "--no-enforce")
+    first = verify.text("run.btlog", "--mission", "main.btq").splitlines()[0]
+    assert first.endswith("mission main (9 of 10 nodes joined: built from another version)")
+
+
+def test_a_log_of_another_mission_is_counted_and_left_alone(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(f"{DEMAND.replace('Carry/', '')}{MAIN}", encoding="utf-8")
+    (verify.folder / "other.btq").write_text(OTHER, encoding="utf-8")
+    (verify.folder / "a.btlog").write_bytes(btlog(MAIN_XML, rows("0 1R 2S 3S 1S")))
+    other = MAIN_XML.replace("Main", "Other").replace("Move", "Wash").replace("Pick", "Rinse")
+    (verify.folder / "b.btlog").write_bytes(btlog(other, rows("0 1R 2S 3S 1S 5 1R 2F 1F")))
+    found = verify.json("a.btlog", "b.btlog", "--mission", "main.btq")
+    assert (found["runs"], verify.code) == (1, 0)
+    assert [(each["file"], each["mission"], each["runs"]) for each in found["sources"]] == [
+        ("a.btlog", "main", 1),
+        ("b.btlog", None, 2),
+    ]
+    assert verify.errors == "btq verify: b.btlog: 2 runs of another mission, left alone\n"
+    both = verify.json("a.btlog", "b.btlog")  # all missions of the project
+    assert [(each["file"], each["mission"]) for each in both["sources"]] == [("a.btlog", "main"), ("b.btlog", "other")]
+    verify.text("b.btlog", "--mission", "main.btq")
+    assert (verify.code, verify.errors.splitlines()[1]) == (
+        2,
+        "btq verify: no log is of a mission that is known; name it with --mission FILE",
+    )
+
+
+# ---- what guards did ----
+
+LIMIT = "Move takes at most 20 ms\non violation fail"
+# What a build makes of it: 1 Sequence, 2 Timeout, 3 Move, 4 Pick.
+LIMITED = MAIN_XML.replace('<Move name="Move" _uid="2"/>', '<Timeout name="rq_limit" _uid="2"><Move name="Move" _uid="3"/></Timeout>').replace('Pick" _uid="3"', 'Pick" _uid="4"')
+
+
+@pytest.mark.parametrize(
+    ("runs", "expected", "why"),
+    [
+        # The engine's timer starts before the node does, so what a Timeout stops has lasted a little less than that.
+        ("0 1R 2R 0.1 3R 20 3I 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),
+        ("0 1R 2R 0.1 3R 20 2F 2I 1F", "violated", "stopped by its own guard after 19.9 ms"),  # no row to IDLE
+        ("0 1R 2R 0.1 3R 10 3I 2I 1I", "never exercised", ""),  # stopped by somebody else
+        ("0 1R 2R 0.1 3R 10 3F 2F 1F", "satisfied", ""),
+        ("0 1R 2R 0.1 3R 10 3S 2S 4S 1S", "satisfied", ""),
+    ],
+)
+def test_what_its_own_guard_stops_is_violated(runs: str, expected: str, why: str, verify: Verify) -> None:
+    found = verify.clause(LIMIT, runs, xml=LIMITED)
+    assert (found["verdict"], "".join(each["why"] for each in found["violations"])) == (expected, why)
+
+
+def several(verify: Verify, requirements: str, before: str) -> dict[str, int]:
+    """A mission with requirements; the uid of each named node of its build."""
+    mission = f"{before}\n{requirements}{MAIN}"
+    (verify.folder / "main.btq").write_text(mission, encoding="utf-8")
+    xml = verify.build(mission)
+    (verify.folder / "tree.xml").write_text(xml, encoding="utf-8")
+    return {name: int(uid) for name, uid in re.findall(r'name="(\w+)" _uid="(\d+)"', xml)}
+
+
+def verdicts(verify: Verify, runs: str) -> dict[str, str]:
+    """The verdict of each requirement, with what there is to say of its first violation."""
+    xml = (verify.folder / "tree.xml").read_text(encoding="utf-8")
+    (verify.folder / "run.btlog").write_bytes(btlog(xml, rows(runs)))
+    found = verify.json("run.btlog", "--mission", "main.btq")
+    clauses = {each["id"]: each["clauses"][0] for each in found["requirements"]}
+    return {
+        name: ": ".join([each["verdict"], *(violation["why"] for violation in each["violations"])])
+        for name, each in clauses.items()
+    }
+
+
+SPEED = "signal speed : m/s from {speed}"
+CALM = "QualityReq calm : safety\n    Move keeps speed < 1 m/s\n    on violation fail\n"
+SWIFT = "QualityReq swift : safety\n    Move takes at most 20 ms\n    on violation fail\n"
+
+
+def test_the_guard_of_another_requirement_does_not_count(verify: Verify) -> None:
+    """One stands inside the other: where the inner one stops the node, the outer one fails as well."""
+    uid = several(verify, CALM + SWIFT, SPEED)
+    outer, check, inner, move = uid["calm_keeps"], uid["calm_guard"], uid["swift_limit"], uid["Move"]
+    begin = f"0 1R {outer}R {check}S {inner}R {move}R"
+    late = f"{begin} 20 {move}I {inner}F {inner}I {check}I {outer}F 1F"
+    assert verdicts(verify, late) == {
+        "calm": "unknown",  # there are no samples
+        "swift": "violated: stopped by its own guard after 20 ms",
+    }
+    fast = f"{begin} 9 {check}F {move}I {inner}I {check}I {outer}F 1F"
+    assert verdicts(verify, fast) == {
+        "calm": "violated: stopped by its own guard after 9 ms",
+        "swift": "never exercised",
+    }
+
+
+def test_a_refused_start_counts_for_what_is_needed_and_for_success(verify: Verify) -> None:
+    demands = "QualityReq needy : safety\n    Move needs speed < 1 m/s\n    on violation fail\n"
+    demands += "QualityReq works : reliability\n    Move succeeds\n"
+    demands += "QualityReq swift : safety\n    Move takes at most 20 ms\n"
+    uid = several(verify, demands, SPEED)
+    around, check = uid["needy_needs"], uid["needy_check"]
+    assert verdicts(verify, f"0 1R {around}R {check}F {check}I {around}F 1F") == {
+        "needy": "violated: its start was refused by needy",
+        "works": "violated: its start was refused by needy",
+        "swift": "never exercised",
+    }
+
+
+# ---- a tree of other people ----
+
+DEMANDS = """\
+QualityReq steady : performance-efficiency.time-behaviour
+    NavigateWithReplanning/FollowPath/FollowPath takes at most 545 ms
+QualityReq planned : reliability
+    FallbackComputePathToPose/ComputePathToPose succeeds in at least 80 % of activations
+QualityReq arrives : reliability
+    mission succeeds in at least 90 % of runs
+"""
+
+
+@pytest.mark.parametrize("name", ["nav", "nav_noidle"])
+def test_the_tree_of_nav2(name: str, verify: Verify, shared: Path) -> None:
+    """An imported mission, whose control nodes do not reset their children; through both readers, with truth."""
+    shutil.copy(shared / "logs" / "nav.xml", verify.folder / "nav.xml")
+    assert main(["import", "nav.xml"]) == 0
+    mission = (verify.folder / "nav.btq").read_text(encoding="utf-8")
+    (verify.folder / "nav.btq").write_text(f"{DEMANDS}{mission}", encoding="utf-8")
+    found = []
+    for suffix in (".btlog", ".db3"):
+        shutil.copy(shared / "logs" / f"{name}{suffix}", verify.folder)
+        found.append(verify.json(f"{name}{suffix}", "--mission", "nav.btq"))
+        (source,) = found[-1]["sources"]
+        assert (source["runs"], source["identity"], source["joined"]) == (40, "as built now", 38)
+    truth = [json.loads(line) for line in (shared / "logs" / f"{name}.truth.jsonl").read_text().splitlines()]
+    skills = [(each["uid"], each["run"] + 1, each["ms"], each["status"]) for each in truth if "node" in each]
+    for each in found:
+        clause = {each["id"]: each["clauses"][0] for each in each["requirements"]}
+        steady, planned, arrives = clause["steady"], clause["planned"], clause["arrives"]
+        late = [run for uid, run, ms, _ in skills if uid == 22 and ms > 545]
+        assert [violation["run"] for violation in steady["violations"]] == late
+        results = [status for uid, *_, status in skills if uid == 17 and status != "HALTED"]
+        assert (planned["counted"], planned["violated"]) == (len(results), results.count("FAILURE"))
+        failed = [each["run"] + 1 for each in truth if each.get("result") == "FAILURE"]
+        assert (arrives["counted"], [violation["run"] for violation in arrives["violations"]]) == (40, failed)

@@ -1,0 +1,355 @@
+"""Each verb that is judged from logs: hand-made runs, and what they come to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from evidence_logs import MAIN, Verify, samples
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks import check
+from btq_lang.evidence.verbs import judge_of
+from btq_lang.parser import parse
+from btq_lang.requirements import requirements
+from btq_lang.syntax import Claim
+from btq_lang.syntax import Requirement as RequirementItem
+from btq_lang.workspace import Workspace
+
+LEVEL = "signal battery : % from {battery_level} level"
+FRESH = f"{LEVEL} fresh within 10 ms"
+LONG = "0 1R 2R 30 2S 3S 1S"  # Move takes 30 ms
+HALTED = "0 1R 2R 30 2I 1I"
+FAILED = "0 1R 2R 30 2F 1F"
+OPEN = "0 1R 2R 30 3I"
+UNWRITTEN = "0 1R 2R 30 1F"  # Move was halted at some time before
+BACK = "40 1R 2R 10 2S 1S"
+
+
+def count(clause: dict[str, Any]) -> str:
+    """`violated 1/2`: its verdict, how many of how many, then unknown and cut off ones where there are any."""
+    found = f"{clause['verdict']} {clause['violated']}/{clause['counted']}"
+    found += f" ?{clause['unknown']}" if clause["unknown"] else ""
+    return found + (f" |{clause['cut_off']}" if clause["cut_off"] else "")
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
+        ("Move takes at most 30 ms", LONG, "satisfied 0/1"),
+        ("Move takes at most 29 ms", LONG, "violated 1/1"),
+        ("Move takes less than 30 ms", LONG, "violated 1/1"),
+        ("Move takes at most 30 ms", FAILED, "satisfied 0/1"),
+        ("Move takes at most 30 ms", HALTED, "never exercised 0/0"),
+        ("Move takes at most 29 ms", HALTED, "violated 1/1"),
+        ("Move takes at most 30 ms", OPEN, "never exercised 0/0 |1"),
+        ("Move takes at most 29 ms", OPEN, "violated 1/1"),
+        ("Move takes at most 30 ms", UNWRITTEN, "never exercised 0/0"),
+        ("Move takes at most 29 ms", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move takes at most 99 ms", BACK, "unknown 0/0 ?1"),
+        ("Move takes at least 30 ms", LONG, "satisfied 0/1"),
+        ("Move takes more than 30 ms", LONG, "violated 1/1"),
+        ("Move takes at least 31 ms", FAILED, "violated 1/1"),
+        ("Move takes at least 31 ms", HALTED, "never exercised 0/0"),
+        ("Move takes at least 30 ms", HALTED, "never exercised 0/0"),
+        ("Move takes at least 30 ms", OPEN, "satisfied 0/1"),
+        ("Move takes between 10 ms and 30 ms", LONG, "satisfied 0/1"),
+        ("Move takes between 10 ms and 20 ms", LONG, "violated 1/1"),
+        ("Move takes between 40 ms and 50 ms", LONG, "violated 1/1"),
+        ("Move takes between 29 ms and 90 ms", OPEN, "never exercised 0/0 |1"),
+        ("Pick takes at most 1 ms", LONG, "satisfied 0/1"),
+        ("Pick takes at most 1 ms", HALTED, "never exercised 0/0"),
+        ("mission takes at most 20 ms", LONG, "violated 1/1"),
+        ("Move takes at most 30 ms", f"{LONG} 50 1R 2R 90 2S 1S", "violated 1/2"),
+    ],
+)
+def test_takes(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert count(verify.clause(demand, runs)) == expected
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
+        ("Move succeeds", LONG, "satisfied 0/1"),
+        ("Move succeeds", FAILED, "violated 1/1"),
+        ("Move succeeds", HALTED, "never exercised 0/0"),
+        ("Move succeeds", OPEN, "never exercised 0/0 |1"),
+        ("Move succeeds", BACK, "satisfied 0/1"),
+        ("Move succeeds within 30 ms", LONG, "satisfied 0/1"),
+        ("Move succeeds within 29 ms", LONG, "violated 1/1"),
+        ("Move succeeds within 90 ms", FAILED, "violated 1/1"),
+        ("Move succeeds within 29 ms", HALTED, "violated 1/1"),
+        ("Move succeeds within 30 ms", HALTED, "never exercised 0/0"),
+        ("Move succeeds within 29 ms", OPEN, "violated 1/1"),
+        ("Move succeeds within 30 ms", OPEN, "never exercised 0/0 |1"),
+        ("Move succeeds within 29 ms", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move succeeds within 30 ms", UNWRITTEN, "never exercised 0/0"),
+        ("mission succeeds", LONG, "satisfied 0/1"),
+        ("mission succeeds", f"{LONG} 50 1R 2F 1F", "violated 1/2"),
+    ],
+)
+def test_succeeds(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert count(verify.clause(demand, runs)) == expected
+
+
+# The battery at the start of Move, meanwhile, at its end, and after it.
+SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
+
+
+@pytest.mark.parametrize(
+    ("demand", "runs", "expected"),
+    [
+        ("Move needs battery >= 50 %", LONG, "satisfied 0/1"),
+        ("Move needs battery > 50 %", LONG, "violated 1/1"),
+        ("Move needs battery > 50 %", HALTED, "violated 1/1"),
+        ("Move needs battery > 50 %", OPEN, "violated 1/1"),
+        ("Move needs battery >= 50 %", OPEN, "satisfied 0/1"),
+        ("Move needs 20 % < battery and battery < 60 %", LONG, "satisfied 0/1"),
+        ("Move needs 20 % < battery < 40 %", LONG, "violated 1/1"),
+        ("Move needs not battery < 20 %", LONG, "satisfied 0/1"),
+        ("Pick needs battery == 30 %", LONG, "satisfied 0/1"),
+        ("Move leaves battery >= 30 %", LONG, "satisfied 0/1"),
+        ("Move leaves battery >= 31 %", LONG, "violated 1/1"),
+        ("Move leaves battery >= 31 %", FAILED, "never exercised 0/0"),
+        ("Move leaves battery >= 31 %", HALTED, "never exercised 0/0"),
+        ("Move leaves battery >= 31 %", OPEN, "never exercised 0/0 |1"),
+        ("Move keeps battery >= 5 %", LONG, "satisfied 0/1"),
+        ("Move keeps battery >= 6 %", LONG, "violated 1/1"),
+        ("Move keeps battery >= 6 %", HALTED, "violated 1/1"),
+        ("Move keeps battery >= 6 %", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move keeps battery < 50 %", LONG, "violated 1/1"),
+        ("Move never battery < 5 %", LONG, "satisfied 0/1"),
+        ("Move never battery < 6 %", LONG, "violated 1/1"),
+        ("Move takes at most 29 ms if battery < 40 % else 31 ms", LONG, "satisfied 0/1"),
+        ("Move takes at most 29 ms if battery > 40 % else 31 ms", LONG, "violated 1/1"),
+    ],
+)
+def test_conditions(demand: str, runs: str, expected: str, verify: Verify) -> None:
+    assert count(verify.clause(demand, runs, samples("battery", SAMPLES), before=LEVEL)) == expected
+
+
+@pytest.mark.parametrize(
+    ("demand", "given", "expected", "why"),
+    [
+        ("Move needs battery > 1 %", {}, "unknown 0/0 ?1", "no samples of `battery`"),
+        ("Move needs battery > 1 %", {1: 50}, "unknown 0/0 ?1", "no sample of `battery` up to then"),
+        ("Move needs battery > 1 %", {-10: 50}, "satisfied 0/1", ""),
+        ("Move needs battery > 1 %", {-11: 50}, "unknown 0/0 ?1", "the last sample of `battery` is too old"),
+        ("Move keeps battery > 1 %", {-1: 50, 9: 50, 19: 50, 29: 50}, "satisfied 0/1", ""),
+        (
+            "Move keeps battery > 1 %",
+            {-1: 50, 9: 50, 29: 50},
+            "unknown 0/0 ?1",
+            "the last sample of `battery` is too old",
+        ),
+        ("Move keeps battery > 1 %", {-1: 50, 9: 50, 29: 0}, "violated 1/1", ""),
+        (
+            "Move needs battery > 1 %",
+            {-1: "full"},
+            "unknown 0/0 ?1",
+            "a sample of `battery` is `full`, which is not a number",
+        ),
+        # What is unknown does not matter where the rest decides it.
+        ("Move needs battery > 1 % or 2 > 1", {}, "satisfied 0/1", ""),
+        ("Move needs battery > 1 % and 1 > 2", {}, "violated 1/1", ""),
+    ],
+)
+def test_samples_that_are_missing_or_old(
+    demand: str, given: dict[float, object], expected: str, why: str, verify: Verify
+) -> None:
+    found = verify.clause(demand, LONG, samples("battery", given), before=FRESH)
+    assert (count(found), found["why"]) == (expected, why)
+
+
+def test_a_signal_has_its_first_value_before_its_first_sample(verify: Verify) -> None:
+    first = f"{LEVEL} initially 80 %"
+    assert count(verify.clause("Move needs battery == 80 %", LONG, before=first)) == "satisfied 0/1"
+    assert count(verify.clause("Move needs battery == 80 %", LONG, samples("battery", {-1: 5}), before=first)) == (
+        "violated 1/1"
+    )
+
+
+@pytest.mark.parametrize(
+    ("signal", "given", "demand", "expected"),
+    [
+        ("door : bool", {-1: "true"}, "Move needs door", "satisfied 0/1"),
+        ("door : bool", {-1: 0}, "Move needs door", "violated 1/1"),
+        ("door : bool", {-1: 0}, "Move needs door == false", "satisfied 0/1"),
+        ("mode : text", {-1: "slow"}, 'Move needs mode == "slow"', "satisfied 0/1"),
+        ("mode : text", {-1: "fast"}, 'Move needs mode == "slow"', "violated 1/1"),
+        ("speed : km/h", {-1: 3.6}, "Move needs speed <= 1 m/s", "satisfied 0/1"),
+        ("speed : km/h", {-1: 3.7}, "Move needs speed <= 1 m/s", "violated 1/1"),
+        ("heat : degC", {-1: 20}, "Move needs heat == 293.15 K", "satisfied 0/1"),
+        ("speed : m/s", {-1: 2}, "Move needs 2 * speed - 1 m/s == 3 m/s", "satisfied 0/1"),
+    ],
+)
+def test_samples_of_all_sorts(
+    signal: str, given: dict[float, object], demand: str, expected: str, verify: Verify
+) -> None:
+    name = signal.partition(" ")[0]
+    found = verify.clause(demand, LONG, samples(name, given), before=f"signal {signal} from {{{name}}}")
+    assert count(found) == expected
+
+
+def test_a_column_may_have_the_name_of_the_entry(verify: Verify) -> None:
+    found = verify.clause("Move needs battery > 40 %", LONG, samples("battery_level", SAMPLES), before=LEVEL)
+    assert count(found) == "satisfied 0/1"
+
+
+@pytest.mark.parametrize(
+    ("demand", "expected"),
+    [
+        ("Move takes at most 1 ms\nwhen battery >= 50 %", "violated 1/1"),
+        ("Move takes at most 1 ms\nwhen battery < 50 %", "never exercised 0/0"),
+        ("Move takes at most 1 ms\nwhile battery >= 5 %", "violated 1/1"),
+        ("Move takes at most 1 ms\nwhile battery >= 6 %", "never exercised 0/0"),
+        ("Move keeps battery >= 6 %\nwhile battery >= 10 %", "satisfied 0/1"),
+        ("Move keeps battery >= 6 %\nwhile battery < 40 %", "violated 1/1"),
+        ("Move keeps battery >= 6 %\nwhile battery > 90 %", "never exercised 0/0"),
+        ("Move never battery < 6 %\nwhile battery >= 10 %", "satisfied 0/1"),
+        ("Move never battery < 6 %\nwhile battery < 10 %", "violated 1/1"),
+        ("Move takes at most 1 ms\nwhen low", "never exercised 0/0"),
+        ("Move takes at most 1 ms\nwhen not low", "violated 1/1"),
+        ("Move takes at most 1 ms\nwhen other > 1 %", "unknown 0/0 ?1"),
+    ],
+)
+def test_scopes(demand: str, expected: str, verify: Verify) -> None:
+    before = f"{LEVEL}\nsignal other : % from {{other}}\ncontext low : battery < 20 %"
+    assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=before)) == expected
+
+
+# ---- odds ----
+
+GOOD, BAD, IDLE_RUN = "1R 2S 1S", "1R 2F 1F", "1R 3S 1S"
+
+
+def several(*runs: str) -> str:
+    return " ".join(f"{10 * at} {run}" for at, run in enumerate(runs))
+
+
+@pytest.mark.parametrize(
+    ("odds", "runs", "expected"),
+    [
+        ("in at least 75 % of runs", [GOOD, GOOD, GOOD, BAD], "satisfied 1/4"),
+        ("in at least 76 % of runs", [GOOD, GOOD, GOOD, BAD], "violated 1/4"),
+        ("with probability > 75 % of runs", [GOOD, GOOD, GOOD, BAD], "violated 1/4"),
+        ("in at least 75 % of runs", [GOOD, "1R 2S 2I 2F 1F", GOOD, GOOD], "satisfied 1/4"),
+        ("in at least 75 % of activations", [GOOD, "1R 2S 2I 2F 1F"], "violated 1/3"),
+        ("in at least 50 % of runs", [GOOD, IDLE_RUN, IDLE_RUN], "satisfied 0/1"),
+        ("in at least 50 % of runs", [IDLE_RUN], "never exercised 0/0"),
+        ("in at least 50 % of runs\nconfidence 95 %", [GOOD] * 4, "undecided 0/4"),
+        ("in at least 50 % of runs\nconfidence 95 %", [GOOD] * 5, "satisfied 0/5"),
+        ("in at least 50 % of runs\nconfidence 95 %", [BAD] * 5, "violated 5/5"),
+    ],
+)
+def test_odds(odds: str, runs: list[str], expected: str, verify: Verify) -> None:
+    assert count(verify.clause(f"Move succeeds\n{odds}", several(*runs))) == expected
+
+
+def test_what_is_undecided_says_how_many_more_decide(verify: Verify) -> None:
+    found = verify.clause("Move succeeds\nin at least 50 % of runs\nconfidence 95 %", several(*[GOOD] * 3))
+    assert (found["verdict"], found["more"], found["confidence"]) == ("undecided", 2, 0.95)
+    assert found["interval"] == [pytest.approx(0.05 ** (1 / 3)), 1.0]
+    all_ = verify.clause("Move succeeds\nin at least 100 % of runs\nconfidence 95 %", several(*[GOOD] * 3))
+    assert (all_["verdict"], all_["more"]) == ("undecided", None)
+
+
+@pytest.mark.parametrize(
+    ("odds", "expected"),
+    [
+        ("in at least 50 % of runs", "satisfied 0/2 ?1"),  # 2 of 3, whatever the third was
+        ("in at least 90 % of runs", "unknown 0/2 ?1"),
+    ],
+)
+def test_what_is_unknown_counts_as_both(odds: str, expected: str, verify: Verify) -> None:
+    given = samples("battery", {5: 50})
+    found = verify.clause(f"Move needs battery > 1 %\n{odds}", several(GOOD, GOOD, GOOD), given, before=LEVEL)
+    assert count(found) == expected
+
+
+# ---- what is told of a violation ----
+
+
+def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
+    found = verify.clause("Move takes at most 0.03 s", f"{LONG} 50 1R 53 2R 90.2 2S 1S")
+    assert found["worst"] == {"si": pytest.approx(0.0372), "text": "0.0372 s", "run": 2}
+    assert found["violations"] == [
+        {
+            "run": 2,
+            "source": "run.btlog",
+            "path": "Move::2",
+            "start": "2026-11-20T21:22:20.050000Z",
+            "at": pytest.approx(0.0402),
+            "measured": "0.0372 s",
+            "bound": "0.03 s",
+            "why": "took 0.0372 s",
+        }
+    ]
+
+
+@pytest.mark.parametrize(
+    ("demand", "why", "measured", "at"),
+    [
+        ("Move takes at most 29999 us", "took 30000 us", "30000 us", 0.03),  # as many digits as the bound needs
+        ("Move succeeds within 10 ms", "succeeded after 30 ms", "30 ms", 0.03),
+        ("Move needs battery > 60 %", "`battery` was 50 % at the start", "50 %", 0.0),
+        ("Move leaves battery > 60 %", "`battery` was 30 % at the end", "30 %", 0.03),
+        ("Move keeps battery > 10 %", "`battery` was 5 %", "5 %", 0.02),
+        ("Move never battery < 10 %", "`battery` was 5 %", "5 %", 0.02),
+        ("Move needs battery > 60 % or 1 > 2", "the condition does not hold at the start", None, 0.0),
+    ],
+)
+def test_what_happened_in_words(demand: str, why: str, measured: str | None, at: float, verify: Verify) -> None:
+    (found,) = verify.clause(demand, LONG, samples("battery", SAMPLES), before=LEVEL)["violations"]
+    assert (found["why"], found["measured"], found["at"]) == (why, measured, at)
+
+
+# ---- the table of verbs ----
+
+
+@pytest.mark.parametrize("word", VERBS)
+def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
+    parsed = parse(f"QualityReq a\n    {VERBS[word].example}\n")
+    assert [each.message for each in parsed.diagnostics] == []
+    (requirement,) = (entry.item for entry in parsed.entries if isinstance(entry.item, RequirementItem))
+    (clause,) = requirement.clauses
+    assert isinstance(clause, Claim)
+    assert clause.verb.raw == word
+
+
+SIGNALS = (
+    "signal battery : % from {battery}\nsignal speed : m/s from {speed}\nsignal energy : Wh from {energy} counter\n"
+)
+
+
+@pytest.mark.parametrize("word", VERBS)
+def test_every_verb_is_judged_or_says_that_it_is_not(word: str, verify: Verify) -> None:
+    example = VERBS[word].example.replace("Dock", "Pick").replace("PickTray", "Pick")
+    found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
+    if judge_of(word) is None:
+        assert (found["verdict"], found["why"]) == ("unknown", f"`{word}` is not judged yet")
+    else:
+        assert found["why"] in ("", "no samples of `speed`")
+    assert {"takes", "succeeds", "needs", "keeps", "never", "leaves"} == {each for each in VERBS if judge_of(each)}
+
+
+@pytest.mark.parametrize(
+    ("demand", "why"),
+    [
+        ("from Move starts to Pick succeeds takes at most 1 s", "the time from one event to another is not judged yet"),
+        ("sum of Move, Pick takes at most 1 s", "sums of durations are not judged yet"),
+        ("Move succeeds\nin at least 90 % of runs\nover last 5 runs", "`over last` is not judged yet"),
+        ("Move needs node Pick", "`node Pick` in a condition is not judged yet"),
+        ("Move leaves max(battery) > 1 %", "`max(battery)` is not judged yet"),
+        ("takes at most 1 s", "it holds for no node"),
+    ],
+)
+def test_what_is_not_judged_is_unknown_with_the_reason(demand: str, why: str, verify: Verify) -> None:
+    found = verify.clause(demand, LONG, before=SIGNALS)
+    assert (found["verdict"], found["why"]) == ("unknown", why)
+
+
+def test_the_missions_of_these_tests_are_sound() -> None:
+    workspace = Workspace.of({"main.btq": f"{LEVEL}\nQualityReq rq : safety\n    Move needs battery > 1 %\n{MAIN}"})
+    assert [each.rule for each in check(workspace, "main.btq") if each.effective_severity.value == "error"] == []
+    assert len(requirements(workspace, "main.btq").applied) == 1
