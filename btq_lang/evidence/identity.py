@@ -35,7 +35,7 @@ class Mission:
         side: the nodes that its side file lists, uid and path of each; None where there is none.
     """
 
-    def __init__(self, workspace: Workspace, path: str, name: str, side: Sequence[tuple[int, str]] | None) -> None:
+    def __init__(self, workspace: Workspace, path: str, name: str, side: list[tuple[int, str]] | None) -> None:
         self.workspace: Final = workspace
         self.path: Final = path
         self.name: Final = name
@@ -94,11 +94,12 @@ class _Build(Record):
 def join(missions: Sequence[Mission], tree: LoggedTree) -> Joined | None:
     """The mission that a log's tree is of, with its nodes; None where none of the missions has half of the nodes."""
     wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
-    builds = [(mission, build) for mission in missions for build in mission.builds()]
-    for mission, build in builds:
-        if (same := _same(mission, build, tree, wanted)) is not None:
-            return same
-    found = [_by_path(mission, build, tree) for mission, build in builds]
+    nodes = [(uid, path) for uid, _, path in wanted]
+    for mission in sorted(missions, key=lambda each: each.side != nodes):  # to build a mission takes time
+        for build in mission.builds():
+            if (same := _same(mission, build, tree, wanted)) is not None:
+                return same
+    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds())
     best = max(found, key=lambda each: each.number, default=None)
     return best if best is not None and best.number * 2 >= len(wanted) else None
 
@@ -108,7 +109,7 @@ def _same(mission: Mission, build: _Build, tree: LoggedTree, wanted: list[tuple[
     made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
     if made != wanted:
         return None
-    is_side = mission.side is not None and list(mission.side) == [(uid, path) for uid, _, path in wanted]
+    is_side = mission.side == [(uid, path) for uid, _, path in wanted]
     how = "side file matches" if is_side else build.how
     return Joined(mission, tree, how, {uid: uid for uid, *_ in wanted}, len(wanted), build)
 

@@ -89,7 +89,9 @@ def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:
         return value if isinstance(value, str) else f"{value:g}"
     if signal.sort == "bool":
         if isinstance(value, str):
-            return _BOOLS.get(value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a bool"))
+            return _BOOLS.get(
+                value.strip().lower(), Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a bool")
+            )
         return bool(value)
     if isinstance(value, str):
         return Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a number")

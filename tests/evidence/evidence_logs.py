@@ -149,9 +149,8 @@ class Verify:
         return found
 
 
-
 def as_logged(xml: str) -> str:
-    """The tree of an XML file as a logger of the engine writes it: numbered, with a tree for each instance of a subtree.
+    """The tree of an XML file as the engine's loggers write it: numbered, with a tree for each instance of a subtree.
 
     An independent reading of `recursivelyCreateSubtree` and `WriteTreeToXML` in BehaviorTree.CPP's src/xml_parsing.cpp.
     """

@@ -8,13 +8,14 @@ import shutil
 from pathlib import Path
 
 import pytest
-from evidence_logs import MAIN, MAIN_XML, Verify, as_logged, btlog, rows
+from evidence_logs import MAIN, MAIN_XML, Verify, btlog, rows
 
 from btq_lang.cli import main
 
 DEMAND = "QualityReq rq : safety\n    Carry/Move takes at most 10 ms\n    on violation fail\n"
 MISSION = (
-    DEMAND + "Root Main\nBehaviorTree Main\n    ->\n        Action Undock\n        SubTree Carry\n        SubTree Carry Back\n"
+    DEMAND
+    + "Root Main\nBehaviorTree Main\n    ->\n        Action Undock\n        SubTree Carry\n        SubTree Carry Back\n"
     "BehaviorTree Carry\n    ->\n        Action Move\n        Action Pick\nAction Undock\nAction Move\nAction Pick\n"
 )
 OTHER = MAIN.replace("Main", "Other").replace("Move", "Wash").replace("Pick", "Rinse")
@@ -32,7 +33,7 @@ def identity(verify: Verify, *missions: str) -> tuple[str, int, int]:
     return source["identity"], source["joined"], source["nodes"]
 
 
-# With guards: 1 Sequence, 2 Undock, 3 Carry, 4 Sequence, 5 Timeout, 6 Move, 7 Pick, 8 Back, 9 Sequence, 10 Timeout, 11 …
+# With guards: 1 Sequence, 2 Undock, 3 Carry, 4 Sequence, 5 Timeout, 6 Move, 7 Pick, 8 Back, 9 Sequence, 10 Timeout …
 GUARDED = "0 1R 2S 3R 4R 5R 6R 8 6S 5S 7S 4S 3S 8R 9R 10R 11R 20 11S 10S 12S 9S 8S 1S"
 PLAIN = "0 1R 2S 3R 4R 5R 8 5S 6S 4S 3S 7R 8R 9R 20 9S 10S 8S 7S 1S"
 
@@ -63,7 +64,9 @@ def test_instances_are_judged_apart_and_counted_together(verify: Verify) -> None
 def test_a_log_of_an_older_text(verify: Verify) -> None:
     """Nodes are found by their path; one that the log does not have is unknown."""
     (verify.folder / "main.btq").write_text(
-        MISSION.replace("        Action Pick\n", "        Action Wave\n        Action Pick\n").replace("Action Undock\nAc", "Action Wave\nAction Undock\nAc")
+        MISSION.replace("        Action Pick\n", "        Action Wave\n        Action Pick\n").replace(
+            "Action Undock\nAc", "Action Wave\nAction Undock\nAc"
+        )
         + "QualityReq new : safety\n    Wave takes at most 1 s\n",
         encoding="utf-8",
     )
@@ -110,7 +113,9 @@ def test_a_log_of_another_mission_is_counted_and_left_alone(verify: Verify) -> N
 
 LIMIT = "Move takes at most 20 ms\non violation fail"
 # What a build makes of it: 1 Sequence, 2 Timeout, 3 Move, 4 Pick.
-LIMITED = MAIN_XML.replace('<Move name="Move" _uid="2"/>', '<Timeout name="rq_limit" _uid="2"><Move name="Move" _uid="3"/></Timeout>').replace('Pick" _uid="3"', 'Pick" _uid="4"')
+LIMITED = MAIN_XML.replace(
+    '<Move name="Move" _uid="2"/>', '<Timeout name="rq_limit" _uid="2"><Move name="Move" _uid="3"/></Timeout>'
+).replace('Pick" _uid="3"', 'Pick" _uid="4"')
 
 
 @pytest.mark.parametrize(

@@ -34,18 +34,21 @@ def read(path: str) -> Iterator[Session]:
     with open(path, "rb") as file:
         size = os.fstat(file.fileno()).st_size
         head = file.read(_HEAD.size)
-        if len(head) < _HEAD.size or not head.startswith(MAGIC):
+        if not head.startswith(MAGIC):
             raise NotALog(f"expected a file that begins with {MAGIC.decode()}, as FileLogger2 writes it")
+        if len(head) < _HEAD.size:
+            raise NotALog("it ends before its tree")
         _, version, length = _HEAD.unpack(head)
         if version != _VERSION:
             raise NotALog(f"version {version} of the format; btq reads version {_VERSION}")
-        if not 0 <= length <= size - _HEAD.size - _START.size:
-            raise NotALog(f"the tree should take {length} bytes, but the file has only {size}")
+        left = size - _HEAD.size
+        if not 0 <= length <= left - _START.size:
+            raise NotALog(f"its tree and start should take {length} and {_START.size} bytes, and {left} are left")
         tree = read_tree(file.read(length))
         (start,) = _START.unpack(file.read(_START.size))
         session = Session(tree, _transitions(file, start))
-        if left := (size - _HEAD.size - length - _START.size) % _RECORD.size:
-            session.remarks.append(f"cut off: {left} bytes at the end are not a whole transition and are left out")
+        if rest := (left - length - _START.size) % _RECORD.size:
+            session.remarks.append(f"cut off: {rest} bytes at the end are not a whole transition and are left out")
         yield session
 
 

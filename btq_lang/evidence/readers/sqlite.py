@@ -37,7 +37,7 @@ def read(path: str) -> Iterator[Session]:
     try:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
         yield from _sessions(database)
-    except sqlite3.Error as error:
+    except _DAMAGED as error:
         raise NotALog(f"the database cannot be read: {error}") from error
     finally:
         database.close()
@@ -66,7 +66,7 @@ def _transitions(
                 yield time, uid, status
             else:
                 malformed += 1
-    except sqlite3.Error as error:
+    except _DAMAGED as error:
         remarks.append(f"the database is damaged, and what comes after that is left out: {error}")
     if malformed:
         remarks.append(f"rows left out, for their time or uid is not a whole number: {malformed}")
@@ -83,6 +83,7 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
             samples.setdefault(name, Series()).add(time, value)
 
 
+_DAMAGED: Final = (sqlite3.Error, UnicodeDecodeError)  # which a message of SQLite may itself end in
 MAGIC: Final = b"SQLite format 3\0"
 _TRANSITIONS: Final = (
     "SELECT timestamp, node_uid, state, extra_data FROM Transitions WHERE session_id = ? ORDER BY timestamp"

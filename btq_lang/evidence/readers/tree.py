@@ -31,17 +31,17 @@ def read_tree(xml: bytes | str) -> LoggedTree:
     text = xml.decode("utf-8", "replace") if isinstance(xml, bytes) else xml
     document = read_xml(text).document
     if document is None or document.root.tag != "root":
-        raise NotALog("the tree in it is no XML of BehaviorTree.CPP")
+        raise NotALog("its tree is not XML of BehaviorTree.CPP")
     tops: dict[int, tuple[Element, str]] = {}  # the top node of each tree, by uid, with the path of the tree
     for tree in document.root.elements:
         if tree.tag == "BehaviorTree":
             for element in tree.elements:
                 tops[_uid(element)] = element, tree.get("_fullpath") or ""
     if ROOT not in tops:
-        raise NotALog("the tree in it has no node with `_uid` 1")
+        raise NotALog("its tree has no node with `_uid` 1")
     nodes = _numbered(tops)
     if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
-        raise NotALog("the nodes of the tree in it are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
+        raise NotALog("the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
     last = {uid: uid for uid, *_ in nodes}
     for uid, _, _, parent in reversed(nodes):
         if parent:
