@@ -16,8 +16,11 @@ from pathlib import Path
 
 import pytest
 import yaml
+from evidence_logs import as_logged, btlog, rows, samples, write_db3
 
-from btq_lang.loader import find_project
+from btq_lang.btcpp.document import write
+from btq_lang.btcpp.export import export
+from btq_lang.loader import find_project, open_workspace
 from btq_lang.parser import parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -35,6 +38,7 @@ RUN_BY = {
     "import.md xml": "test_an_import_gives_what_the_page_shows",
     "import.md text": "test_an_import_gives_what_the_page_shows",
     "commands.md text": "test_a_diff_says_what_the_page_shows",
+    "evidence.md text": "evidence/test_page.py",
     "console": "test_requirements_page.py",
     "sh": "test_a_shell_block_runs",
     "editors.md sh": "editors/test_neovim.py",
@@ -133,6 +137,8 @@ def environment(tmp_path: Path) -> dict[str, str]:
 @pytest.mark.skipif(os.name == "nt", reason="the blocks are for a POSIX shell")
 @pytest.mark.parametrize("block", [block for block in blocks("sh") if not block.values[0].startswith(INSTALLS)])
 def test_a_shell_block_runs(block: str, clone: Path, environment: dict[str, str], tmp_path: Path) -> None:
+    if "btq verify" in block:
+        _write_logs(clone)
     if "btq import" in block:
         xml = '<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock/></BehaviorTree></root>'
         (clone / "trees").mkdir()
@@ -146,6 +152,15 @@ def test_a_shell_block_runs(block: str, clone: Path, environment: dict[str, str]
     ended = (tmp_path / "codes").read_text().splitlines()
     assert len(ended) == len(re.findall(r"^(?:.*\| )?btq(?:-lsp)? ", block, re.MULTILINE)) > 0
     assert [line for line in ended if line[0] not in "01"] == [], run.stderr
+
+
+def _write_logs(folder: Path) -> None:
+    """Logs of one run of the mission, cut off at once, and samples."""
+    xml = as_logged(write(export(open_workspace(f"{folder}/mission.btq"), f"{folder}/mission.btq").document))
+    (folder / "logs").mkdir()
+    (folder / "logs" / "run.btlog").write_bytes(btlog(xml, rows("0 1R")))
+    write_db3(folder / "run.db3", xml, [rows("0 1R")])
+    (folder / "battery.csv").write_text(samples("battery", {0: 50}), encoding="utf-8")
 
 
 # ---- the language, and what is made of it ----

@@ -37,8 +37,7 @@ def run(options: Namespace) -> int:
     logs, missions, samples = _given(options, problems)
     if not problems:
         report = verify(logs, missions, samples, shown)
-        problems += report.problems
-        problems += _without_verdicts(report)
+        problems += (*report.problems, *_without_verdicts(report), *_with_errors(report, missions))
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
             print(f"btq verify: {each.file}: {runs} of another mission, left alone", file=sys.stderr)
@@ -89,13 +88,6 @@ def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) ->
                 side = sides.get(path) or _nodes(side_path(xml_name(path))).get(path)
                 name = os.path.splitext(os.path.basename(path))[0]
                 found.append(Mission(workspace, path, name, side))
-            errors = sum(
-                each.effective_severity is Severity.ERROR
-                for file in workspace.closure(path)
-                for each in check(workspace, file)
-            )
-            if errors and (asked or found):
-                problems.append(f"{shown(path)} has errors, so clauses may be missing; run btq check")
     if not found and not problems:
         problems.append("no mission found; name one with --mission FILE")
     return found
@@ -122,6 +114,18 @@ def _nodes(side: str) -> Sides:
         return {mission: [(node["uid"], node["path"]) for node in data["nodes"]]}
     except (ValueError, RecursionError, KeyError, TypeError):
         return {}
+
+
+def _with_errors(report: Report, missions: Sequence[Mission]) -> Iterator[str]:
+    """The missions of the report in which something is wrong, so that a clause may not have been understood."""
+    judged = {mission.file for mission in report.missions}
+    for mission in missions:
+        if mission.path in judged:
+            found = (
+                each for file in mission.workspace.closure(mission.path) for each in check(mission.workspace, file)
+            )
+            if any(each.effective_severity is Severity.ERROR for each in found):
+                yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
 
 
 def _without_verdicts(report: Report) -> Iterator[str]:

@@ -10,7 +10,7 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     guards.py      what the nodes did that a build has put around others
     verbs/         a module a verb: what an activation came to
     evaluate.py    all clauses of a mission, judged while a log is read
-    tally.py, statistics.py   what was counted, and how sure it makes one
+    tally.py, odds.py   what was counted, and how sure it makes one
     verdicts.py    what comes out, as data
     table.py, json_document.py   the writers
 """

@@ -53,9 +53,11 @@ def activations(session: Session) -> Iterator[Activation]:
                     odd.count("unwritten", _UNWRITTEN, time)
                     yield from nodes.end(uid, time, "H", "latest")
             running.add(uid)
-            nodes.begin(uid, time)
+            if uid not in begun:
+                nodes.begin(uid, time)
         elif completes:
-            nodes.begin(uid, time)
+            if uid not in begun:
+                nodes.begin(uid, time)
             ended = nodes.end(uid, time, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count("unwritten", _UNWRITTEN, time)
@@ -93,12 +95,9 @@ class _OpenNodes:
 
     def begin(self, uid: int, time: int) -> None:
         """A node is active, and so are those above it, whether they have written so or not."""
-        begun, parent = self.begun, self._tree.parent
-        time = begun.setdefault(uid, time)
-        above = parent[uid]
-        while above and above not in begun:
-            begun[above] = time
-            above = parent[above]
+        while uid and uid not in self.begun:
+            self.begun[uid] = time
+            uid = self._tree.parent[uid]
 
     def end(
         self, uid: int, time: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"

@@ -5,7 +5,7 @@ One invariant: what was counted is enough for the verdict, so no judgement is ke
 
 from __future__ import annotations
 
-from btq_lang.evidence.statistics import lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
 from btq_lang.evidence.wording import quantity
 from btq_lang.record import Record

@@ -7,7 +7,7 @@ from math import comb, log
 
 import pytest
 
-from btq_lang.evidence.statistics import beta_cdf, lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.odds import beta_cdf, lower_limit, runs_to_decide, upper_limit
 
 # scipy.stats.beta.ppf of SciPy 1.17.1: (k, n, confidence, lower limit, upper limit).
 GRID = (
