@@ -12,7 +12,7 @@ from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.evidence import FORMATS, verify, write
-from btq_lang.evidence.identity import Mission
+from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
     return int(bool(wrong))
 
 
-def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Mission], dict[str, Series]]:
+def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
     """The logs, missions and samples of a command line; what is wrong with them is added to the problems."""
     if problem := usage_problem([*options.logs, *options.mission]):
         problems.append(problem)
@@ -73,21 +73,21 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     return logs, _missions(options.mission, logs, problems), samples
 
 
-def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Mission]:
+def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     """The missions that logs may be of: those asked for, else those of the side files beside the logs and all of this
     folder's project."""
     sides = dict(_sides(logs))
     paths = list(asked) or [*filter(os.path.isfile, sides), find_project(".").project.root]
     groups, unreadable = Files().groups(paths)
     problems += map(str, unreadable)
-    found: list[Mission] = []
+    found: list[Candidate] = []
     for group in groups:
         workspace = group.workspace
         for path in group.given:
             if asked or path not in workspace.included_files:
                 side = sides.get(path) or _nodes(side_path(xml_name(path))).get(path)
                 name = os.path.splitext(os.path.basename(path))[0]
-                found.append(Mission(workspace, path, name, side))
+                found.append(Candidate(workspace, path, name, side))
     if not found and not problems:
         problems.append("no mission found; name one with --mission FILE")
     return found
@@ -116,7 +116,7 @@ def _nodes(side: str) -> Sides:
         return {}
 
 
-def _with_errors(report: Report, missions: Sequence[Mission]) -> Iterator[str]:
+def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
     """The missions of the report in which something is wrong, so that a clause may not have been understood."""
     judged = {mission.file for mission in report.missions}
     for mission in missions:

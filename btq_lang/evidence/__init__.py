@@ -9,8 +9,10 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     signals.py, conditions.py   what signals were at a moment, and whether conditions held
     guards.py      what the nodes did that a build has put around others
     verbs/         a module a verb: what an activation came to
-    evaluate.py    all clauses of a mission, judged while a log is read
+    scopes.py      which activations count
+    clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
     tally.py, odds.py   what was counted, and how sure it makes one
+    coverage.py    which nodes ran
     verdicts.py    what comes out, as data
     table.py, json_document.py   the writers
 """
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Final
 
-    from btq_lang.evidence.identity import Mission
+    from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
 
@@ -31,7 +33,7 @@ FORMATS: Final = ("table", "json")
 
 
 def verify(
-    logs: Iterable[str], missions: Sequence[Mission], samples: Mapping[str, Series], shown: Callable[[str], str]
+    logs: Iterable[str], missions: Sequence[Candidate], samples: Mapping[str, Series], shown: Callable[[str], str]
 ) -> Report:
     """The verdicts of missions by what logs say.
 

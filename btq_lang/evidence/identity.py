@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace import Workspace
 
 
-class Mission:
+class Candidate:
     """A mission that logs may be of, and the trees that `btq build` makes of it, made when they are asked for.
 
     Attributes:
@@ -62,7 +62,7 @@ class Joined(Record):
         number: how many of the log's nodes were found.
     """
 
-    mission: Mission
+    mission: Candidate
     tree: LoggedTree
     how: str
     uids: Mapping[int, int]
@@ -91,7 +91,7 @@ class _Build(Record):
     running: RunningTree
 
 
-def join(missions: Sequence[Mission], tree: LoggedTree) -> Joined | None:
+def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     """The mission that a log's tree is of, with its nodes; None where none of the missions has half of the nodes."""
     wanted = [(node.uid, node.kind, node.path) for node in tree.nodes.values()]
     nodes = [(uid, path) for uid, _, path in wanted]
@@ -104,7 +104,7 @@ def join(missions: Sequence[Mission], tree: LoggedTree) -> Joined | None:
     return best if best is not None and best.number * 2 >= len(wanted) else None
 
 
-def _same(mission: Mission, build: _Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
+def _same(mission: Candidate, build: _Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
     """All nodes, where the tree is just the one that a build makes."""
     made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
     if made != wanted:
@@ -114,7 +114,7 @@ def _same(mission: Mission, build: _Build, tree: LoggedTree, wanted: list[tuple[
     return Joined(mission, tree, how, {uid: uid for uid, *_ in wanted}, len(wanted), build)
 
 
-def _by_path(mission: Mission, build: _Build, tree: LoggedTree) -> Joined:
+def _by_path(mission: Candidate, build: _Build, tree: LoggedTree) -> Joined:
     """The nodes whose path is the same, and no other node's on either side."""
     logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
     made = _unique(
@@ -124,7 +124,7 @@ def _by_path(mission: Mission, build: _Build, tree: LoggedTree) -> Joined:
     return Joined(mission, tree, "built from another version", uids, len(uids), build)
 
 
-def _builds(mission: Mission) -> Iterator[_Build]:
+def _builds(mission: Candidate) -> Iterator[_Build]:
     """The trees that builds with different options make, without those that cannot be made."""
     workspace = mission.workspace
     targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
@@ -137,7 +137,7 @@ def _builds(mission: Mission) -> Iterator[_Build]:
                 yield _Build(how if is_enforced else f"{how} with --no-enforce", running)
 
 
-def _running(mission: Mission, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
+def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
     """The tree that runs, as `btq build` makes it; None where it makes none."""
     path = mission.path
     exports = [export(workspace, each) for each in workspace.closure(path)]

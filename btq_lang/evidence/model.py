@@ -111,6 +111,11 @@ class Series:
             del self.times[:index], self.values[:index]
 
 
+def is_sample(value: object) -> bool:
+    """Whether something that a file says is a value: a text, a bool, or a number that stays finite in any unit."""
+    return isinstance(value, str | bool) or (isinstance(value, float | int) and -_LARGEST <= value <= _LARGEST)
+
+
 class Session:
     """What one logger object wrote: a tree and its transitions, to be read once.
 
@@ -131,3 +136,6 @@ class Session:
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
         self.remarks: Final = [] if remarks is None else remarks
+
+
+_LARGEST: Final = 1e200

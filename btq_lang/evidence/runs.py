@@ -13,7 +13,8 @@ What real logs do beside the plain sequence RUNNING, result, IDLE:
 
 from __future__ import annotations
 
-from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SUCCESS, Activation, LoggedTree, Session
+from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Session
+from btq_lang.evidence.wording import timestamp
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -33,11 +34,11 @@ def activations(session: Session) -> Iterator[Activation]:
     idle: tuple[int, int] | None = None  # a halt that may turn out to be part of the node's own completion
     last = 0
     for time, uid, status in session.transitions:
-        if uid not in parent:
-            odd.count("unknown", f"rows of nodes that the tree lacks, the first of uid {uid}", time)
+        if uid not in parent or status not in _STATUSES:
+            odd.count("rows left out, for the tree has no such node, or the engine no such status", time)
             continue
         if time < last:
-            odd.count("backwards", "rows with a time before that of the row above", time)
+            odd.count("rows with an earlier time than the row before, so how long things took there is unknown", time)
             nodes.distrust()
         completes = status in (SUCCESS, FAILURE)
         if idle is not None:
@@ -50,7 +51,7 @@ def activations(session: Session) -> Iterator[Activation]:
                 if uid == ROOT:
                     yield from nodes.end(ROOT, last, "O", below="O")
                 else:
-                    odd.count("unwritten", _UNWRITTEN, time)
+                    odd.count(_UNWRITTEN, time)
                     yield from nodes.end(uid, time, "H", "latest")
             running.add(uid)
             if uid not in begun:
@@ -60,12 +61,12 @@ def activations(session: Session) -> Iterator[Activation]:
                 nodes.begin(uid, time)
             ended = nodes.end(uid, time, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
-                odd.count("unwritten", _UNWRITTEN, time)
+                odd.count(_UNWRITTEN, time)
             yield from ended
         elif uid in running:
             idle = uid, time
         else:
-            begun.pop(uid, None)
+            nodes.forget(uid)
         last = time
     if idle is not None:
         yield from nodes.end(*idle, "H")
@@ -108,22 +109,27 @@ class _OpenNodes:
         if last > uid:
             inside = sorted([each for each in self.begun if uid < each <= last], reverse=True)
             for each in inside:
-                begin = self.begun.pop(each)
                 if each in self.running:
-                    self.running.discard(each)
-                    found.append(self._made(each, begin, time, below, "latest" if below == "H" else "exact"))
-        self.running.discard(uid)
-        found.append(self._made(uid, self.begun.pop(uid), time, outcome, timing))
+                    found.append(self._made(each, time, below, "latest" if below == "H" else "exact"))
+                else:  # only something below it has written a row
+                    self.forget(each)
+        found.append(self._made(uid, time, outcome, timing))
         return found
+
+    def forget(self, uid: int) -> None:
+        """A node is not active any more."""
+        self.begun.pop(uid, None)
+        self.running.discard(uid)
+        self._distrusted.discard(uid)
 
     def distrust(self) -> None:
         """The clock was set back: nobody can say how long what is active now takes."""
         self._distrusted.update(self.begun)
 
-    def _made(self, uid: int, begin: int, end: int, outcome: Outcome, timing: Timing) -> Activation:
-        if uid in self._distrusted:
-            self._distrusted.discard(uid)
-            timing = "broken"
+    def _made(self, uid: int, end: int, outcome: Outcome, timing: Timing) -> Activation:
+        begin = self.begun[uid]
+        timing = "broken" if uid in self._distrusted else timing
+        self.forget(uid)
         return Activation(uid, begin, end, outcome, timing)
 
 
@@ -132,16 +138,17 @@ class _Oddities:
 
     def __init__(self, session: Session) -> None:
         self._session: Final = session
-        self._found: Final[dict[str, tuple[str, int, int]]] = {}
+        self._found: Final[dict[str, tuple[int, int]]] = {}
 
-    def count(self, key: str, what: str, time: int) -> None:
-        said, first, number = self._found.get(key, (what, time, 0))
-        self._found[key] = said, first, number + 1
+    def count(self, what: str, time: int) -> None:
+        first, number = self._found.get(what, (time, 0))
+        self._found[what] = first, number + 1
 
     def tell(self) -> None:
-        for what, first, number in self._found.values():
-            self._session.remarks.append(f"{number} {what}, at {first / 1e6:.6f} s")
+        for what, (first, number) in self._found.items():
+            self._session.remarks.append(f"{what}: {number}, the first at {timestamp(first)}")
 
 
 _ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
-_UNWRITTEN: Final = "halts without a row: their ends are known only at the latest"
+_UNWRITTEN: Final = "halts that have no row, so their ends are known only at the latest"
+_STATUSES: Final = range(SKIPPED + 1)

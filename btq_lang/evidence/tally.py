@@ -128,7 +128,7 @@ def _violation(judgement: Judgement, path: str, run: Run) -> Violation:
     measured = quantity(measure.si, measure.unit, measure.bound) if measure is not None else ""
     bound = measure.bound_text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
-    why = judgement.said.format(measured)
+    why = judgement.said.replace("{}", measured)
     return Violation(run.number, run.source, path, run.begin, at, measured, bound, why)
 
 

@@ -13,7 +13,7 @@ from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
 
 from btq_lang.evidence import verify as verify_logs
 from btq_lang.evidence import write
-from btq_lang.evidence.identity import Mission
+from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 from btq_lang.workspace import Workspace
@@ -21,7 +21,7 @@ from btq_lang.workspace import Workspace
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
 DEMANDS = "QualityReq rq : safety\n    Move needs battery > 1 %\n    Move takes at most 6 ms\n"
 TEXT = f"signal battery : % from {{battery}}\n{DEMANDS}{MAIN}"
-MISSION = Mission(Workspace.of({"main.btq": TEXT}), "main.btq", "main", None)
+MISSION = Candidate(Workspace.of({"main.btq": TEXT}), "main.btq", "main", None)
 
 
 FOREIGN = "expected a log of BehaviorTree.CPP: .btlog of FileLogger2, or .db3 or .btdb of SqliteLogger"
@@ -169,7 +169,14 @@ def test_a_database_is_read_while_the_robot_writes_it(tmp_path: Path) -> None:
 
 def test_entries_beside_the_rows_of_a_database_are_samples(verify: Verify) -> None:
     (verify.folder / "main.btq").write_text(TEXT, encoding="utf-8")
-    extra = {0: json.dumps({"battery": 50, "x": None, "y": [1]}), 5: "no JSON", 6: "[3]", 8: json.dumps({"battery": 1})}
+    extra = {
+        0: json.dumps({"battery": 50, "x": None, "y": [1]}),
+        5: "no JSON",
+        6: "[3]",
+        7: json.dumps({"battery": float("nan")}),
+        8: json.dumps({"battery": 1}),
+        9: json.dumps({"battery": 10**400}),
+    }
     write_db3(verify.folder / "run.db3", MAIN_XML, [rows(TWO_RUNS)], extra)
     needs = verify.json("run.db3")["requirements"][0]["clauses"][0]
     assert (needs["counted"], needs["violated"]) == (2, 1)
@@ -199,6 +206,22 @@ def test_a_log_is_never_in_memory_as_a_whole(form: str, tmp_path: Path) -> None:
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.5 * peaks[0]
+
+
+def test_rows_that_no_engine_writes_are_left_out_and_told(verify: Verify) -> None:
+    (verify.folder / "main.btq").write_text(TEXT, encoding="utf-8")
+    write_db3(verify.folder / "run.db3", MAIN_XML, [[*rows(TWO_RUNS), (31_000, 1, 1), (32_000, 1, 9)]])
+    database = sqlite3.connect(verify.folder / "run.db3")
+    database.execute("UPDATE Transitions SET state = 'RUNNING' WHERE timestamp > ? AND state = 1", (START + 30_500,))
+    database.commit()
+    database.close()
+    (source,) = verify.json("run.db3")["sources"]
+    assert source["runs"] == 2
+    assert source["remarks"] == [
+        "rows left out, for their time, uid or state is not a whole number: 1",
+        "rows left out, for the tree has no such node, or the engine no such status: 1, "
+        "the first at 2026-11-20T21:22:20.032000Z",
+    ]
 
 
 # ---- samples ----

@@ -213,3 +213,88 @@ def test_runs_are_numbered_over_all_files(lab: Path) -> None:
     ]
     late = found["requirements"][0]["clauses"][0]["violations"]
     assert [each["run"] for each in late[4:]] == [each["run"] + 200 for each in late[:4]]
+
+
+def test_a_log_without_rows_to_idle_gives_the_same_verdicts(lab: Path) -> None:
+    """As Nav2 writes them on demand; the laboratory halts nothing, so nothing becomes unknown."""
+    whole = (lab / "lab.btlog").read_bytes()
+    head = 31 + int.from_bytes(whole[19:23], "little")
+    rows = [whole[at : at + 9] for at in range(head, len(whole), 9)]
+    assert any(row[8] == 0 for row in rows)
+    (lab / "noidle.btlog").write_bytes(whole[:head] + b"".join(row for row in rows if row[8] != 0))
+    with_idle, without = (verdicts(lab, log, "--signals", "lab.battery.csv") for log in ("lab.btlog", "noidle.btlog"))
+    assert plain(without["requirements"]) == plain(with_idle["requirements"])
+
+
+@pytest.mark.parametrize(
+    ("demands", "more", "code"),
+    [
+        ("MoveToCharger takes at most 1 s", (), 0),
+        ("MoveToCharger takes at most 1 s", ("--strict",), 0),
+        ("MoveToCharger takes at most 280 ms", (), 1),
+        ("MoveToStation leaves battery >= 15 %", (), 0),
+        ("MoveToStation leaves battery >= 15 %", ("--strict",), 1),
+        ("mission succeeds in at least 94 % of runs confidence 95 %", (), 0),
+        ("mission succeeds in at least 94 % of runs confidence 95 %", ("--strict",), 1),
+    ],
+)
+def test_exit_codes(demands: str, more: tuple[str, ...], code: int, lab: Path) -> None:
+    text = (lab / "lab.btq").read_text(encoding="utf-8")
+    before, _, rest = text.partition("QualityReq in_time")
+    tree = rest[rest.index("BehaviorTree mainTree") :]
+    (lab / "lab.btq").write_text(f"{before}QualityReq rq : reliability\n    {demands}\n{tree}", encoding="utf-8")
+    assert btq(lab, "verify", "lab.btlog", "--mission", "lab.btq", *more)[0] == code
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (("none.btlog",), "btq verify: none.btlog: cannot be read: No such file or directory\n"),
+        (("",), "btq verify: a path is empty; `.` is this folder\n"),
+        (("folder",), "btq verify: no .btlog, .db3 or .btdb below folder\n"),
+        (("lab.btlog", "--mission", "none.btq"), "btq verify: none.btq: cannot be read: No such file or directory\n"),
+        (("lab.btlog", "--signals", "none.csv"), "btq verify: none.csv: cannot be read: No such file or directory\n"),
+        (("lab.btlog", "--mission", "folder"), "btq verify: no mission found; name one with --mission FILE\n"),
+        (("empty.btlog",), "btq verify: no run in any log, so there is nothing to judge\n"),
+    ],
+)
+def test_what_cannot_be_done(arguments: tuple[str, ...], error: str, lab: Path) -> None:
+    (lab / "folder").mkdir()
+    whole = (lab / "lab.btlog").read_bytes()
+    (lab / "empty.btlog").write_bytes(whole[: 31 + int.from_bytes(whole[19:23], "little")])
+    code, _, errors = btq(lab, "verify", *arguments)
+    assert (code, errors) == (2, error)
+
+
+def test_a_mission_with_errors_may_lack_clauses(lab: Path) -> None:
+    text = (lab / "lab.btq").read_text(encoding="utf-8")
+    (lab / "lab.btq").write_text(text.replace("280 ms", "280 sek"), encoding="utf-8")
+    code, output, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq")
+    assert (code, errors) == (2, "btq verify: lab.btq has errors, so clauses may be missing; run btq check\n")
+    assert "in_time" not in output
+    assert "reliable" in output
+
+
+def test_xml_is_a_mission_too(lab: Path, shared: Path) -> None:
+    shutil.copy(shared / "logs" / "lab.xml", lab)
+    code, output, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.xml")
+    assert (code, errors) == (0, "")
+    assert output.splitlines()[:3] == [
+        "200 runs in lab.btlog, 2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)",
+        "",
+        "  the mission has no requirement that logs can show",
+    ]
+
+
+def test_colours_are_for_terminals(lab: Path) -> None:
+    _, output, _ = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq", "--color", "always")
+    assert "\x1b[1;31mviolated       \x1b[0m  in_time" in output
+    assert "\x1b" not in btq(lab, "verify", "lab.btlog", "--mission", "lab.btq")[1]
+
+
+def test_names_with_braces_are_no_patterns(lab: Path) -> None:
+    text = (lab / "lab.btq").read_text(encoding="utf-8")
+    (lab / "lab.btq").write_text(text.replace("QualityReq in_time", 'QualityReq "{0} {x}"'), encoding="utf-8")
+    code, output, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq")
+    assert (code, errors) == (1, "")
+    assert "  violated         {0} {x}" in output

@@ -1,14 +1,15 @@
 """Samples of signals in a CSV file: the first column is the time, the others are named as signals or their entries.
 
-One invariant: a cell that is empty is no sample, and the first cell that cannot be read is an error with its line.
+One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
+error with its line.
 """
 
 from __future__ import annotations
 
 import csv
-from math import isfinite, isnan
+from math import isfinite
 
-from btq_lang.evidence.model import Series
+from btq_lang.evidence.model import Series, is_sample
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def _value(cell: str) -> SampleValue | None:
         number = float(cell)
     except ValueError:
         return cell or None
-    return None if isnan(number) else number
+    return number if is_sample(number) else None
 
 
 _LATEST: Final = 9e12  # s since the epoch, in µs still 64 bits

@@ -12,7 +12,7 @@ import json
 import sqlite3
 from urllib.request import pathname2url
 
-from btq_lang.evidence.model import Series, Session
+from btq_lang.evidence.model import Series, Session, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -60,7 +60,7 @@ def _transitions(
     malformed = 0
     try:
         for time, uid, status, extra in database.execute(_TRANSITIONS, (session,)):
-            if type(time) is int and type(uid) is int:
+            if type(time) is type(uid) is type(status) is int:
                 if extra:
                     _add_samples(samples, time, extra)
                 yield time, uid, status
@@ -69,7 +69,7 @@ def _transitions(
     except _DAMAGED as error:
         remarks.append(f"the database is damaged, and what comes after that is left out: {error}")
     if malformed:
-        remarks.append(f"rows left out, for their time or uid is not a whole number: {malformed}")
+        remarks.append(f"rows left out, for their time, uid or state is not a whole number: {malformed}")
 
 
 def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
@@ -79,7 +79,7 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
     except (ValueError, RecursionError):
         return
     for name, value in values.items() if isinstance(values, dict) else ():
-        if isinstance(value, float | int | str):
+        if is_sample(value):
             samples.setdefault(name, Series()).add(time, value)
 
 

@@ -33,7 +33,7 @@ def judged_at(condition: Condition, time: int, signals: Signals, said: str) -> J
         return Judgement(None, time, found.why)
     reading = reading_of(condition, signals, time)
     if reading is None:
-        return Judgement(found, time, said.format(f"the condition {'holds' if found else 'does not hold'}"))
+        return Judgement(found, time, said.replace("{}", f"the condition {'holds' if found else 'does not hold'}"))
     bound = reading.bound
     measure = Measure(reading.si, reading.signal.unit, bound.si, bound.text, reading.excess)
-    return Judgement(found, time, said.format(f"`{reading.signal.name}` was {{}}"), measure)
+    return Judgement(found, time, said.replace("{}", f"`{reading.signal.name}` was {{}}"), measure)

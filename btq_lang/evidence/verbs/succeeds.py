@@ -20,11 +20,11 @@ def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement |
     if claim.limit is None:
         if activation.outcome in ("S", "F"):
             holds = activation.outcome == "S"
-            return Judgement(holds, activation.end, said.format("succeeded" if holds else "failed"))
+            return Judgement(holds, activation.end, said.replace("{}", "succeeded" if holds else "failed"))
         return None
     found = measure(claim.limit, activation, signals)
     if activation.outcome == "F":
-        return Judgement(False, activation.end, said.format("failed"))
+        return Judgement(False, activation.end, said.replace("{}", "failed"))
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
     _, duration = found
@@ -32,7 +32,7 @@ def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement |
         if activation.timing == "latest":
             return Judgement(None, activation.end, UNKNOWN_END)
         how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
-        return Judgement(False, activation.end, said.format(how), duration)
+        return Judgement(False, activation.end, said.replace("{}", how), duration)
     if activation.outcome == "S":
-        return Judgement(True, activation.end, said.format("succeeded after {}"), duration)
+        return Judgement(True, activation.end, said.replace("{}", "succeeded after {}"), duration)
     return None

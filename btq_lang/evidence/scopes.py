@@ -1,0 +1,52 @@
+"""`while C` and `when C`: which activations count, and of `keeps` and `never` which of their time.
+
+One invariant: with an unknown scope an activation is unknown, whatever it came to.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.conditions import signals_in, truth
+from btq_lang.evidence.signals import Unknown
+from btq_lang.record import replace
+from btq_lang.requirements.model import All, Any, Not
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.requirements.model import Claim, Scope
+
+
+def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
+    """A claim about all of an activation, which with `while C` is about the time with C alone."""
+    for scope in scopes:
+        condition = claim.condition
+        if scope.word == "while" and condition is not None and claim.verb == "keeps":
+            claim = replace(claim, condition=Any((Not(scope.condition), condition)))
+        elif scope.word == "while" and condition is not None and claim.verb == "never":
+            claim = replace(claim, condition=All((scope.condition, condition)))
+    return claim
+
+
+def in_scope(scopes: Sequence[Scope], verb: str, activation: Activation, signals: Signals) -> bool | Unknown:
+    """Whether an activation counts."""
+    result: bool | Unknown = True
+    for scope in scopes:
+        if scope.word == "when":
+            times = [activation.begin]
+        else:
+            times = signals.moments(signals_in(scope.condition), activation.begin, activation.end)
+        found = [truth(scope.condition, signals, time) for time in times]
+        unknown = next((each for each in found if isinstance(each, Unknown)), None)
+        if scope.word == "while" and verb in ("keeps", "never"):  # some of its time counts
+            if True in found:
+                continue
+            counts = unknown or False
+        else:
+            counts = False if False in found else unknown or True
+        if counts is False:
+            return False
+        result = counts if isinstance(counts, Unknown) else result
+    return result
