@@ -40,7 +40,7 @@ def run(options: Namespace) -> int:
         problems += (*report.problems, *_without_verdicts(report), *_with_errors(report, missions))
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
-            print(f"btq verify: {each.file}: {runs} of another mission, left alone", file=sys.stderr)
+            print(f"btq verify: {each.file}: {runs} of another mission, not judged", file=sys.stderr)
         colour = options.color == "always" or (
             options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ)
         )
@@ -130,6 +130,6 @@ def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]
 
 def _without_verdicts(report: Report) -> Iterator[str]:
     if not report.missions and not report.problems:
-        yield "no log is of a mission that is known; name it with --mission FILE"
+        yield "no log matches a known mission; name the mission with --mission FILE"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"

@@ -94,7 +94,7 @@ class JudgedClause:
         elif verdict == UNKNOWN:
             why = tally.why
         elif verdict == NEVER:
-            why = "it did not start in any run" if not tally.cut_off else "it was open when the log ended"
+            why = "it did not start in any run" if not tally.cut_off else "the log ends before it does"
         said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
         said += [self.requirement.odds.text] if self.requirement.odds is not None else []
         return ClauseVerdict(
@@ -126,19 +126,19 @@ def _target(applied: Applied | None) -> Target | None:
 def _not_judged(requirement: Requirement, claim: Claim, applied: Applied | None, target: Target | None) -> str:
     """Why a clause cannot be judged from logs; empty where it can."""
     if applied is None:
-        return "it holds for no node"
+        return "the clause applies to no node"
     if isinstance(applied.subject, Span):
         return "the time from one event to another is not judged yet"
     if isinstance(applied.subject, Total):
         return "sums of durations are not judged yet"
     if target is None:
-        return "nobody can say which tree is the mission"
+        return "the mission has no known main tree"
     if judge_of(claim.verb) is None:
         return f"`{claim.verb}` is not judged yet"
     return "`over last` is not judged yet" if requirement.window is not None else ""
 
 
-# The guards that stop a node for a clause: what else stands around it belongs to other clauses.
+# The guards that stop a node for a clause; the others around it belong to other clauses.
 _STOPPED_BY: Final = {
     "Timeout": frozenset(("takes", "succeeds")),
     "ReactiveSequence": frozenset(("keeps", "never", "succeeds")),

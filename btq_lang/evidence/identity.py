@@ -138,7 +138,7 @@ def _builds(mission: Candidate) -> Iterator[_Build]:
 
 
 def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
-    """The tree that runs, as `btq build` makes it; None where it makes none."""
+    """The tree that runs, as `btq build` writes it; None where the mission cannot be built."""
     path = mission.path
     exports = [export(workspace, each) for each in workspace.closure(path)]
     if any(each.problems for each in exports):
@@ -157,7 +157,7 @@ def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> Run
 
 
 def _number(instance: Instance) -> int:
-    """Its number in the build; 0 behind a tree that is not at hand."""
+    """Its number in the build; 0 after a subtree whose tree is unknown."""
     return instance.uid or 0
 
 

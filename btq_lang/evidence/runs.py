@@ -35,10 +35,10 @@ def activations(session: Session) -> Iterator[Activation]:
     last = 0
     for time, uid, status in session.transitions:
         if uid not in parent or status not in _STATUSES:
-            odd.count("rows left out, for the tree has no such node, or the engine no such status", time)
+            odd.count("rows with an unknown node or status, left out", time)
             continue
         if time < last:
-            odd.count("rows with an earlier time than the row before, so how long things took there is unknown", time)
+            odd.count("rows earlier than the row before them, so durations across them are unknown", time)
             nodes.distrust()
         completes = status in (SUCCESS, FAILURE)
         if idle is not None:
@@ -72,7 +72,7 @@ def activations(session: Session) -> Iterator[Activation]:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:
         yield from nodes.end(ROOT, last, "O", below="O")
-    odd.tell()
+    odd.report()
 
 
 def count_runs(session: Session) -> int:
@@ -123,7 +123,7 @@ class _OpenNodes:
         self._distrusted.discard(uid)
 
     def distrust(self) -> None:
-        """The clock was set back: nobody can say how long what is active now takes."""
+        """The clock was set back: the durations of all active nodes are unknown."""
         self._distrusted.update(self.begun)
 
     def _made(self, uid: int, end: int, outcome: Outcome, timing: Timing) -> Activation:
@@ -134,7 +134,7 @@ class _OpenNodes:
 
 
 class _Oddities:
-    """What is unusual in a log: counted, and told once each with its first place."""
+    """What is unusual in a log: counted, and reported once with the time of the first."""
 
     def __init__(self, session: Session) -> None:
         self._session: Final = session
@@ -144,11 +144,11 @@ class _Oddities:
         first, number = self._found.get(what, (time, 0))
         self._found[what] = first, number + 1
 
-    def tell(self) -> None:
+    def report(self) -> None:
         for what, (first, number) in self._found.items():
             self._session.remarks.append(f"{what}: {number}, the first at {timestamp(first)}")
 
 
 _ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
-_UNWRITTEN: Final = "halts that have no row, so their ends are known only at the latest"
+_UNWRITTEN: Final = "halts without a row of their own, so only the latest possible end is known"
 _STATUSES: Final = range(SKIPPED + 1)

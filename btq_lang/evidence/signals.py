@@ -1,6 +1,6 @@
 """What signals were at a moment, from samples: those of `--signals` first, else the log's own entries.
 
-One invariant: an answer is a value in SI or the reason why nobody knows; a value holds until the next sample, at most
+One invariant: an answer is a value in SI, or the reason why it is unknown; a value holds until the next sample, at most
 for `fresh within`.
 """
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Unknown(Record):
-    """Nobody can say, and why."""
+    """An answer that the samples do not give, and why."""
 
     why: str
 
@@ -64,7 +64,7 @@ class Signals:
         return sorted(found)
 
     def forget_before(self, time: int) -> None:
-        """Drop what the log said of its entries before a time that nobody asks about any more."""
+        """Drop the samples of the log's entries that no question about this time or a later one needs."""
         for series in self.logged.values():
             series.forget_before(time)
 
@@ -79,7 +79,8 @@ class Signals:
 def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
     first = signal.initially
     if first is None:
-        return Unknown(f"no sample of `{signal.name}` up to then" if is_sampled else f"{NO_SAMPLES} `{signal.name}`")
+        late = f"no sample of `{signal.name}` before that time"
+        return Unknown(late if is_sampled else f"{NO_SAMPLES} `{signal.name}`")
     return first.si if isinstance(first, Value) else first.value
 
 

@@ -66,7 +66,7 @@ def _rows(mission: MissionVerdicts, paint: Paint) -> Iterator[str]:
         word = verdict + " " * (len(NEVER) - len(verdict))
         yield f"  {paint(_STYLES[verdict], word)}  {'  '.join([*cells, *row[4:]])}".rstrip()
     if not rows:
-        yield "  the mission has no requirement that logs can show"
+        yield "  the mission has no requirement to judge"
 
 
 def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
@@ -87,20 +87,19 @@ def _result(clause: ClauseVerdict) -> Sequence[str]:
 
 
 def _counted(clause: ClauseVerdict) -> str:
-    held = clause.counted - clause.violated
     if clause.verdict == UNKNOWN:
         others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
         return f"{clause.why}{others}"
     if clause.verdict == NEVER:
         return clause.why
+    unknown = f", {clause.unknown} unknown" if clause.unknown else ""
     if clause.interval is None:
-        if clause.verdict == VIOLATED:
-            unknown = f", {clause.unknown} unknown" if clause.unknown else ""
-            return f"{clause.violated} of {_units(clause.counted, clause.unit)}{unknown}"
-        return f"held so far in {_units(clause.counted, clause.unit)}"
-    of = f"{held} of {clause.counted}"
+        number = counted(clause.counted, clause.unit.removesuffix("s"))
+        return f"{clause.violated} of {number}{unknown}" if clause.verdict == VIOLATED else f"held so far in {number}"
+    held = clause.counted - clause.violated
+    of = f"{held} of {clause.counted}{unknown}"
     if clause.verdict == UNDECIDED:
-        decided = "no number of further ones decides it"
+        decided = "no number of further {clause.unit} decides it"
         if clause.more is not None:
             decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
         return f"{of}; {decided}"
@@ -112,10 +111,6 @@ def _counted(clause: ClauseVerdict) -> str:
     return f"{of}, {limit} with confidence {share(clause.confidence)}"
 
 
-def _units(number: int, unit: str) -> str:
-    return counted(number, unit.removesuffix("s"))
-
-
 def _summary(mission: MissionVerdicts) -> str:
     parts = [f"runs: {', '.join(f'{number} {outcome}' for outcome, number in mission.outcomes) or 'none'}"]
     parts.append(f"nodes exercised {mission.exercised} of {mission.nodes}")
@@ -123,7 +118,7 @@ def _summary(mission: MissionVerdicts) -> str:
         each = mission.slowest
         parts.append(f"slowest: {printable(each.path)} p50 {duration(each.p50)}, p95 {duration(each.p95)}")
     if mission.by_people:
-        parts.append(f"verified by people, not here: {', '.join(mission.by_people)}")
+        parts.append(f"verified by people: {', '.join(mission.by_people)}")
     return " · ".join(parts)
 
 

@@ -92,7 +92,7 @@ class Tally:
         n, k, unknown = self.counted, self.counted - self.violated, self.unknown
         if n + unknown == 0:
             return NEVER
-        if self._odds is None:
+        if self._odds is None or n == 0:
             return VIOLATED if self.violated else UNKNOWN if unknown else SATISFIED
         low, high = self._by_odds(k, n + unknown), self._by_odds(k + unknown, n + unknown)
         return low if low == high else UNKNOWN

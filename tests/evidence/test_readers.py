@@ -24,7 +24,7 @@ TEXT = f"signal battery : % from {{battery}}\n{DEMANDS}{MAIN}"
 MISSION = Candidate(Workspace.of({"main.btq": TEXT}), "main.btq", "main", None)
 
 
-FOREIGN = "expected a log of BehaviorTree.CPP: .btlog of FileLogger2, or .db3 or .btdb of SqliteLogger"
+FOREIGN = "expected a BehaviorTree.CPP log: .btlog from FileLogger2, .db3 or .btdb from SqliteLogger"
 UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them"
 
 
@@ -44,7 +44,7 @@ def problems(path: Path) -> tuple[str, ...]:
             b"t,battery\n1,2\n",
             FOREIGN,
         ),
-        (b"BTCPP4-FileLogger2", "it ends before its tree"),
+        (b"BTCPP4-FileLogger2", "the file ends before its tree"),
         (b"BTCPP4-FileLogger2\x02\0\0\0\0", "version 2 of the format; btq reads version 1"),
         (
             b"BTCPP4-FileLogger2\x01\xff\xff\xff\x7f<root/>",
@@ -55,7 +55,7 @@ def problems(path: Path) -> tuple[str, ...]:
             "its tree and start should take -1 and 8 bytes, and 7 are left",
         ),
         (btlog("<root/>", []), "its tree has no node with `_uid` 1"),
-        (btlog("no XML", []), "its tree is not XML of BehaviorTree.CPP"),
+        (btlog("no XML", []), "its tree is not BehaviorTree.CPP XML"),
         (btlog(MAIN_XML.replace('_uid="3"', '_uid="7"'), []), UNNUMBERED),
         (b"SQLite format 3\0", "the database cannot be read: file is not a database"),
     ],
@@ -69,7 +69,7 @@ def test_a_database_of_something_else(tmp_path: Path) -> None:
     database = sqlite3.connect(tmp_path / "bag.db3")
     database.executescript("CREATE TABLE topics (id INTEGER); CREATE TABLE Definitions (id INTEGER)")
     database.close()
-    assert problems(tmp_path / "bag.db3") == ("bag.db3: expected the tables of SqliteLogger; it has no Transitions",)
+    assert problems(tmp_path / "bag.db3") == ("bag.db3: expected the tables of SqliteLogger; missing: Transitions",)
 
 
 def test_one_bad_log_of_many(verify: Verify) -> None:
@@ -89,7 +89,7 @@ def test_what_is_whole_of_a_cut_log_is_read(verify: Verify) -> None:
     lines = verify.text("cut.btlog").splitlines()
     assert lines[:2] == [
         "2 runs in cut.btlog, 2026-11-20 21:22 UTC, mission main (as built now, 3 of 3 nodes)",
-        "  note: cut off: 5 bytes at the end are not a whole transition and are left out",
+        "  note: cut off: the last 5 bytes are not a whole transition and are left out",
     ]
     assert lines[-1].startswith("runs: 1 succeeded, 1 interrupted · nodes exercised 3 of 3")
 
@@ -181,6 +181,9 @@ def test_entries_beside_the_rows_of_a_database_are_samples(verify: Verify) -> No
     needs = verify.json("run.db3")["requirements"][0]["clauses"][0]
     assert (needs["counted"], needs["violated"]) == (2, 1)
     assert needs["violations"][0]["why"] == "`battery` was 1 % at the start"
+    write_db3(verify.folder / "once.db3", MAIN_XML, [rows(TWO_RUNS)], {0: '{"battery": 50}'})
+    needs = verify.json("once.db3")["requirements"][0]["clauses"][0]
+    assert (needs["counted"], needs["violated"]) == (2, 0)  # a value of the first run holds in the second
     (verify.folder / "samples.csv").write_text(f"t,battery\n{START / 1e6 - 1},20\n", encoding="utf-8")
     needs = verify.json("run.db3", "--signals", "samples.csv")["requirements"][0]["clauses"][0]
     assert (needs["counted"], needs["violated"]) == (2, 0)  # what is given counts before what was logged
@@ -208,7 +211,7 @@ def test_a_log_is_never_in_memory_as_a_whole(form: str, tmp_path: Path) -> None:
     assert peaks[1] < 1.5 * peaks[0]
 
 
-def test_rows_that_no_engine_writes_are_left_out_and_told(verify: Verify) -> None:
+def test_rows_that_no_engine_writes_are_left_out_and_reported(verify: Verify) -> None:
     (verify.folder / "main.btq").write_text(TEXT, encoding="utf-8")
     write_db3(verify.folder / "run.db3", MAIN_XML, [[*rows(TWO_RUNS), (31_000, 1, 1), (32_000, 1, 9)]])
     database = sqlite3.connect(verify.folder / "run.db3")
@@ -218,9 +221,8 @@ def test_rows_that_no_engine_writes_are_left_out_and_told(verify: Verify) -> Non
     (source,) = verify.json("run.db3")["sources"]
     assert source["runs"] == 2
     assert source["remarks"] == [
-        "rows left out, for their time, uid or state is not a whole number: 1",
-        "rows left out, for the tree has no such node, or the engine no such status: 1, "
-        "the first at 2026-11-20T21:22:20.032000Z",
+        "rows whose time, uid or state is not a whole number, left out: 1",
+        "rows with an unknown node or status, left out: 1, the first at 2026-11-20T21:22:20.032000Z",
     ]
 
 

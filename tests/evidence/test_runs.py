@@ -15,7 +15,7 @@ from btq_lang.evidence.runs import activations
 
 FILES = ("lab.btlog", "lab.db3", "lab_sessions.db3", "nav.btlog", "nav.db3", "nav_noidle.btlog", "nav_noidle.db3")
 OUTCOMES = {"SUCCESS": "S", "FAILURE": "F", "HALTED": "H"}
-FIRST_HALT = "the first at 2026-11-24T04:28:14.486703Z"  # in nav_noidle.btlog
+UNWRITTEN = "halts without a row of their own, so only the latest possible end is known"
 TICKS = 0.05  # s: a tick, or a pause of the machine, between what a skill did and its row
 
 
@@ -67,9 +67,7 @@ def test_every_activation_and_run_is_what_the_skills_did(name: str, shared: Path
 def test_a_log_without_rows_to_idle_says_so_once(shared: Path) -> None:
     _, remarks = runs_of(shared / "logs" / "nav_noidle.btlog")
     (remark,) = remarks
-    assert (
-        remark == "halts that have no row, so their ends are known only at the latest: 37, the first at " + FIRST_HALT
-    )
+    assert remark == f"{UNWRITTEN}: 37, the first at 2026-11-24T04:28:14.486703Z"
     assert runs_of(shared / "logs" / "nav.btlog")[1] == []
 
 
@@ -123,19 +121,19 @@ def test_what_logs_have_beside_the_usual(text: str, activations: list[str], tmp_
     assert made(text, tmp_path)[0] == activations
 
 
-def test_rows_of_nodes_that_the_tree_lacks_are_told_once(tmp_path: Path) -> None:
+def test_rows_of_nodes_that_the_tree_lacks_are_reported_once(tmp_path: Path) -> None:
     found, remarks = made("0 1R 2R 3 7R 8S 5 2S 1S", tmp_path)
-    left_out = "rows left out, for the tree has no such node, or the engine no such status: 2"
+    left_out = "rows with an unknown node or status, left out: 2"
     assert (found, remarks) == (["2 0-5 S", "1 0-5 S"], [left_out])
 
 
-def test_a_clock_that_was_set_back_is_told_and_no_time_is_made_of_it(tmp_path: Path) -> None:
+def test_durations_across_a_clock_that_was_set_back_are_unknown(tmp_path: Path) -> None:
     (tmp_path / "a.btlog").write_bytes(btlog(MAIN_XML, [*rows("9 1R 2R"), *rows("5 2S 6 3R 8 3S 1S")]))
     sessions = read(str(tmp_path / "a.btlog"))
     session = next(sessions)
     found = [(each.uid, each.outcome, each.timing) for each in activations(session)]
     assert found == [(2, "S", "broken"), (3, "S", "exact"), (1, "S", "broken")]
     assert session.remarks == [
-        "rows with an earlier time than the row before, so how long things took there is unknown: 1, "
+        "rows earlier than the row before them, so durations across them are unknown: 1, "
         "the first at 2026-11-20T21:22:20.005000Z"
     ]

@@ -132,7 +132,7 @@ def test_conditions(demand: str, runs: str, expected: str, verify: Verify) -> No
     ("demand", "given", "expected", "why"),
     [
         ("Move needs battery > 1 %", {}, "unknown 0/0 ?1", "no samples of `battery`"),
-        ("Move needs battery > 1 %", {1: 50}, "unknown 0/0 ?1", "no sample of `battery` up to then"),
+        ("Move needs battery > 1 %", {1: 50}, "unknown 0/0 ?1", "no sample of `battery` before that time"),
         ("Move needs battery > 1 %", {-10: 50}, "satisfied 0/1", ""),
         ("Move needs battery > 1 %", {-11: 50}, "unknown 0/0 ?1", "the last sample of `battery` is too old"),
         ("Move keeps battery > 1 %", {-1: 50, 9: 50, 19: 50, 29: 50}, "satisfied 0/1", ""),
@@ -259,6 +259,7 @@ def test_what_is_undecided_says_how_many_more_decide(verify: Verify) -> None:
     [
         ("in at least 50 % of runs", "satisfied 0/2 ?1"),  # 2 of 3, whatever the third was
         ("in at least 90 % of runs", "unknown 0/2 ?1"),
+        ("in at least 90 % of runs\nconfidence 95 %", "undecided 0/2 ?1"),
     ],
 )
 def test_what_is_unknown_counts_as_both(odds: str, expected: str, verify: Verify) -> None:
@@ -267,7 +268,12 @@ def test_what_is_unknown_counts_as_both(odds: str, expected: str, verify: Verify
     assert count(found) == expected
 
 
-# ---- what is told of a violation ----
+def test_odds_of_what_is_all_unknown_are_unknown(verify: Verify) -> None:
+    demand = "Move needs battery > 1 %\nin at least 90 % of runs\nconfidence 95 %"
+    assert count(verify.clause(demand, several(GOOD, GOOD), before=LEVEL)) == "unknown 0/0 ?2"
+
+
+# ---- what is reported of a violation ----
 
 
 def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
@@ -285,6 +291,11 @@ def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
             "why": "took 0.0372 s",
         }
     ]
+
+
+def test_a_measure_has_as_many_digits_as_show_that_it_is_beyond_the_bound(verify: Verify) -> None:
+    (found,) = verify.clause("Move takes at most 30 ms", "0 1R 2R 30.004 2S 3S 1S")["violations"]
+    assert (found["measured"], found["bound"]) == ("30.004 ms", "30 ms")
 
 
 @pytest.mark.parametrize(
@@ -341,7 +352,7 @@ def test_every_verb_is_judged_or_says_that_it_is_not(word: str, verify: Verify) 
         ("Move succeeds\nin at least 90 % of runs\nover last 5 runs", "`over last` is not judged yet"),
         ("Move needs node Pick", "`node Pick` in a condition is not judged yet"),
         ("Move leaves max(battery) > 1 %", "`max(battery)` is not judged yet"),
-        ("takes at most 1 s", "it holds for no node"),
+        ("takes at most 1 s", "the clause applies to no node"),
     ],
 )
 def test_what_is_not_judged_is_unknown_with_the_reason(demand: str, why: str, verify: Verify) -> None:

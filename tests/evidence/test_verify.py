@@ -109,7 +109,7 @@ def test_verdicts_are_what_the_skills_did(log: str, lab: Path, shared: Path) -> 
 
 
 def test_what_is_needed_is_judged_by_the_last_sample_before_the_start(lab: Path, shared: Path) -> None:
-    """The battery goes down by 2 with each drive to the charger, so what Charge starts with stands in the CSV."""
+    """The battery goes down by 2 with each drive to the charger, so the CSV has the level that Charge starts with."""
     clause = next(
         each["clauses"][0]
         for each in verdicts(lab, "lab.btlog", "--signals", "lab.battery.csv")["requirements"]
@@ -154,7 +154,7 @@ TABLE = """\
   undecided        placed         What was picked is placed              PickPlace/Place succeeds in at least 99 % of runs    159 of 162; 611 more without a violation decide it
   unknown          ordered        Nothing is placed that was not picked  PickPlace/Place follows PickPlace/Pick succeeds      `follows` is not judged yet
 
-runs: 186 succeeded, 14 failed · nodes exercised 19 of 19 · slowest: MoveToCharger p50 233 ms, p95 324 ms · verified by people, not here: reviewed
+runs: 186 succeeded, 14 failed · nodes exercised 19 of 19 · slowest: MoveToCharger p50 233 ms, p95 324 ms · verified by people: reviewed
 """  # noqa: E501
 
 
@@ -282,7 +282,7 @@ def test_xml_is_a_mission_too(lab: Path, shared: Path) -> None:
     assert output.splitlines()[:3] == [
         "200 runs in lab.btlog, 2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)",
         "",
-        "  the mission has no requirement that logs can show",
+        "  the mission has no requirement to judge",
     ]
 
 

@@ -32,4 +32,4 @@ def read(path: str) -> Iterator[Session]:
         return btlog.read(path)
     if start.startswith(sqlite.MAGIC):
         return sqlite.read(path)
-    raise NotALog("expected a log of BehaviorTree.CPP: .btlog of FileLogger2, or .db3 or .btdb of SqliteLogger")
+    raise NotALog("expected a BehaviorTree.CPP log: .btlog from FileLogger2, .db3 or .btdb from SqliteLogger")

@@ -28,7 +28,7 @@ def read(path: str) -> Iterator[Session]:
     """The one session of a file.
 
     Raises:
-        NotALog: it is no such file, of a version that is not known, or ends before the first transition could stand.
+        NotALog: it has another format or version, or ends before its tree does.
         OSError: it cannot be read.
     """
     with open(path, "rb") as file:
@@ -37,7 +37,7 @@ def read(path: str) -> Iterator[Session]:
         if not head.startswith(MAGIC):
             raise NotALog(f"expected a file that begins with {MAGIC.decode()}, as FileLogger2 writes it")
         if len(head) < _HEAD.size:
-            raise NotALog("it ends before its tree")
+            raise NotALog("the file ends before its tree")
         _, version, length = _HEAD.unpack(head)
         if version != _VERSION:
             raise NotALog(f"version {version} of the format; btq reads version {_VERSION}")
@@ -48,7 +48,7 @@ def read(path: str) -> Iterator[Session]:
         (start,) = _START.unpack(file.read(_START.size))
         session = Session(tree, _transitions(file, start))
         if rest := (left - length - _START.size) % _RECORD.size:
-            session.remarks.append(f"cut off: {rest} bytes at the end are not a whole transition and are left out")
+            session.remarks.append(f"cut off: the last {rest} bytes are not a whole transition and are left out")
         yield session
 
 

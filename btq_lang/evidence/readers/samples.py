@@ -26,7 +26,7 @@ def read(path: str) -> dict[str, Series]:
     """The samples of a file, by the names of their columns.
 
     Raises:
-        NoSamples: it is no such table.
+        NoSamples: it is not such a table.
         OSError: it cannot be read.
     """
     with open(path, encoding="utf-8-sig", errors="replace", newline="") as file:

@@ -27,7 +27,7 @@ def read(path: str) -> Iterator[Session]:
     """The sessions of a database, in their order.
 
     Raises:
-        NotALog: it is no database, or has other tables than SqliteLogger's.
+        NotALog: it is not a database of SqliteLogger.
         OSError: it cannot be read.
     """
     with open(path, "rb") as file:  # for the reason, which SQLite does not give
@@ -46,7 +46,7 @@ def read(path: str) -> Iterator[Session]:
 def _sessions(database: sqlite3.Connection) -> Iterator[Session]:
     tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
     if missing := sorted({"Definitions", "Transitions"} - tables):
-        raise NotALog(f"expected the tables of SqliteLogger; it has no {' and no '.join(missing)}")
+        raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
     for number, xml in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id").fetchall():
         samples: dict[str, Series] = {}
         remarks: list[str] = []
@@ -67,9 +67,9 @@ def _transitions(
             else:
                 malformed += 1
     except _DAMAGED as error:
-        remarks.append(f"the database is damaged, and what comes after that is left out: {error}")
+        remarks.append(f"the database is damaged, and the rows after the damage are left out: {error}")
     if malformed:
-        remarks.append(f"rows left out, for their time, uid or state is not a whole number: {malformed}")
+        remarks.append(f"rows whose time, uid or state is not a whole number, left out: {malformed}")
 
 
 def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:

@@ -1,7 +1,7 @@
 """The tree in a log, from the XML that the engine's loggers write.
 
 One invariant: a tree's numbers are what BehaviorTree.CPP makes of it, 1, 2, 3 … depth first, each node's after its
-parent's; what is numbered otherwise is no tree.
+parent's; a tree that is numbered otherwise is refused.
 
 The engine writes one `<BehaviorTree>` for each instance of a subtree, and a `SubTree` element says nothing about which
 of them is its own: it is the one whose first node has the number after the SubTree's.
@@ -31,7 +31,7 @@ def read_tree(xml: bytes | str) -> LoggedTree:
     text = xml.decode("utf-8", "replace") if isinstance(xml, bytes) else xml
     document = read_xml(text).document
     if document is None or document.root.tag != "root":
-        raise NotALog("its tree is not XML of BehaviorTree.CPP")
+        raise NotALog("its tree is not BehaviorTree.CPP XML")
     tops: dict[int, tuple[Element, str]] = {}  # the top node of each tree, by uid, with the path of the tree
     for tree in document.root.elements:
         if tree.tag == "BehaviorTree":

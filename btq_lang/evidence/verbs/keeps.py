@@ -22,7 +22,7 @@ def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement |
 
 def judged_all_along(condition: Condition, activation: Activation, signals: Signals, said: str) -> Judgement:
     """Whether a condition holds at every moment of an activation: the first at which it does not decides, else one at
-    which nobody knows, else the one that came closest to breaking it."""
+    which it is unknown, else the one that came closest to breaking it."""
     unknown: Judgement | None = None
     closest: Judgement | None = None
     for time in signals.moments(signals_in(condition), activation.begin, activation.end):
