@@ -62,12 +62,11 @@ class JudgedClause:
             guard: what stopped it.
         """
         assert self._judge is not None, "a clause that cannot be judged is joined with no node"
-        is_stopped = guard is not None and guard.requirement == self.requirement.name
-        if is_stopped and guard is not None and self.claim.verb in _STOPPED_BY.get(guard.kind, ()):
+        if guard is not None and self._is_own(guard):
             said = f"stopped by its own guard after {duration(activation.seconds)}"
-            judgement: Judgement | None = Judgement(False, activation.end, said)
-        else:
-            judgement = self._judge(self._judged, activation, signals)
+            self.tally.add(Judgement(False, activation.end, said), path)
+            return
+        judgement = self._judge(self._judged, activation, signals)
         if judgement is None:
             self.tally.cut_off += activation.outcome == "O"
             return
@@ -83,6 +82,10 @@ class JudgedClause:
         own = self.claim.verb == "needs" and self.requirement.name == refusal.requirement
         if own or self.claim.verb == "succeeds":
             self.tally.add(Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path)
+
+    def _is_own(self, guard: Guard) -> bool:
+        """Whether a guard was put around the node for this clause."""
+        return guard.requirement == self.requirement.name and self.claim.verb in _STOPPED_BY.get(guard.kind, ())
 
     def verdict(self) -> ClauseVerdict:
         """What it has come to."""

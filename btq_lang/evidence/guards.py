@@ -57,8 +57,8 @@ class Guards:
                 above = tree.parent[above]
             self._around[uid] = tuple(around)
             for guard in self._guards:
-                is_before = guard < uid and self._guards[guard].kind == "ScriptCondition"
-                if is_before and tree.parent[guard] in around and self._guards[tree.parent[guard]].kind == "Sequence":
+                is_check = self._guards[guard].kind == "ScriptCondition" and tree.parent[guard] in around
+                if is_check and tree.nodes[tree.parent[guard]].path.endswith(_AROUND_NEEDS):
                     self._refuse.setdefault(guard, []).append(uid)
 
     def settled(self, activation: Activation) -> list[tuple[Activation, Guard | None]]:
@@ -83,3 +83,6 @@ class Guards:
             return []
         requirement = self._guards[activation.uid].requirement
         return [Refusal(uid, activation.end, requirement) for uid in self._refuse[activation.uid]]
+
+
+_AROUND_NEEDS: Final = "_needs"  # what the name of the Sequence ends in that refuses a start

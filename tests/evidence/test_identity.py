@@ -206,6 +206,17 @@ def test_a_refused_start_counts_for_what_is_needed_and_for_success(verify: Verif
     }
 
 
+def test_what_the_order_refuses_does_not_fail(verify: Verify) -> None:
+    demands = "QualityReq ordered : safety\n    Pick follows Move succeeds\n    on violation fail\n"
+    demands += "QualityReq works : reliability\n    Pick succeeds\n"
+    uid = several(verify, demands, SPEED)
+    around, check, move = uid["ordered_follows"], uid["ordered_check"], uid["Move"]
+    assert verdicts(verify, f"0 1R {move}S {around}R {check}F {around}F 1F") == {
+        "ordered": "unknown",  # `follows` is not judged yet
+        "works": "never exercised",
+    }
+
+
 # ---- a tree of other people ----
 
 DEMANDS = """\
