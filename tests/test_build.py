@@ -176,7 +176,7 @@ def test_a_bundle_with_two_trees_of_one_name_is_refused(btq: Btq) -> None:
     code, _, messages = btq.build("a.btq", "--bundle", "--verbatim")
     assert (code, messages) == (
         1,
-        "a.btq:2:14: error: there are two trees `Main`: a bundle holds one\nnothing was written\n",
+        "a.btq:2:14: error: a bundle cannot hold two trees called `Main`\nnothing was written\n",
     )
     assert btq.files == ["a.btq", "b.btq"]
 
@@ -277,7 +277,7 @@ def test_what_cannot_be_written_as_xml(btq: Btq) -> None:
     btq.write(a='BehaviorTree A\n    xml "<Broken>"\n')
     code, report, messages = btq.build()
     assert (code, report, btq.files) == (1, "", ["a.btq"])
-    assert messages.startswith("a.btq:2:5: error: this is no well-formed element: ")
+    assert messages.startswith("a.btq:2:5: error: not a well-formed element: ")
     assert messages.endswith("\nnothing was written\n")
 
 
@@ -287,7 +287,7 @@ def test_repairs_are_told(btq: Btq) -> None:
         0,
         "wrote a.xml\n",
         "a.btq:2:14: repaired: the tree `My tree` is written as `My_tree`\n"
-        "a.btq:3:10: repaired: `--` in a comment is written `- -`: XML has no place for it\n"
+        "a.btq:3:10: repaired: `--` in a comment is written `- -`: XML does not allow it there\n"
         + GUESSED.format("Pick (Action)"),
     )
     assert '<root BTCPP_format="4" main_tree_to_execute="My_tree">' in btq.read("a.xml")
@@ -359,7 +359,7 @@ def test_xml_that_somebody_else_made_is_not_written_over(btq: Btq) -> None:
     assert btq.build() == (
         2,
         "",
-        "btq build: skills.xml was not made by btq build (or with --verbatim): --force writes over it\n"
+        "btq build: skills.xml btq build did not write it (or with --verbatim); --force overwrites it\n"
         "nothing was written\n",
     )
     assert btq.files == ["mission.btq", "skills.btq", "skills.xml"]
@@ -423,12 +423,12 @@ def test_standard_input_goes_to_standard_output(btq: Btq, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--watch", "-"), "--watch cannot wait for standard input to change"),
+        (("--watch", "-"), "--watch cannot watch standard input"),
         (
             ("-", "-o", "x"),
-            "what comes from standard input goes to standard output: no other path, no -o, no --check",
+            "btq builds standard input to standard output; give no other path, no -o and no --check",
         ),
-        (("",), "a path is empty; `.` is this folder"),
+        (("",), "empty path; `.` is this folder"),
     ],
 )
 def test_usage_errors(btq: Btq, arguments: tuple[str, ...], message: str) -> None:
@@ -446,6 +446,6 @@ def test_the_authors_example_builds_for_every_target(btq: Btq, shared: Path) -> 
 def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
     btq.write(nameless="BehaviorTree\n    AlwaysSuccess\n")  # the engine runs it
     btq.write(empty="", models=SKILLS, mission='include "nothing.btq"\nBehaviorTree Main\n    A\n', nothing="# none\n")
-    told = "btq build: empty.btq has no tree, so there is nothing in it to run\n"
+    told = "btq build: empty.btq has no tree to run\n"
     code, _, messages = btq.build(".")
     assert (code, messages) == (0, told + GUESSED.format("A (Action)"))

@@ -40,7 +40,7 @@ def test_every_place_of_a_script_is_looked_at() -> None:
     text = tree(f"SubTree X ({', '.join(pairs)})")
     assert len(findings(text, "script-error")) == len(attributes)
     for node in ('Script (code = "1 +")', 'ScriptCondition (code = "1 +")', 'Precondition (if = "1 +")'):
-        assert findings(tree(node), "script-error") == ["2 error «+» `+` has nothing behind it to work on"]
+        assert findings(tree(node), "script-error") == ["2 error «+» missing operand after `+`"]
 
 
 def test_a_condition_has_to_give_a_value_and_other_scripts_have_not() -> None:

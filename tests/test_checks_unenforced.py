@@ -30,11 +30,11 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
 @pytest.mark.parametrize(
     ("clauses", "why"),
     [
-        ("A takes at least 5 s", "the engine can stop a node, and not make it do more"),
-        ("A runs at least 1 per 5 s", "no node of the engine makes another one start in time"),
-        ("A keeps p95(n) <= 3", "no script knows the samples behind `p95(n)`"),
-        ("A keeps n <= 3 or node C", "no script knows which nodes run"),
-        ("A keeps bare <= 3", "`bare` names no blackboard entry"),
+        ("A takes at least 5 s", "the engine can stop a node, but cannot make it do more"),
+        ("A runs at least 1 per 5 s", "BehaviorTree.CPP has no node that makes another one start in time"),
+        ("A keeps p95(n) <= 3", "no script can read the samples of `p95(n)`"),
+        ("A keeps n <= 3 or node C", "no script can tell which nodes run"),
+        ("A keeps bare <= 3", "`bare` has no blackboard entry"),
         (
             "A takes at most 5 s|while n > 3",
             "whether an activation was within `while n > 3` is known only when it is over",
@@ -44,12 +44,12 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
         ("A takes at most 5 s|verified by test", "verified by test"),
         (
             "from A fails to C succeeds takes at most 5 s",
-            "it is about the time between nodes, and nothing stands around that",
+            "it bounds the time between nodes, where no guard fits",
         ),
-        ("sum of A, C takes at most 5 s", "it is about the time between nodes, and nothing stands around that"),
+        ("sum of A, C takes at most 5 s", "it bounds the time between nodes, where no guard fits"),
         (
             "from mission starts to C succeeds takes at most 5 s",
-            "it is about the time between nodes, and nothing stands around that",
+            "it bounds the time between nodes, where no guard fits",
         ),
     ],
 )
@@ -89,7 +89,7 @@ def test_a_classic_constraint_is_hard_without_being_asked() -> None:
     text = 'Root Main\nBehaviorTree Main\n    Action A (satisfies QualityReq ID = "q" description = "SuccessIf {}")\n'
     assert findings(text.format("takes at most 5 s"), RULE) == []
     assert [each.partition("» ")[2] for each in findings(text.format("takes at least 5 s"), RULE)] == [
-        "the engine cannot enforce this: the engine can stop a node, and not make it do more"
+        "the engine cannot enforce this: the engine can stop a node, but cannot make it do more"
     ]
 
 
@@ -103,7 +103,7 @@ def test_nodes_that_nothing_can_stand_around() -> None:
     assert told("A takes at most 5 s|on violation fail", tree=tree) == []
     assert told("A takes at most 5 s|on violation halt", tree=tree) == [
         "the engine cannot enforce `on violation halt`: `RunOnce` may be skipped from within, "
-        "and what stands around it could not be"
+        "but a guard around it could not be"
     ]
 
 
@@ -130,7 +130,7 @@ def test_nodes_of_included_files(main: str) -> None:
     found = {path: [each for each in check(workspace, path) if each.rule == RULE] for path in workspace.files}
     is_here = "# here" in main
     what = "the engine cannot enforce `on violation halt`"
-    why = f"{what}: `A` stands in an included file, which other missions may include; "
+    why = f"{what}: `A` is in an included file, which other missions may include; "
     assert [each.message for each in found.pop("main.btq")] == (
         [] if is_here else [f"{why}with --bundle it is enforced"]
     )
@@ -145,7 +145,7 @@ def test_a_node_of_this_file_that_another_one_attaches_it_to() -> None:
         "main.btq": 'include "rules.btq"\ninclude "skills.btq"\nRoot Main\nBehaviorTree Main\n    B\n',
     }
     found = findings(texts.pop("main.btq"), RULE, **{path.removesuffix(".btq"): text for path, text in texts.items()})
-    why = "the engine can stop a node, and not make it do more"
+    why = "the engine can stop a node, but cannot make it do more"
     assert found == [f"5 warning «B» the engine cannot enforce `on violation halt`: {why}"]
 
 
@@ -171,6 +171,6 @@ def assert_same(workspace: Workspace, path: str) -> None:
         for held in clauses
         if held.asked and held.way != "enforced" and (held.place.path == path or applied.place.path == path)
     }
-    unsaid = {each for each in missing - reasons if "nobody can say" not in each}
+    unsaid = {each for each in missing - reasons if "it is unclear" not in each}
     assert not unsaid or any(each.rule in OTHERWISE for each in found)
     assert reasons <= missing | {"verified by review", "verified by test", "verified by analysis"}

@@ -340,7 +340,7 @@ def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
     (tmp_path / "mission.qreq.json").unlink()
     code, out, told = btq("mission.btq", "mission.xml", cwd=tmp_path)
     assert (code, out.splitlines()[-1]) == (1, "1 requirement removed, 1 node changed")
-    message = "it was built, and requirements cannot be seen in XML without the side file beside it"
+    message = "it was built, and its requirements are unknown without the side file beside it"
     assert told == f"btq: mission.xml: {message}\n"
 
 
@@ -373,7 +373,7 @@ def test_guards_that_were_changed_by_hand(tmp_path: Path) -> None:
     assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
     xml.write_text(xml.read_text().replace('"30000"', '"40000"'))
     line = xml.read_text()[: xml.read_text().index("<Timeout")].count("\n") + 1
-    advice = "changed; the next build writes it as it was, so change the requirement that it enforces"
+    advice = "changed; the next build restores it; change the requirement that it enforces instead"
     for paths, sign in ((("main.btq", "main.xml"), "+"), (("main.xml", "main.btq"), "-")):
         said = f"~ guard rq1_limit changed  main.xml:{line}\n    {sign} by hand: {advice}\n\n1 guard changed\n"
         assert btq(*paths, cwd=tmp_path) == (1, f"{' -> '.join(paths)}\n{said}", "")
@@ -405,7 +405,7 @@ def test_a_missing_include_is_told(tmp_path: Path) -> None:
     (tmp_path / "b.btq").write_text("BehaviorTree Main\n    Go\n")
     code, out, told = btq("a.btq", "b.btq", cwd=tmp_path)
     assert (code, out.splitlines()[1]) == (1, "- include skills.btq removed  a.btq:1")
-    assert told == "btq: a.btq: includes `skills.btq`, which is not there: what it says cannot be compared\n"
+    assert told == "btq: a.btq: includes `skills.btq`, which does not exist: its content cannot be compared\n"
 
 
 def test_a_mission_and_its_xml(tmp_path: Path) -> None:
@@ -424,7 +424,10 @@ def test_a_mission_and_its_xml(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("a.btq",), "btq diff: two missions can be compared, not 1; revisions of one: btq diff --git HEAD FILE\n"),
+        (
+            ("a.btq",),
+            "btq diff: expected two missions, found 1; to compare revisions of one: btq diff --git HEAD FILE\n",
+        ),
         (
             ("a.btq", "b.btq"),
             "btq diff: a.btq: cannot be read: No such file or directory\n"
@@ -507,7 +510,7 @@ def test_a_folder_that_is_in_the_revision_alone(repository: Path) -> None:
 
 
 def test_revisions_that_there_are_not(repository: Path, tmp_path: Path) -> None:
-    assert btq("--git", "nosuch", cwd=repository) == (2, "", "btq diff: git knows no revision `nosuch`\n")
+    assert btq("--git", "nosuch", cwd=repository) == (2, "", "btq diff: git does not know the revision `nosuch`\n")
     assert btq("--git", "--output=x", cwd=repository)[0] == 2
     code, _, told = btq("--git", "HEAD", cwd=tmp_path)
     assert code == 2
@@ -687,5 +690,5 @@ def test_a_btq_file_is_not_imported(tmp_path: Path) -> None:
     (tmp_path / "x.btq").write_text("BehaviorTree Main\n    Go\n")
     command = [sys.executable, "-m", "btq_lang", "import", "x.btq", "--force"]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    told = "btq: x.btq: not imported: this is no XML file, by its name\n0 files imported\n"
+    told = "btq: x.btq: not imported: its name does not end with .xml\n0 files imported\n"
     assert (run.returncode, run.stdout, run.stderr) == (2, "", told)

@@ -129,7 +129,7 @@ MAIN = (
     "Root Main\nBehaviorTree Main\n    ->\n        Drive\n        SubTree Skill\n"
 )
 FILES = {"shared.btq": SHARED, "skills.btq": SKILLS, "main.btq": MAIN}
-ELSEWHERE = "`Look` stands in an included file, which other missions may include; with --bundle it is enforced"
+ELSEWHERE = "`Look` is in an included file, which other missions may include; with --bundle it is enforced"
 
 
 def test_an_included_file_holds_what_it_asks_for_itself() -> None:
@@ -179,7 +179,7 @@ def test_included_xml_is_not_built(tmp_path: Path) -> None:
     main.write_text(f"{text}Root Main\nBehaviorTree Main\n    SubTree Part\n", encoding="utf-8")
     workspace = open_workspace(str(main))
     assert states(workspace, str(main)) == [
-        "r: monitored: `Grip` stands in an XML file, which is not built; with --bundle it is enforced"
+        "r: monitored: `Grip` is in an XML file, which is not built; with --bundle it is enforced"
     ]
     assert states(workspace, str(main), bundled=True) == ["r: enforced"]
     assert '<Timeout name="r_limit" msec="5000" _btq="r">' in xml_of(workspace, str(main), bundled=True)
@@ -214,15 +214,15 @@ TOO_LONG = (
     [
         ("takes at most 0.1 ms", "a Timeout cannot be set to `0.1 ms`"),
         ("takes at most 60 d", "a Timeout cannot be set to `60 d`"),
-        ("takes at most 5 s\n    over last 3 runs", "a window is looked at in the logs of many runs"),
+        ("takes at most 5 s\n    over last 3 runs", "a window is evaluated in the logs of many runs"),
         ("tries at most 2\n    when on", "its scope, `when on`, is judged from the log only"),
-        ("needs nowhere", "`nowhere` names no blackboard entry"),
-        ('keeps mode == "it\'s"', "a text in a script has no quote in it, and in older engines ASCII only"),
-        ('keeps mode == "größe"', "a text in a script has no quote in it, and in older engines ASCII only"),
+        ("needs nowhere", "`nowhere` has no blackboard entry"),
+        ('keeps mode == "it\'s"', "a text in a script cannot contain a quote, and in older engines only ASCII"),
+        ('keeps mode == "größe"', "a text in a script cannot contain a quote, and in older engines only ASCII"),
         ("leaves large", TOO_LONG),
         ("needs nearly_as_large and nearly_as_large\n    when nearly_as_large", TOO_LONG),
-        ("runs every 1 s", "no node of the engine makes another one start in time"),
-        ("starts within 1 s after Rest starts", "no node of the engine makes another one start in time"),
+        ("runs every 1 s", "BehaviorTree.CPP has no node that makes another one start in time"),
+        ("starts within 1 s after Rest starts", "BehaviorTree.CPP has no node that makes another one start in time"),
         ("follows when on", "the engine runs no script when that happens"),
     ],
 )
@@ -252,7 +252,7 @@ def test_a_node_that_is_skipped_from_within_stays_so() -> None:
     text = "QualityReq r\n    takes at most 5 s\n    on violation fail\napply r to Some\nRoot Main\nBehaviorTree Main\n"
     text += '    ?\n        -> Some\n            Move (_skipIf = "off")\n        Rest\n'
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "r: monitored: `-> Some` may be skipped from within, and what stands around it could not be"
+        "r: monitored: `-> Some` may be skipped from within, but a guard around it could not be"
     ]
 
 
@@ -260,7 +260,7 @@ def test_what_is_never_reset_stays_so() -> None:
     text = f"QualityReq r\n    takes at most 5 s\n{FAIL}apply r to Asked, Then\nRoot Main\nBehaviorTree Main\n"
     text += "    IfThenElse\n        Move Asked\n        Move Then\n"
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "r: monitored: `Move Asked` is the condition of `IfThenElse`, which would ask it in another way",
+        "r: monitored: `Move Asked` is the condition of `IfThenElse`, which would then evaluate it in another way",
         "r: enforced",
     ]
 
@@ -269,7 +269,7 @@ def test_a_path_through_subtrees_names_some_instances_only() -> None:
     text = "QualityReq r\n    one/Move takes at most 5 s\n    on violation fail\nRoot Main\nBehaviorTree Main\n    ->\n"
     text += "        SubTree Part one\n        SubTree Part two\nBehaviorTree Part\n    ->\n        Move\n"
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "r: monitored: its path names some instances of a node only"
+        "r: monitored: its path names only some instances of a node"
     ]
 
 

@@ -207,7 +207,8 @@ FROM_PYTHON: Final[list[Case]] = [
     ),
     (
         tree("Retry (attempts=3)", "    Go"),
-        "2:12 error unknown-port «attempts» `Retry` has no port `attempts`; did you mean `num_attempts`? | it has `num_attempts`",
+        "2:12 error unknown-port «attempts» `Retry` has no port `attempts`; did you mean `num_attempts`? | "
+        "it has `num_attempts`",
         tree("Retry (num_attempts=3)", "    Go"),
     ),
     (

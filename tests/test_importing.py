@@ -265,9 +265,9 @@ def test_what_stands_elsewhere_or_nowhere_is_told() -> None:
         BehaviorTree T (x = 1)
             A
         """,
-        "2:24 `path` of <include> stands before its other attributes",
+        "2:24 `path` is moved before the other attributes of <include>",
         "3:3 text that the engine ignores is left out: text",
-        "4:23 `ID` of <BehaviorTree> stands before its other attributes",
+        "4:23 `ID` is moved before the other attributes of <BehaviorTree>",
         "4:30 text that the engine ignores is left out: stray",
     )
 
@@ -276,7 +276,7 @@ def test_few_of_very_many_lost_texts_are_told() -> None:
     sections = "<![CDATA[x]]>" * 1000
     done = import_xml(f'<root><BehaviorTree ID="T"><Sequence>{sections}<Pick/></Sequence></BehaviorTree></root>', True)
     assert len(done.diagnostics) == len(done.changes) == 101
-    assert done.diagnostics[-1].message == "the engine ignores this text and all behind it"
+    assert done.diagnostics[-1].message == "the engine ignores this text and everything after it"
     assert done.changes[-1].message == "text that the engine ignores is left out from here on"
     assert done.text == "Root ()\n\nBehaviorTree T\n    ->\n        Pick\n"
 
@@ -310,7 +310,7 @@ def test_what_a_build_has_put_in_is_taken_out() -> None:
             A (_description = "mine")
             B
         """,
-        "4:8 what a build put there is left out: 2 descriptions",
+        "4:8 what a build added is left out: 2 descriptions",
     )
 
 
@@ -377,11 +377,11 @@ def test_version_3_says_it_as_version_4_does() -> None:
         '7:32 in="key" of a SubTree names an entry: now "{key}"',
         "7:53 `none` of a SubTree names no entry: kept as it is",
         '7:61 __shared_blackboard is now _autoremap="true"',
-        "8:23 __shared_blackboard is left out: version 4 shares nothing that is not said",
+        "8:23 __shared_blackboard is left out: version 4 shares only what is mapped",
         "9:8 SubTreePlus is now SubTree",
         "9:40 __autoremap is now _autoremap",
         "10:8 BlackboardCheckInt was a node of version 3: write a Precondition with a script: kept as it is",
-        "15:7 the port __shared_blackboard of a SubTree's model is left out: version 4 would ask for it",
+        "15:7 the port __shared_blackboard of a SubTree's model is left out: version 4 would require it",
         keep_v3=False,
     )
 

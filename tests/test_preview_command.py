@@ -124,7 +124,7 @@ def test_an_editor_tells_the_text_and_the_cursor(preview: Callable[..., Previewe
     assert (tmp_path / "main.btq").read_text() == MISSION
     connection.close()
     _, said = previewed.process.communicate(timeout=30)  # its standard input is closed, and it ends
-    assert (previewed.process.returncode, said.count("no JSON object")) == (0, 2)
+    assert (previewed.process.returncode, said.count("expected a JSON object")) == (0, 2)
 
 
 def test_a_click_says_where_the_node_stands_and_tells_the_editor(
@@ -137,7 +137,7 @@ def test_a_click_says_where_the_node_stands_and_tells_the_editor(
     assert previewed.ask("POST", "/go", {"key": "n1"}) == (200, {"said": "main.btq:3:9"})
     assert {previewed.line(), previewed.line()} == {"main.btq:3:9\n", "clicked\n"}
     assert (tmp_path / "clicked").read_text() == f"{(tmp_path / 'main.btq').as_posix()}+3:9{{}}"
-    gone = {"trouble": "this node is no longer there"}
+    gone = {"trouble": "this node no longer exists"}
     assert previewed.ask("POST", "/go", {"key": "n3"}) == (200, gone)
 
 

@@ -153,5 +153,5 @@ def test_commands_below_commands() -> None:
 
 
 def test_an_unknown_shell_is_refused() -> None:
-    with pytest.raises(ValueError, match="no completion for 'tcsh': there is one for bash, zsh, fish, powershell"):
+    with pytest.raises(ValueError, match="no completion for 'tcsh'; expected one of bash, zsh, fish, powershell"):
         completion_script("tcsh", parser())

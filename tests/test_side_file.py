@@ -383,9 +383,9 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     xml, side = btq.folder / "out" / "main.xml", btq.folder / "out" / "main.qreq.json"
     xml.write_text(xml.read_text().replace("<Move", "<Drive"))
     assert main(["import", "out/main.xml"]) == 0
-    summary = "out/main.xml:5:27: what a build put there is left out: {}\n1 file imported with 1 change\n"
+    summary = "out/main.xml:5:27: what a build added is left out: {}\n1 file imported with 1 change\n"
     put = "1 node that enforces, 3 descriptions"
-    lost = "its node is not there any more: satisfices ergonomics (line 18 of the mission as built)"
+    lost = "its node no longer exists: satisfices ergonomics (line 18 of the mission as built)"
     after = "Next: btq check out/main.btq\n"
     assert capsys.readouterr().err == f"out/main.xml: {lost}\n{summary.format(put)}{after}"
     side.write_text("{}")
@@ -414,7 +414,7 @@ def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> 
         assert main(["import", "main.xml", "-o", "back", "--force"]) == 0
         return [line for line in capsys.readouterr().err.splitlines() if "by hand" in line]
 
-    then = "by hand: the next build writes it as it was, so change the requirement that it enforces"
+    then = "by hand: the next build restores it; change the requirement that it enforces instead"
     at = {name: built[: built.index(f'<Timeout name="{name}')].count("\n") + 1 for name in ("quick_limit", "quick_2")}
     assert told(built.replace('"30000"', '"40000"', 1)) == [
         f"main.xml:{at['quick_limit']}:8: `quick_limit` was changed {then}"

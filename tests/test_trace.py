@@ -462,7 +462,7 @@ def test_every_file_has_an_overview(text: str, form: str) -> None:
 
 
 def test_there_is_no_other_format() -> None:
-    with pytest.raises(ValueError, match="there are table, csv, json, markdown, html"):
+    with pytest.raises(ValueError, match="expected one of table, csv, json, markdown, html"):
         write(overview_of(MISSION), "pdf")
 
 

@@ -71,7 +71,7 @@ def test_the_engine_knows_no_namespaces() -> None:
 
 def test_what_could_not_be_read_may_hold_anything() -> None:
     text = SKILLS.format(more="        SubTree Pikc\n").replace("</TreeNodesModel>", "</TreeNodes>")
-    told = "</TreeNodes> stands where </TreeNodesModel> is expected"
+    told = "expected </TreeNodesModel>, found </TreeNodes>"
     assert_problems(
         text,
         f'main.btq:1:9 error include-with-errors «"skills.xml"» `skills.xml` has 1 error: {told}',

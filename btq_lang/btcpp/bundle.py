@@ -105,7 +105,7 @@ def _twice(workspace: Workspace, paths: tuple[str, ...]) -> list[Remark]:
             if definition.symbol.kind is Kind.TREE:
                 name = definition.symbol.name
                 if name in known:
-                    found.append(Remark(path, definition.span, f"there are two trees `{name}`: a bundle holds one"))
+                    found.append(Remark(path, definition.span, f"a bundle cannot hold two trees called `{name}`"))
                 known.add(name)
     return found
 

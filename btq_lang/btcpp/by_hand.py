@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from typing import Final
 
 
-ADVICE: Final = "the next build writes it as it was, so change the requirement that it enforces"
+ADVICE: Final = "the next build restores it; change the requirement that it enforces instead"
 
 
 class NodeGuards(Record):

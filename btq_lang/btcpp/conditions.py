@@ -74,7 +74,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
     if isinstance(condition, Script):
         return _own_script(condition)
     if isinstance(condition, Running):
-        raise NoScript("no script knows which nodes run")
+        raise NoScript("no script can tell which nodes run")
     raise NoScript(f"`{condition.name}` has no value")
 
 
@@ -111,9 +111,9 @@ def signal_script(signal: Signal) -> str:
     """
     key = (signal.key or "").removeprefix("@")
     if signal.key is None:
-        raise NoScript(f"`{signal.name}` names no blackboard entry")
+        raise NoScript(f"`{signal.name}` has no blackboard entry")
     if not (key.isascii() and key.isidentifier()):
-        raise NoScript(f"`{signal.name}` is read from `{key}`, which is no name in a script")
+        raise NoScript(f"`{signal.name}` is read from `{key}`, which is not a name in a script")
     return f"@{key}"
 
 
@@ -183,7 +183,7 @@ def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
     if isinstance(number, Table):
         return stored(number, unit)
     if isinstance(number, Aggregate):
-        raise NoScript(f"no script knows the samples behind `{number.function}({number.signal.name})`")
+        raise NoScript(f"no script can read the samples of `{number.function}({number.signal.name})`")
     raise NoScript(f"`{number.name}` has no value")
 
 
@@ -205,7 +205,7 @@ def _scaled(script: str, factor: float, offset: float) -> str:
 
 def _text(text: str) -> str:
     if "'" in text or not text.isascii():
-        raise NoScript("a text in a script has no quote in it, and in older engines ASCII only")
+        raise NoScript("a text in a script cannot contain a quote, and in older engines only ASCII")
     return f"'{text}'"
 
 

@@ -39,7 +39,7 @@ def without_generated(document: Document, changes: list[Change]) -> int:
             *((_counted(len(described), "description", "descriptions"),) if described else ()),
         ]
         first = min((*enforcing, *described))
-        changes.append(Change(first, f"what a build put there is left out: {', '.join(parts)}"))
+        changes.append(Change(first, f"what a build added is left out: {', '.join(parts)}"))
     return len(described)
 
 

@@ -217,7 +217,7 @@ def _succeeds(draft: _Draft) -> None:
         when = draft.when()
         _limit(draft, _upper(draft), when)
     elif not draft.halts:
-        draft.noted("its failure is one by itself")
+        draft.noted("the node's failure is the violation itself")
         return
     else:
         when = draft.when()
@@ -305,7 +305,7 @@ def _tries(draft: _Draft) -> None:
     per = draft.claim.per
     holder = per.node if isinstance(per, Target) else None
     if isinstance(per, Target) and per.through:
-        raise NotEnforced("it counts in some instances of a node only")
+        raise NotEnforced("it counts only in some instances of a node")
     count = draft.cell("count", "0.0", holder)
     most = value_script(bound.value, None, draft.stored)
     code = f"(({count} + 1.0) {bound.relation} {most})"
@@ -328,7 +328,7 @@ def _follows(draft: _Draft) -> None:
     elif not isinstance(subject, Target) or event.happening not in _SEEN:
         raise NotEnforced("the engine runs no script when that happens")
     elif subject.through:
-        raise NotEnforced("it follows some instances of a node only")
+        raise NotEnforced("it follows only some instances of a node")
     first = "true" if isinstance(subject, Mission) else "false"
     seen = draft.cell("seen", first)
     draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
@@ -347,7 +347,7 @@ def _follows(draft: _Draft) -> None:
 
 
 def _only_monitored(draft: _Draft) -> None:
-    raise NotEnforced("no node of the engine makes another one start in time")
+    raise NotEnforced("BehaviorTree.CPP has no node that makes another one start in time")
 
 
 def _upper(draft: _Draft) -> Limit:
@@ -355,7 +355,7 @@ def _upper(draft: _Draft) -> Limit:
     limit = draft.claim.limit
     assert limit is not None, "the clause has a bound"
     if limit.relation in (">=", ">"):
-        raise NotEnforced("the engine can stop a node, and not make it do more")
+        raise NotEnforced("the engine can stop a node, but cannot make it do more")
     if limit.upper is None:
         return limit
     draft.noted("its lower end is monitored")

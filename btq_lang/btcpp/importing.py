@@ -210,7 +210,9 @@ class _Writer:
                 if index:
                     start = element.place(attribute)[0]
                     span = Span(start, start + len(key))
-                    self.changes.append(Change(span, f"`{key}` of <{element.tag}> stands before its other attributes"))
+                    self.changes.append(
+                        Change(span, f"`{key}` is moved before the other attributes of <{element.tag}>")
+                    )
                 return attribute
         return None
 
@@ -413,7 +415,7 @@ class _Writer:
         if self.marks is not None:
             self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
-            message = "`*/` in a comment is written `* /`, or its last blank goes"
+            message = "`*/` in a comment is written `* /`, or the comment loses its last blank"
             self.changes.append(Change(Span(content.start, end), message))
 
     def blank_line(self) -> None:
@@ -428,11 +430,13 @@ class _Writer:
         span = Span(begin, begin + len(said))
         if len(self.ignored) >= _TEXTS_TOLD:
             if len(self.ignored) == _TEXTS_TOLD:
-                self.ignored.append(Diagnostic("xml-ignored", span, "the engine ignores this text and all behind it"))
+                self.ignored.append(
+                    Diagnostic("xml-ignored", span, "the engine ignores this text and everything after it")
+                )
                 self.changes.append(Change(span, "text that the engine ignores is left out from here on"))
             return
         message = f"the engine ignores this text: `{shown}`"
-        note = "remove it, or write <!-- … --> round it; a node is written <Name/>"
+        note = "remove it, or put <!-- … --> around it; a node is written <Name/>"
         self.ignored.append(Diagnostic("xml-ignored", span, message, notes=(note,)))
         self.changes.append(Change(span, f"text that the engine ignores is left out: {shown}"))
 

@@ -86,15 +86,15 @@ class Judge:
         if requirement.odds is not None:
             raise NotEnforced("odds are judged over many runs")
         if requirement.window is not None:
-            raise NotEnforced("a window is looked at in the logs of many runs")
+            raise NotEnforced("a window is evaluated in the logs of many runs")
         if isinstance(subject, Target) and subject.through:
-            raise NotEnforced("its path names some instances of a node only")
+            raise NotEnforced("its path names only some instances of a node")
         if isinstance(subject, Span) and claim.verb == "takes" and (node := self._looks.of_span(subject)) is not None:
             return node
         if not isinstance(subject, Target | Mission):
-            raise NotEnforced("it is about the time between nodes, and nothing stands around that")
+            raise NotEnforced("it bounds the time between nodes, where no guard fits")
         if subject.node is None:
-            raise NoBeginning("nobody can say which tree is the mission")
+            raise NoBeginning("it is unclear which tree is the mission")
         return subject.node
 
     def needs(
@@ -120,7 +120,7 @@ class Judge:
             first |= _first_value(signal)
         if (first or made.cells or made.stop) and not self._is_shared:
             if not self._looks.begins():
-                raise NoBeginning("nobody can say which tree is the mission, and where it begins")
+                raise NoBeginning("it is unclear which tree is the mission, and where it begins")
             if made.stop is not None:
                 mission = self._looks.mission()
                 assert mission is not None, "there is a mission that begins"
@@ -131,8 +131,8 @@ class Judge:
 def where_else(workspace: Workspace, node: SourceNode) -> str:
     """Why nothing is put around a node of another file where each file is written by itself."""
     if workspace.files[node.path].origin is not None:
-        return f"{node.shown} stands in an XML file, which is not built; with --bundle it is enforced"
-    return f"{node.shown} stands in an included file, which other missions may include; with --bundle it is enforced"
+        return f"{node.shown} is in an XML file, which is not built; with --bundle it is enforced"
+    return f"{node.shown} is in an included file, which other missions may include; with --bundle it is enforced"
 
 
 def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
@@ -142,7 +142,7 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
         NotEnforced: it does not.
     """
     if is_skipped_inside:
-        raise NotEnforced(f"{node.shown} may be skipped from within, and what stands around it could not be")
+        raise NotEnforced(f"{node.shown} may be skipped from within, but a guard around it could not be")
     names = [pair.key.text for pair in node.node.attributes]
     if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
         raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
@@ -151,7 +151,7 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
     asks = node.parent if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") else None
     is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
     if asks is not None and node.index == 0 and not is_asked_anew:
-        raise NotEnforced(f"{node.shown} is the condition of {asks.shown}, which would ask it in another way")
+        raise NotEnforced(f"{node.shown} is the condition of {asks.shown}, which would then evaluate it in another way")
 
 
 def _first_value(signal: Signal) -> dict[str, str]:

@@ -66,7 +66,7 @@ def read(text: str) -> Read:
     """
     nul = text.find("\0")
     if 0 <= nul < text.rfind(">"):
-        message = "a NUL character: here the file ends for the engine"
+        message = "unexpected NUL character: the engine stops reading here"
         return Read(None, (Diagnostic(RULE, Span(nul, nul + 1), message, notes=("remove it",)),))
     refused = not_well_formed(text)
     reader = _Reader(text, refused is None)
@@ -80,7 +80,7 @@ def read(text: str) -> Read:
     roots = [content for content in contents if isinstance(content, Element)]
     if not roots:
         end = len(text.rstrip())
-        message = "there is no element in this file" if end else "this file is empty"
+        message = "this file contains no element" if end else "this file is empty"
         note = 'a mission begins with <root BTCPP_format="4">'
         return Read(None, (Diagnostic(RULE, Span(0, min(end, 1)), message, notes=(note,)),))
     read_by_all = (content for content in contents if isinstance(content, Comment) or content is roots[0])
@@ -207,7 +207,7 @@ class _Reader:
         is_last = end == len(self.text)
         if is_last and not self.open and any(isinstance(content, Element) for content in contents):
             begin = start + between.index(said)
-            self.broken(Span(begin, begin + len(said)), "text behind the document element", "remove it")
+            self.broken(Span(begin, begin + len(said)), "unexpected text after the document element", "remove it")
         if not is_last:
             contents.append(Text(unescape(_line_ends(between)), start))
 
@@ -216,14 +216,14 @@ class _Reader:
         note = f"write </{element.tag}>"
         if any(other.tag == closing for other in self.open):
             note = f"close <{element.tag}> first: write </{element.tag}>, or /> where it has no children"
-        related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> is open since here"),)
-        message = f"</{closing}> stands where </{element.tag}> is expected"
+        related = (Related(Place(Span(element.start, element.end)), f"<{element.tag}> opens here"),)
+        message = f"expected </{element.tag}>, found </{closing}>"
         raise _Broken(Diagnostic(RULE, span, message, related, (note,)))
 
     def comment(self, start: int, behind: int, contents: list[Content]) -> int:
         """ "<!--" … "-->"; behind: where the last thing ended"""
         text = self.text
-        end = self.closing("-->", start + 4, start, "this comment has no -->")
+        end = self.closing("-->", start + 4, start, "missing --> for this comment")
         between = text[behind:start]
         beside = behind > 0 and "\n" not in between and "\r" not in between
         contents.append(Comment(_line_ends(text[start + 4 : end]), beside, start))
@@ -234,22 +234,22 @@ class _Reader:
         self.is_marked = True
         text = self.text
         if text.startswith("<![CDATA[", start):
-            end = self.closing("]]>", start + 9, start, "this CDATA section has no ]]>")
+            end = self.closing("]]>", start + 9, start, "missing ]]> for this CDATA section")
             if start + 9 < end:
                 contents.append(Text(_line_ends(text[start + 9 : end]), start))
             return end + 3
         self.has_prefixes = True  # in a DOCTYPE there may be anything
-        return self.closing(">", start + 2, start, "this declaration has no >") + 1
+        return self.closing(">", start + 2, start, "missing > for this declaration") + 1
 
     def declaration(self, start: int, is_first: bool) -> int:
         """ "<?" … "?>": the engine takes every one for a declaration, and wants those first"""
-        end = self.closing("?>", start + 2, start, "this declaration has no ?>") + 2
+        end = self.closing("?>", start + 2, start, "missing ?> for this declaration") + 2
         self.has_prefixes = self.has_prefixes or ":" in self.text[start:end]
         if not is_first or self.is_marked:
             span = Span(start, end)
             what = "an XML declaration" if self.text.startswith("<?xml ", start) else "a processing instruction"
             self.broken(
-                span, f"{what} behind something else", "the engine wants it first in the file: move or remove it"
+                span, f"{what} after other content", "the engine expects it first in the file; move or remove it"
             )
         return end
 
@@ -272,8 +272,8 @@ class _Reader:
             if name in first:
                 break
             first[name] = Span(*match.span(1))
-        related = (Related(Place(first[name]), "it has a value already"),)
-        message = f"the attribute `{name}` stands twice in <{tag}>"
+        related = (Related(Place(first[name]), "its first value is here"),)
+        message = f"duplicate attribute `{name}` in <{tag}>"
         raise _Broken(Diagnostic(RULE, Span(*match.span(1)), message, related, ("keep one of them",)))
 
     def unclosed(self, element: Element) -> NoReturn:
@@ -285,26 +285,24 @@ class _Reader:
         text, size = self.text, len(self.text)
         name = _NAME(text, start + (2 if text.startswith("</", start) else 1))
         if name is None:
-            self.broken(Span(start, start + 1), "`<` begins no tag", "as a character it is written &lt;")
+            self.broken(Span(start, start + 1), "unexpected `<`: no tag begins here", "write the character as &lt;")
         at = name.end()
         while True:
             at = _SPACE(text, at).end()  # type: ignore[union-attr]  # it matches nothing at least
             if at >= size:
-                self.broken(Span(start, name.end()), f"<{name[0]} has no >", "write > or /> where the tag ends")
+                self.broken(Span(start, name.end()), f"missing > for <{name[0]}", "write > or /> where the tag ends")
             key = _NAME(text, at)
             if key is None:
                 shown = text[at] if text[at].isprintable() else repr(text[at])
                 note = 'attributes are written name="value", and a tag ends with > or />'
-                self.broken(
-                    Span(at, at + 1), f"`{shown}` where an attribute or the end of <{name[0]}> is expected", note
-                )
+                self.broken(Span(at, at + 1), f"expected an attribute or the end of <{name[0]}>, found `{shown}`", note)
             equals = _EQUALS(text, key.end())
             if equals is None:
                 note = f'write {key[0]}="…", or remove it'
-                self.broken(Span(at, key.end()), f"the attribute `{key[0]}` has no value in quotes", note)
+                self.broken(Span(at, key.end()), f"missing value in quotes for the attribute `{key[0]}`", note)
             end = text.find(equals[1], equals.end())
             if end < 0:
-                message = f"the value of `{key[0]}` has no closing {equals[1]}"
+                message = f"missing closing {equals[1]} for the value of `{key[0]}`"
                 self.broken(Span(equals.end() - 1, equals.end()), message, f"write {equals[1]} where it ends")
             at = end + 1
 
@@ -322,7 +320,7 @@ def _line_ends(text: str) -> str:
     return LINE_END.sub("\n", text) if "\r" in text else text
 
 
-_TOO_DEEP: Final = f"more than {MAX_DEPTH} elements inside each other: the engine reads no more"
+_TOO_DEEP: Final = f"more than {MAX_DEPTH} nested elements, which BehaviorTree.CPP refuses"
 _PART: Final = 32_000
 _BLANKS: Final = " \t\n\v\f\r"
 _PAIRS: Final = rf"((?:{SPACE}{WORD}{SPACE}={SPACE}(?:\"[^\"]*\"|'[^']*'))*)"

@@ -141,11 +141,11 @@ class Source:
             first = self._changed_comments[0]
             number = len(self._changed_comments)
             where = "a comment" if number == 1 else f"{number} comments"
-            message = f"`--` in {where} is written `- -`: XML has no place for it"
+            message = f"`--` in {where} is written `- -`: XML does not allow it there"
             span = Span(first.start, first.start + len(first.raw))
             self.repairs[Remark(self.path, span, message)] = None
         for match in FORBIDDEN.finditer(self.file.text):
-            message = f"XML has no place for the character U+{ord(match[0]):04X}"
+            message = f"XML does not allow the character U+{ord(match[0]):04X}"
             self.problems[Remark(self.path, Span(match.start(), match.end()), message)] = None
 
 

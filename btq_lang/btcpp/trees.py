@@ -143,7 +143,7 @@ class Trees:
             if at_least(source.target, _NO_EXPLICIT_SINCE):
                 self._refused_here(entry, word)
             return Element(category, attributes)
-        message = f"`{category} {name}` is written in the short form: here the engine refuses the other one"
+        message = f"`{category} {name}` is written in the short form: here the engine refuses the explicit one"
         source.repair(entry, word, message)
         return Element(name, [each for each in attributes if each.name != "ID"])
 

@@ -109,7 +109,7 @@ class _Translator:
                     self.tell('__shared_blackboard is now _autoremap="true"', attribute)
                     found.append(self.changed(attribute, "_autoremap", "true"))
                 else:
-                    self.tell("__shared_blackboard is left out: version 4 shares nothing that is not said", attribute)
+                    self.tell("__shared_blackboard is left out: version 4 shares only what is mapped", attribute)
             elif key == "__autoremap":
                 self.tell("__autoremap is now _autoremap", attribute)
                 found.append(self.changed(attribute, "_autoremap"))
@@ -128,7 +128,7 @@ class _Translator:
         element = self.element
         for child in list(element.elements):
             if child.get("name") in ("__shared_blackboard", "__autoremap"):
-                message = f"the port {child.get('name')} of a SubTree's model is left out: version 4 would ask for it"
+                message = f"the port {child.get('name')} of a SubTree's model is left out: version 4 would require it"
                 self.changes.append(Change(Span(child.start, child.end), message))
                 element.children.remove(child)
 

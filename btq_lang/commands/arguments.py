@@ -75,7 +75,7 @@ def _add_paths(parser: ArgumentParser) -> None:
         "paths", nargs="*", default=["."], metavar="PATH", help="files and folders, `-` for standard input; default: ."
     )
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
     )
 
 
@@ -96,7 +96,7 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--severity", choices=SEVERITIES, help="report this and worse; default: hint")
     parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
     parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes; default: as many as it is worth")
+    parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
     _add_color(parser)
     parser.set_defaults(**{name: value for name, value in vars(CheckOptions).items() if not name.startswith("_")})
 
@@ -137,8 +137,8 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("--verbatim", action="store_true", help="exactly what the file says: nothing mended or added")
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
-    parser.add_argument("--force", action="store_true", help="write over XML that btq did not make")
-    parser.add_argument("--verbose", action="store_true", help="tell of every clause how it is held")
+    parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
+    parser.add_argument("--verbose", action="store_true", help="show how every clause is held")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
     parser.set_defaults(report="full")  # editors want a line for each error
     _add_color(parser)
@@ -147,9 +147,9 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
 def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
     def folder(path: str) -> str:
         if path == "-":
-            raise ArgumentTypeError("it is a folder; what is read from `-` goes to standard output")
+            raise ArgumentTypeError("expected a folder; input from `-` goes to standard output")
         if path.endswith((".btq", ".xml")) and not os.path.isdir(path):
-            raise ArgumentTypeError("it is a folder, in which each file keeps its name")
+            raise ArgumentTypeError("expected a folder, in which each file keeps its name")
         return path
 
     parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
@@ -159,7 +159,7 @@ def _add_import(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "import",
-        "make .btq files of BehaviorTree.CPP XML",
+        "convert BehaviorTree.CPP XML to .btq files",
         epilog="exit codes: 0 imported; 1 XML that cannot be read; 2 usage or I/O\n\n"
         "examples:\n  btq import mission.xml          writes mission.btq beside it\n"
         "  btq import trees/*.xml -o btq   and into a folder\n"
@@ -168,7 +168,7 @@ def _add_import(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
     parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
-    parser.add_argument("--force", action="store_true", help="write over .btq files that are there")
+    parser.add_argument("--force", action="store_true", help="overwrite existing .btq files")
     _add_color(parser)
 
 
@@ -229,7 +229,7 @@ def _add_graph(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
     )
     parser.add_argument("--format", choices=GRAPH_FORMATS, help="default: as the file of -o ends, else svg")
     parser.add_argument("--qualities", action="store_true", help="with qualities and requirements beside their nodes")
@@ -249,7 +249,7 @@ def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("file", metavar="FILE", help="the mission")
     parser.add_argument(
-        "--port", type=int, default=0, metavar="N", help="of this machine alone; default: one that is free"
+        "--port", type=int, default=0, metavar="N", help="the port, on this machine only; default: a free one"
     )
     parser.add_argument("--open", action="store_true", help="show it in the browser")
     parser.add_argument(
@@ -266,7 +266,7 @@ def _add_diff(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "diff",
-        "tell what changed between two missions",
+        "show what changed between two missions",
         epilog="exit codes: 0 the same, 1 different, 2 usage or I/O\n\n"
         "examples:\n  btq diff old.btq new.btq                   two missions, XML or btq\n"
         "  btq diff --git HEAD                        what has changed since the last commit\n"
@@ -280,7 +280,7 @@ def _add_diff(commands: _SubParsersAction[Parser]) -> None:
         help="two files or folders, `-` for standard input; with --git any number, default: .",
     )
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the name that standard input goes by, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
     )
     parser.add_argument(
         "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"
@@ -305,8 +305,8 @@ def _add_init(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "init",
-        "begin a project that checks clean",
-        epilog="exit codes: 0 begun; 2 usage or I/O, a project that is there already included\n\n"
+        "create a project that checks clean",
+        epilog="exit codes: 0 created; 2 usage or I/O, also where a project exists already\n\n"
         "example:\n  btq init my-robot && btq check my-robot\n",
     )
     parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")

@@ -77,9 +77,9 @@ def run(options: Namespace) -> int:
 
 def _usage_problem(options: Namespace) -> str | None:
     if options.watch and STDIN in options.paths:
-        return "--watch cannot wait for standard input to change"
+        return "--watch cannot watch standard input"
     if STDIN in options.paths and (len(options.paths) > 1 or options.output or options.check):
-        return "what comes from standard input goes to standard output: no other path, no -o, no --check"
+        return "btq builds standard input to standard output; give no other path, no -o and no --check"
     return usage_problem(options.paths)
 
 
@@ -125,7 +125,7 @@ def build(options: Namespace, files: Files) -> Outcome:
         _tell(done.export.repairs, "repaired", groups)
     for group in groups:
         for path in _without_tree(group):
-            print(f"btq build: {shown(path)} has no tree, so there is nothing in it to run", file=sys.stderr)
+            print(f"btq build: {shown(path)} has no tree to run", file=sys.stderr)
     _tell_clauses([done for _, _, done in made], groups, options.verbose)
     if not options.check:
         _tell_guessed([done.export for _, _, done in made])
@@ -370,7 +370,7 @@ def _write(outputs: list[Output], options: Namespace) -> int:
     changed = [output for output in outputs if output.text != output.old]
     foreign = [output for output in changed if not options.force and _is_foreign(output.old)]
     for output in foreign:
-        message = "was not made by btq build (or with --verbatim): --force writes over it"
+        message = "btq build did not write it (or with --verbatim); --force overwrites it"
         print(f"btq build: {shown(output.path)} {message}", file=sys.stderr)
     if foreign:
         print("nothing was written", file=sys.stderr)

@@ -48,9 +48,9 @@ def _run(options: CheckOptions, files: Files) -> int:
 
 def _usage_problem(options: CheckOptions) -> str | None:
     if options.watch and STDIN in options.paths:
-        return "--watch cannot wait for standard input to change"
+        return "--watch cannot watch standard input"
     if options.jobs < 0:
-        return f"--jobs {options.jobs}: a number of processes, or 0 for as many as it is worth"
+        return f"--jobs {options.jobs}: expected a number of processes, or 0 to let btq choose"
     rules = _rules(options.select) + _rules(options.ignore)
     return usage_problem(options.paths) or next(filter(None, map(unknown_rule, rules)), None)
 

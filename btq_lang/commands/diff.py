@@ -65,10 +65,10 @@ def _warn(side: Side) -> None:
         for include in file.includes:
             is_packaged = any(pair.key.text == "ros_pkg" for pair in include.attributes)
             if include.path is not None and not is_packaged and side.workspace.included_by(path, include) is None:
-                message = f"includes `{include.path.text}`, which is not there: what it says cannot be compared"
+                message = f"includes `{include.path.text}`, which does not exist: its content cannot be compared"
                 print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if file.origin is not None and DESCRIPTION_MARK in file.source:
-            message = "it was built, and requirements cannot be seen in XML without the side file beside it"
+            message = "it was built, and its requirements are unknown without the side file beside it"
             print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if error := _first_error(file):
             print(f"btq: {side.shown(path)}:{error}; what could be understood is compared", file=sys.stderr)
@@ -88,7 +88,9 @@ def _first_error(file: File) -> str | None:
 
 def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparison]:
     if len(paths) != 2:
-        raise Trouble(f"two missions can be compared, not {len(paths)}; revisions of one: btq diff --git HEAD FILE")
+        raise Trouble(
+            f"expected two missions, found {len(paths)}; to compare revisions of one: btq diff --git HEAD FILE"
+        )
     if STDIN in paths:
         yield _with_stdin(paths, stdin_filename)
         return

@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
     for name in unknown:
         likely = _likely(name)
         meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all there is"
-        print(f"btq explain: `{name}` is no rule, node, quality, unit or word of the language{meant}", file=sys.stderr)
+        print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
     bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for number, text in enumerate(pages):
         print("\n" * (number > 0) + (_with_bold_headings(text) if bold else text))
@@ -218,7 +218,7 @@ _SORTS = {
 }
 _IO_ERROR = """# io-error
 
-A file that cannot be read or written, or that is no UTF-8.
+A file that cannot be read or written, or that is not UTF-8.
 
 It is no rule: it stands in reports that machines read (JSON, JUnit, GitHub) where a rule would stand. Nothing
 selects or silences it, and the command ends with exit code 2."""

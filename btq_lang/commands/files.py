@@ -39,7 +39,7 @@ class Group(Record):
 
 def usage_problem(paths: Iterable[str]) -> str | None:
     """What is wrong with the paths of a command line, before any is looked at."""
-    return "a path is empty; `.` is this folder" if "" in paths else None
+    return "empty path; `.` is this folder" if "" in paths else None
 
 
 def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:

@@ -182,7 +182,7 @@ def revisions(asked: str, path: str) -> Revisions:
 def _commit(root: str, revision: str) -> str:
     words = ("rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
     if not _succeeds(root, *words):
-        raise GitTrouble(f"git knows no revision `{revision}`")
+        raise GitTrouble(f"git does not know the revision `{revision}`")
     return _git(root, *words).strip()
 
 

@@ -76,7 +76,7 @@ def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: li
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
     if targets[path] == path:
-        problems.append(LoadProblem(path, "not imported: this is no XML file, by its name"))
+        problems.append(LoadProblem(path, "not imported: its name does not end with .xml"))
         return None
     text, problem = read(path)
     if text is None or problem is not None:  # what is no UTF-8 would lose something
@@ -119,7 +119,7 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
             return None
         return replace(job, done=replace(job.done, text=mission.text, changes=()), target=target, others=others)
     losses = tuple(
-        f"its node is not there any more: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
+        f"its node no longer exists: {lost.text} (line {lost.line} of {lost.file or 'the mission'} as built)"
         for lost in mission.lost
     )
     by_hand = (Change(each.span, f"`{each.guard}` was {each.happened} by hand: {ADVICE}") for each in mission.by_hand)
@@ -161,7 +161,7 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
                 problems.append(LoadProblem(job.path, f"not imported: {shown(other.path)} has another {shown(path)}"))
                 return True
     if os.path.lexists(job.target) and not force:
-        problems.append(LoadProblem(job.target, "is there already: --force writes it anew"))
+        problems.append(LoadProblem(job.target, "already exists; --force overwrites it"))
         return True
     return False
 

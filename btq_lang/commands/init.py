@@ -1,4 +1,4 @@
-"""`btq init`: begin a project that checks clean."""
+"""`btq init`: create a project that checks clean."""
 
 from __future__ import annotations
 

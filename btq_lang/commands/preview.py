@@ -70,7 +70,7 @@ def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:
                 said = json.loads(told)
                 text, line = said.get("text"), said.get("line")
             except (ValueError, AttributeError):
-                print(f"btq preview: no JSON object: {told!r}", file=sys.stderr)
+                print(f"btq preview: expected a JSON object, found {told!r}", file=sys.stderr)
                 continue
             if isinstance(text, str):
                 mission.typed(text)
@@ -107,7 +107,7 @@ class _Mission:
         workspace = self._read()
         span = None if isinstance(workspace, str) else places(workspace, self.path).get(key)
         if span is None or isinstance(workspace, str):
-            return {"trouble": "this node is no longer there"}
+            return {"trouble": "this node no longer exists"}
         line, column = self._position(workspace, span)
         place = f"{shown(self.path)}:{line}:{column}"
         print(place, flush=True)

@@ -54,7 +54,7 @@ def unpacked(
     for name, text in others:
         path = _below(root, folder, name)
         if path is None:
-            problems.append(LoadProblem(target, f"its bundle holds `{name}`, which is no .btq or XML file below it"))
+            problems.append(LoadProblem(target, f"its bundle holds `{name}`, which is not a .btq or XML file below it"))
         elif path in (target, *taken):
             problems.append(LoadProblem(target, f"its bundle holds `{name}`, too, which would be written over"))
         elif not os.path.lexists(path):
@@ -62,7 +62,7 @@ def unpacked(
         elif not _says(path, text):
             found[path] = text
             if not force:
-                problems.append(LoadProblem(path, "is there already: --force writes it anew"))
+                problems.append(LoadProblem(path, "already exists; --force overwrites it"))
     return None if len(problems) > known else tuple(found.items())
 
 

@@ -36,7 +36,7 @@ def draw(figures: Sequence[Figure], form: str = "svg", direction: str = "down") 
         ValueError: there is no such format or direction.
     """
     if direction not in DIRECTIONS:
-        raise ValueError(f"no direction {direction!r}: there are {', '.join(DIRECTIONS)}")
+        raise ValueError(f"unknown direction {direction!r}; expected one of {', '.join(DIRECTIONS)}")
     if form == "svg":
         from btq_lang.graph.svg import document
 
@@ -49,4 +49,4 @@ def draw(figures: Sequence[Figure], form: str = "svg", direction: str = "down") 
         from btq_lang.graph.mermaid import mermaid
 
         return mermaid(figures, direction)
-    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")
+    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")

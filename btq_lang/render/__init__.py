@@ -99,7 +99,7 @@ def render(form: str, report: Report, *, colour: bool = False, width: int = 120)
         from btq_lang.render import junit
 
         return junit.render(report)
-    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")
+    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
 
 
 def with_paths(report: Report, shown: Callable[[str], str]) -> Report:

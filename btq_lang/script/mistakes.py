@@ -42,24 +42,24 @@ MEANT: Final = {
 
 # What has no counterpart, and what to do.
 _NO_SUCH: Final = {
-    "**": "there is no power operator in scripts: multiply",
-    "//": "scripts have neither comments nor whole-number division: `/` divides",
-    "<<": "there are no shifts in scripts: multiply by a power of two",
-    ">>": "there are no shifts in scripts: divide by a power of two",
-    "%": "there is no remainder operator in scripts",
-    ",": "a comma means nothing in a script: statements are separated by `;`, and the decimal sign is `.`",
-    ".": "a `.` stands only inside a number, and `..` joins texts: the names of keys have none",
-    "[": "there are no lists in scripts",
-    "]": "there are no lists in scripts",
-    "{": "braces belong to ports: a script names a key without them",
-    "}": "braces belong to ports: a script names a key without them",
-    "$": "a script names a key without `$`",
-    "#": "there are no comments in scripts",
+    "**": "scripts have no power operator; multiply instead",
+    "//": "scripts have neither comments nor integer division; `/` divides",
+    "<<": "scripts have no shifts; multiply by a power of two",
+    ">>": "scripts have no shifts; divide by a power of two",
+    "%": "scripts have no remainder operator",
+    ",": "unexpected `,` in a script; statements are separated by `;`, and the decimal sign is `.`",
+    ".": "unexpected `.`: only numbers contain it, `..` joins texts, and names of keys have none",
+    "[": "scripts have no lists",
+    "]": "scripts have no lists",
+    "{": "braces belong to ports; name a key in a script without them",
+    "}": "braces belong to ports; name a key in a script without them",
+    "$": "name a key in a script without `$`",
+    "#": "scripts have no comments",
     "@": "`@` must be followed at once by the name of a key of the root blackboard",
-    "'": "this text has no closing quote",
-    '"': "this text has no closing quote, and text stands in single quotes: '…'",
-    "not": "`not` is written `!` in a script, which binds more tightly: put what it denies in brackets, `!(a == b)`",
-    "\\": "there are no escapes in scripts: text may hold anything but a single quote",
+    "'": "missing closing quote for this text",
+    '"': "missing closing quote for this text; text in a script goes in single quotes: '…'",
+    "not": "`not` is written `!` in a script, which binds more tightly: put what it negates in brackets, `!(a == b)`",
+    "\\": "scripts have no escapes; text may contain anything but a single quote",
 }
 
 _OPERATOR_CHARACTERS: Final = frozenset("=<>!&|*/+-:.")
@@ -71,7 +71,7 @@ def error(span: Span, message: str, *fixes: Fix, notes: tuple[str, ...] = ()) ->
 
 
 def empty(text: str) -> Diagnostic:
-    message = "this script says nothing: the engine refuses it, or fails when it ticks the node"
+    message = "empty script: the engine refuses it, or fails when it ticks the node"
     return Diagnostic("empty-script", Span(0, len(text)), message)
 
 
@@ -89,14 +89,14 @@ def misspelt(text: str, span: Span) -> Diagnostic:
 
 
 def wrong_quotes(span: Span, content: str) -> Diagnostic:
-    message = "text stands in single quotes in a script: '…'"
+    message = "text in a script goes in single quotes: '…'"
     if "'" in content:
-        return error(span, f"{message}; a single quote inside it cannot be written")
+        return error(span, f"{message}; text cannot contain a single quote")
     return error(span, message, _write(f"'{content}'", span))
 
 
 def braced(text: str, span: Span, name: str) -> Diagnostic:
-    message = f"a script names a key without braces: `{name}`"
+    message = f"name a key in a script without braces: `{name}`"
     beside = text[span.start - 1 : span.start] + text[span.end : span.end + 1]
     if any(
         character.isalnum() or character in "_@{}." for character in beside
@@ -107,31 +107,31 @@ def braced(text: str, span: Span, name: str) -> Diagnostic:
 
 def strange_blank(span: Span) -> Diagnostic:
     return error(
-        span, "a blank that the engine does not read as one", replace_fix("Write a blank", span, " ", safe=True)
+        span, "the engine does not accept this character as a blank", replace_fix("Write a blank", span, " ", safe=True)
     )
 
 
 def foreign_name(span: Span, name: str) -> Diagnostic:
-    return error(span, f"`{name}`: names in scripts hold only the letters A to Z, digits and `_`")
+    return error(span, f"invalid name `{name}`: names in scripts contain only the letters A to Z, digits and `_`")
 
 
 def number(span: Span, raw: str, meant: str | None) -> Diagnostic:
     """A number written as the engine does not read it."""
     if meant is not None:
-        return error(span, f"the engine does not read `{raw}` as a number: write `{meant}`", _write(meant, span))
-    note = "There are no units in scripts, and no name begins with a digit."
+        return error(span, f"the engine does not read `{raw}` as a number; write `{meant}`", _write(meant, span))
+    note = "scripts have no units, and no name begins with a digit"
     return error(span, f"the engine does not read `{raw}` as a number", notes=(note,) if raw[-1].isalpha() else ())
 
 
 def unit(span: Span, name: str) -> Diagnostic:
-    note = "Write the number in the unit that the key is kept in."
-    return error(span, f"`{name}` behind a number: there are no units in scripts", notes=(note,))
+    note = "write the number in the unit of the key"
+    return error(span, f"unexpected unit `{name}`: scripts have no units", notes=(note,))
 
 
 def too_large(span: Span, raw: str) -> Diagnostic:
     hexadecimal = raw[:2] in ("0x", "0X")
     if not hexadecimal and not raw.isdecimal():
-        return error(span, f"`{raw}` is beyond what a number can hold: the engine refuses it")
+        return error(span, f"`{raw}` is too large for a number; the engine refuses it")
     fixes = () if hexadecimal else (replace_fix(f"Write `{raw}.0`", span, f"{raw}.0"),)
     message = f"`{raw}` is too large for a whole number: the newest engine reads it as 0, older ones refuse it"
     return error(span, message, *fixes)
@@ -139,14 +139,14 @@ def too_large(span: Span, raw: str) -> Diagnostic:
 
 def glued_hexadecimal(span: Span) -> Diagnostic:
     fix = replace_fix("Put a blank between them", Span(span.end, span.end), " ", safe=True)
-    return error(span, "a hexadecimal number and the `..` behind it need a blank between them", fix)
+    return error(span, "a hexadecimal number and the `..` after it need a blank between them", fix)
 
 
 def no_such(text: str, span: Span) -> Diagnostic:
     """A token that means nothing; an open quote reaches to the end of the text."""
     raw = text[span.start : span.end]
     message = _NO_SUCH.get(raw[0] if raw[0] in "'\"" else raw.lower())
-    return error(span, message or f"`{raw}` means nothing in a script")
+    return error(span, message or f"unexpected `{raw}` in a script")
 
 
 # ---- grammar ----
@@ -156,24 +156,24 @@ def missing_operand(text: str, before: Span | None, at: Span) -> Diagnostic:
     """No operand at `at`; `before` is the operator that waits for it, None at the start of a statement."""
     here = text[at.start : at.end]
     if before is None:
-        return error(at, f"`{here}` has nothing before it to work on")
+        return error(at, f"missing operand before `{here}`")
     operator = text[before.start : before.end]
     if operator == "(" and here == ")":
-        return error(Span(before.start, at.end), "nothing stands between the brackets")
+        return error(Span(before.start, at.end), "missing expression between the brackets")
     if operator in _POSTFIX and (here == operator or text.endswith(operator, 0, before.start)):
-        return error(before, f"`{operator}{operator}` does not count in scripts: write {_POSTFIX[operator]}")
-    return error(before, f"`{operator}` has nothing behind it to work on")
+        return error(before, f"scripts have no `{operator}{operator}`; write {_POSTFIX[operator]}")
+    return error(before, f"missing operand after `{operator}`")
 
 
 def unary_plus(text: str, span: Span) -> Diagnostic:
-    message = "a number has no sign `+` in a script"
+    message = "unexpected `+`: numbers in scripts take no sign `+`"
     if text.endswith("=", 0, span.start):  # `x =+ 1` may have meant `x += 1`
         return error(span, message)
     return error(span, message, replace_fix("Remove the `+`", span, "", safe=True))
 
 
 def leading_semicolon(span: Span) -> Diagnostic:
-    message = "a script does not begin with `;`: it stands between statements"
+    message = "unexpected `;` at the start of a script: it separates statements"
     return error(span, message, replace_fix("Remove it", span, "", safe=True))
 
 
@@ -184,10 +184,10 @@ def unopened_bracket(span: Span) -> Diagnostic:
 def unclosed_bracket(text: str, bracket: Span, at: Span) -> Diagnostic:
     if at.start == len(text):
         end = len(text.rstrip())
-        return error(bracket, "this `(` is never closed", replace_fix("Add the `)`", Span(end, end), ")"))
+        return error(bracket, "missing `)` for this `(`", replace_fix("Add the `)`", Span(end, end), ")"))
     if text[at.start] == ";":
-        return error(at, "a `;` cannot stand inside brackets")
-    return error(bracket, f"this `(` is not closed before the `{text[at.start : at.end]}`")
+        return error(at, "unexpected `;` inside brackets")
+    return error(bracket, f"missing `)` before `{text[at.start : at.end]}`")
 
 
 def ternary_without_colon(span: Span) -> Diagnostic:
@@ -195,11 +195,11 @@ def ternary_without_colon(span: Span) -> Diagnostic:
 
 
 def colon_alone(span: Span) -> Diagnostic:
-    return error(span, "a `:` stands only behind a `?`; a value is assigned with `:=`")
+    return error(span, "unexpected `:` without `?`; assign a value with `:=`")
 
 
 def assignment_behind_ternary(span: Span) -> Diagnostic:
-    return error(span, "an assignment in the last part of `? :` must stand in brackets: `c ? a : (b := 1)`")
+    return error(span, "an assignment in the last part of `? :` must be in brackets: `c ? a : (b := 1)`")
 
 
 def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
@@ -212,26 +212,26 @@ def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
 
 
 def too_deep(span: Span, limit: int) -> Diagnostic:
-    return error(span, f"more than {limit} operators within each other: use several statements")
+    return error(span, f"more than {limit} nested operators; use several statements")
 
 
 def prose(text: str, start: int) -> Diagnostic:
     """Words; from `start` on there is no operator for a while."""
     whole = Span(len(text) - len(text.lstrip()), len(text.rstrip()))
     words = " ".join(text[start:].split()[:3])
-    note = "Since 4.9 the engine may load it and fail at the first tick, when it looks for variables of these names."
+    note = "since 4.9 the engine may load it and fail at the first tick, when it looks for variables of these names"
     return error(whole, f"this is prose, not a script: `{words} …` has no operator", notes=(note,))
 
 
 def call(span: Span, name: str) -> Diagnostic:
-    return error(span, f"`{name}(…)`: there are no functions in scripts")
+    return error(span, f"unexpected call `{name}(…)`: scripts have no functions")
 
 
 def two_operands(text: str, left: Span, right: Span) -> Diagnostic:
     place, word = Span(left.start, right.end), text[left.start : left.end]
     if word == "if":
-        return error(place, "there is no `if` in scripts: write `condition ? this : that`")
-    return error(place, f"there is no operator between `{word}` and `{text[right.start : right.end]}`")
+        return error(place, "scripts have no `if`; write `condition ? this : that`")
+    return error(place, f"missing operator between `{word}` and `{text[right.start : right.end]}`")
 
 
 def _write(meant: str, span: Span, before: str = "", behind: str = "") -> Fix:

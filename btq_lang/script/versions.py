@@ -221,7 +221,7 @@ def _separators(script: Script, targets: _Targets) -> list[Diagnostic]:
                 first = text.index(";", first + 1)
             span = Span(first, text.rindex(";", first, end) + 1)
             fix = Fix("Remove it", (Change(Place(span), ""),), safe=True)
-            what = "a `;` behind the last statement" if behind is None else "more than one `;` between statements"
+            what = "a `;` after the last statement" if behind is None else "more than one `;` between statements"
             found.append(_refused(fix, span, what, targets.old, targets))
     return found
 

@@ -76,7 +76,7 @@ def completion_script(
         from btq_lang.shell import powershell
 
         return powershell.script(commands)
-    raise ValueError(f"no completion for {shell!r}: there is one for {', '.join(SHELLS)}")
+    raise ValueError(f"no completion for {shell!r}; expected one of {', '.join(SHELLS)}")
 
 
 def valued_options(commands: tuple[Command, ...]) -> Iterator[tuple[list[str], tuple[str, ...]]]:

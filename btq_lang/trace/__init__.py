@@ -51,4 +51,4 @@ def write(overview: Overview, form: str, *, colour: bool = False, width: int = 1
         from btq_lang.trace.page import page
 
         return page(overview)
-    raise ValueError(f"no format {form!r}: there are {', '.join(FORMATS)}")
+    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")
