@@ -31,10 +31,11 @@ class Coverage:
 
     def count(self, tree: LoggedTree, activation: Activation) -> None:
         """One of them ran."""
-        node = tree.nodes[activation.uid]
-        self.exercised[node.uid, node.path] = True
-        if node.last == node.uid and activation.outcome in ("S", "F"):
-            self._leaves.setdefault(node.path, array("d")).append(activation.seconds)
+        uid = activation.uid
+        path = tree.nodes[uid].path
+        self.exercised[uid, path] = True
+        if tree.last[uid] == uid and activation.outcome in ("S", "F"):
+            self._leaves.setdefault(path, array("d")).append(activation.seconds)
 
     def slowest(self) -> NodeTimes | None:
         """The leaf that takes longest in 95 of 100 activations; None where none takes any time."""

@@ -70,12 +70,13 @@ class MissionEvaluation:
         runs = 0
         for activation in activations(session):
             self._coverage.count(tree, activation)
-            for refusal in guards.refused(activation):
-                for clause in at[refusal.uid]:
-                    clause.refuse(refusal, tree.nodes[refusal.uid].path)
-            for ended, guard in guards.settled(activation):
-                for clause in at[ended.uid]:
-                    clause.judge(ended, guard, signals, tree.nodes[ended.uid].path)
+            if activation.uid in guards.concerned:  # few of the nodes are
+                for refusal in guards.refused(activation):
+                    for clause in at[refusal.uid]:
+                        clause.refuse(refusal, tree.nodes[refusal.uid].path)
+                for ended, guard in guards.settled(activation):
+                    for clause in at[ended.uid]:
+                        clause.judge(ended, guard, signals, tree.nodes[ended.uid].path)
             if activation.uid == ROOT:
                 run = Run(first_run + runs, source, activation.begin)
                 runs += 1

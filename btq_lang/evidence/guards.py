@@ -10,7 +10,7 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Mapping
     from typing import Final
 
     from btq_lang.evidence.model import Activation, LoggedTree
@@ -37,9 +37,13 @@ class Refusal(Record):
 
 
 class Guards:
-    """The guards around some nodes of a tree, while a log is read."""
+    """The guards around some nodes of a tree, while a log is read.
 
-    def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Iterable[int]) -> None:
+    Attributes:
+        concerned: those nodes and the guards; no other activation changes anything here.
+    """
+
+    def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
         """
         Args:
             enforcing: the nodes that were put around others, with their requirements.
@@ -49,6 +53,7 @@ class Guards:
         self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
         self._refuse: Final[dict[int, list[int]]] = {}
         self._waiting: Final[dict[int, list[tuple[Activation, tuple[int, ...]]]]] = {}
+        self.concerned: Final = {*judged, *enforcing}
         for uid in judged:
             around: list[int] = []
             above = tree.parent[uid]
