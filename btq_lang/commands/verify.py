@@ -8,8 +8,9 @@ import sys
 from argparse import Namespace
 
 from btq_lang.btcpp.export import xml_name
-from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path
+from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path, xml_path
 from btq_lang.checks import check
+from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.evidence import FORMATS, verify, write
 from btq_lang.evidence.identity import Candidate
@@ -18,6 +19,7 @@ from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.loader import absolute, collect, find_project, read, shown
+from btq_lang.record import Record
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
 
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
-
-    Sides = dict[str, list[tuple[int, str]]]  # the nodes that side files list, by the mission
 
 
 def run(options: Namespace) -> int:
@@ -76,44 +76,64 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
 def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:
     """The missions that logs may be of: those asked for, else those of the side files beside the logs and all of this
     folder's project."""
-    sides = dict(_sides(logs))
-    paths = list(asked) or [*filter(os.path.isfile, sides), find_project(".").project.root]
-    groups, unreadable = Files().groups(paths)
+    sides = {side.mission: side for side in _sides(logs)}
+    there = [mission for mission in sides if os.path.isfile(mission)]
+    found = [] if asked else [each for side in sides.values() if side.mission not in there for each in _restored(side)]
+    groups, unreadable = Files().groups(asked or [*there, find_project(".").project.root])
     problems += map(str, unreadable)
-    found: list[Candidate] = []
     for group in groups:
-        workspace = group.workspace
         for path in group.given:
-            if asked or path not in workspace.included_files:
-                side = sides.get(path) or _nodes(side_path(xml_name(path))).get(path)
-                name = os.path.splitext(os.path.basename(path))[0]
-                found.append(Candidate(workspace, path, name, side))
+            side = sides.get(path) or _side(side_path(xml_name(path)))
+            if path.endswith(".xml") and side is not None and (built := [*_restored(side)]):
+                found += built
+            elif asked or path not in group.workspace.included_files:
+                nodes = side.nodes if side is not None and side.mission == path else None
+                found.append(Candidate(group.workspace, path, _name(path), nodes))
     if not found and not problems:
         problems.append("no mission found; name one with --mission FILE")
     return found
 
 
-def _sides(logs: Sequence[str]) -> Iterator[tuple[str, list[tuple[int, str]]]]:
-    """The missions of the side files beside logs, each with the nodes that they list."""
+def _restored(side: _Side) -> Iterator[Candidate]:
+    """The mission as it was built, where only the XML and the side file are there."""
+    built = as_built(xml_path(side.path), Disk())
+    if built is not None:
+        yield Candidate(built.workspace, built.path, _name(side.mission), side.nodes)
+
+
+def _name(path: str) -> str:
+    return os.path.splitext(os.path.basename(path))[0]
+
+
+class _Side(Record):
+    """A side file, the mission that it says it is of, and the nodes that it lists."""
+
+    path: str
+    mission: str
+    nodes: list[tuple[int, str]]
+
+
+def _sides(logs: Sequence[str]) -> Iterator[_Side]:
+    """The side files beside logs."""
     for folder in dict.fromkeys(os.path.dirname(absolute(log)) for log in logs):
         try:
             names = sorted(os.listdir(folder))
         except OSError:
-            continue  # a log in it will tell
+            continue  # reading the log reports that
         for name in names:
-            if name.endswith(SIDE_SUFFIX):
-                yield from _nodes(f"{folder}/{name}").items()
+            if name.endswith(SIDE_SUFFIX) and (side := _side(f"{folder}/{name}")) is not None:
+                yield side
 
 
-def _nodes(side: str) -> Sides:
-    """The mission of a side file with the nodes that it lists; nothing where there is no such file."""
-    text = read(side)[0] if os.path.isfile(side) else None
+def _side(path: str) -> _Side | None:
+    """A side file; None where there is none, or it is damaged."""
+    text = read(path)[0] if os.path.isfile(path) else None
     try:
         data = json.loads(text or "")
-        mission = absolute(os.path.join(os.path.dirname(side), data["mission"]["file"]))
-        return {mission: [(node["uid"], node["path"]) for node in data["nodes"]]}
+        mission = absolute(os.path.join(os.path.dirname(path), data["mission"]["file"]))
+        return _Side(path, mission, [(node["uid"], node["path"]) for node in data["nodes"]])
     except (ValueError, RecursionError, KeyError, TypeError):
-        return {}
+        return None
 
 
 def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:

@@ -65,6 +65,8 @@ def activations(session: Session) -> Iterator[Activation]:
             yield from ended
         elif uid in running:
             idle = uid, time
+        elif uid == ROOT and uid in begun:  # a run without a row of the root: how it ended is not known
+            yield from nodes.end(ROOT, time, "O", below="O")
         else:
             nodes.forget(uid)
         last = time

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from evidence_logs import MAIN_XML, START, btlog, rows, write_db3
+from hypothesis import given
+from hypothesis import strategies as st
 
-from btq_lang.evidence.model import Activation
+from btq_lang.evidence.model import Activation, LoggedNode, LoggedTree, Session
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 
@@ -114,6 +117,7 @@ def made(text: str, folder: Path) -> tuple[list[str], list[str]]:
         pytest.param("0 1R 2R 5 2S 3R", ["2 0-5 S", "3 5-5 O", "1 0-5 O"], id="cut off"),
         pytest.param("0 1R 2R 5 2S 9 1R 2R 12 2S 1S", ["2 0-5 S", "1 0-5 O", "2 9-12 S", "1 9-12 S"], id="interrupted"),
         pytest.param("1 2I 3I 1I 5 1R 2S 1S", ["2 5-5 S", "1 5-5 S"], id="resets"),
+        pytest.param("0 2R 5 2S 1I", ["2 0-5 S", "1 0-5 O"], id="a run without a row of the root"),
         pytest.param("", [], id="nothing"),
     ],
 )
@@ -137,3 +141,34 @@ def test_durations_across_a_clock_that_was_set_back_are_unknown(tmp_path: Path) 
         "rows earlier than the row before them, so durations across them are unknown: 1, "
         "the first at 2026-11-20T21:22:20.005000Z"
     ]
+
+
+# 1 has the children 2 and 4, 2 has the child 3.
+TREE = LoggedTree(
+    [LoggedNode(uid, "N", f"N::{uid}", *around) for uid, around in enumerate(((0, 4), (1, 3), (2, 3), (1, 4)), 1)]
+)
+ANY_ROWS = st.lists(st.tuples(st.integers(0, 3000), st.integers(1, 4), st.integers(0, 3)), max_size=40)
+
+
+@given(ANY_ROWS)
+def test_whatever_rows_there_are(steps: list[tuple[int, int, int]]) -> None:
+    """Each result is one activation, those of a node follow each other, and those of a run are within it."""
+    time = 0
+    transitions = []
+    for step, uid, status in steps:
+        time += step
+        transitions.append((time, uid, status))
+    found = [*activations(Session(TREE, iter(transitions)))]
+    for uid in TREE.nodes:
+        own = [each for each in found if each.uid == uid]
+        results = [status for _, each, status in transitions if each == uid and status in (2, 3)]
+        assert [each.outcome for each in own if each.outcome in ("S", "F")] == ["IRSF"[status] for status in results]
+        assert all(before.end <= after.begin for before, after in pairwise(own))
+    assert all(each.begin <= each.end for each in found)
+    waiting: list[Activation] = []
+    for each in found:
+        waiting.append(each)
+        if each.uid == 1:
+            assert all(each.begin <= inside.begin and inside.end <= each.end for inside in waiting)
+            waiting.clear()
+    assert waiting == []

@@ -203,6 +203,15 @@ def test_the_mission_is_found_by_its_side_file(lab: Path, tmp_path: Path) -> Non
     assert output.splitlines()[0].endswith("mission lab (side file matches, 19 of 19 nodes)")
 
 
+@pytest.mark.parametrize("given", [(), ("--mission", "lab.xml")])
+def test_a_robot_has_the_xml_and_the_side_file_alone(given: tuple[str, ...], lab: Path) -> None:
+    assert btq(lab, "build", "lab.btq")[0] == 0
+    (lab / "lab.btq").unlink()
+    code, output, errors = btq(lab, "verify", "lab.btlog", "--signals", "lab.battery.csv", *given)
+    assert (code, errors) == (1, "")
+    assert output == TABLE.replace("as built now", "side file matches")
+
+
 def test_runs_are_numbered_over_all_files(lab: Path) -> None:
     code, output, _ = btq(lab, "verify", ".", "--format", "json", "--signals", "lab.battery.csv")
     assert code == 1
