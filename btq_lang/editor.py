@@ -9,6 +9,7 @@ import asyncio
 import functools
 import json
 import logging
+import os
 import sys
 from collections.abc import Callable, Iterable
 from itertools import chain
@@ -45,6 +46,7 @@ class Refused(JsonRpcException):
 NOTHING = Json('{"kind": "full", "items": []}')
 TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
+A_LOOK = 5  # seconds between two looks at whether the editor's process still runs
 MOST_DETAILS = 500  # a parameter may hold a whole text
 
 
@@ -87,6 +89,7 @@ class Server(LanguageServer):
         self._is_settled = False  # what was read first will not be looked through for garbage again
         self._failures: set[object] = set()  # the places of those that are logged
         self.protocol.log_failure = self.log_failure
+        self._watching: asyncio.Task[None] | None = None
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, but for how messages are read."""
@@ -102,6 +105,25 @@ class Server(LanguageServer):
             pass
         finally:
             self.shutdown()  # type: ignore[no-untyped-call]  # pygls has no types there
+
+    # ---- the end ----
+
+    @property
+    def exit_code(self) -> int:
+        """What the process ends with: an editor that goes without `shutdown` has crashed, or is badly written."""
+        return 0 if self.protocol.is_shut_down else 1
+
+    def end_with(self, process: int) -> None:
+        """End soon after a process has ended: an editor that crashes may leave its end of the pipes open."""
+        self._watching = asyncio.ensure_future(self._end_with(process))
+
+    async def _end_with(self, process: int) -> None:
+        while _is_running(process):
+            await asyncio.sleep(A_LOOK)
+        try:
+            logging.getLogger(__name__).error("the editor's process %d has ended", process)
+        finally:  # nobody may read what is logged
+            os._exit(self.exit_code)  # `sys.exit` would wait for the thread that waits for the next message
 
     # ---- what an editor that traces is told ----
 
@@ -355,3 +377,27 @@ class Server(LanguageServer):
         ):
             if self.can_refresh(what):
                 refresh(None)
+
+
+def _is_running(process: int) -> bool:
+    """Whether there is a process of this number."""
+    if sys.platform == "win32":  # there `os.kill` ends the process, whatever the signal
+        import ctypes
+
+        kernel = ctypes.WinDLL("kernel32", use_last_error=True)
+        handle = kernel.OpenProcess(_SYNCHRONIZE, False, process)
+        if not handle:
+            return ctypes.get_last_error() == _ACCESS_DENIED
+        has_ended = kernel.WaitForSingleObject(handle, 0) == 0
+        kernel.CloseHandle(handle)
+        return not has_ended
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):  # another user's; or no number of this system's, which says nothing
+        pass
+    return True
+
+
+_SYNCHRONIZE, _ACCESS_DENIED = 0x00100000, 5  # of the Windows API

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 
 from cattrs import ClassValidationError, transform_error
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidRequest, JsonRpcServerNotInitialized
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 Plain = dict[str, Any]  # what json writes as it is
@@ -67,6 +67,29 @@ class Protocol(LanguageServerProtocol):
         else:  # what is of lsprotocol in it is made plain by `_serialize_message`
             self._send_data({"jsonrpc": self.VERSION, "id": msg_id, "result": result})
 
+    @property
+    def is_shut_down(self) -> bool:
+        """Whether the editor has sent `shutdown`: only then may it send `exit`."""
+        return self._shutdown
+
+    def handle_message(self, message: Any) -> None:
+        """As in pygls, which leaves requests after `shutdown` without an answer and takes a second `initialize`."""
+        refusal = self._refusal(getattr(message, "method", ""))
+        if refusal is None or not (hasattr(message, "id") and hasattr(message, "method")):
+            super().handle_message(message)
+        else:
+            self._send_response(message.id, error=refusal.to_response_error())
+
+    def _refusal(self, method: str) -> JsonRpcException | None:
+        """Why a request cannot be answered at this point of the server's life."""
+        if self._shutdown:
+            return JsonRpcInvalidRequest("the server is shut down: it accepts only `exit`")
+        if (self._workspace is not None) is not (method == types.INITIALIZE):
+            return None
+        if method == types.INITIALIZE:
+            return JsonRpcInvalidRequest("the server is already initialized: `initialize` can be sent only once")
+        return JsonRpcServerNotInitialized("the server is not initialized: send `initialize` first")
+
     def structure_message(self, data: dict[str, Any]) -> Any:
         """As in pygls, which does not answer a request that it cannot read: who asked would wait for ever."""
         try:
@@ -75,8 +98,9 @@ class Protocol(LanguageServerProtocol):
             if "id" in data and "method" in data:
                 problem = error.__cause__
                 why = "; ".join(transform_error(problem)) if isinstance(problem, ClassValidationError) else str(problem)
-                told = types.ResponseError(error.code, f"{data['method']} cannot be read: {why}")
-                self._send_response(data["id"], error=told)
+                refusal = self._refusal(data["method"])
+                unread = types.ResponseError(error.code, f"{data['method']} cannot be read: {why}")
+                self._send_response(data["id"], error=refusal.to_response_error() if refusal else unread)
             raise
 
     def getting_ready(self) -> Iterator[None]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import functools
 import logging
+import os
 import sys
 from collections.abc import Sequence
 
@@ -37,11 +38,25 @@ def serve(options: argparse.Namespace) -> int:
     for handler in logging.getLogger().handlers:
         handler.addFilter(_is_no_refusal)
     if options.tcp is not None:
-        server.start_tcp("127.0.0.1", options.tcp)
-    else:
-        output, sys.stdout = sys.stdout.buffer, sys.stderr  # nothing that is printed may get into the protocol
-        server.start_io(stdout=output)
-    return 0
+        return _serve_tcp(server, options.tcp)
+    output, sys.stdout = sys.stdout.buffer, sys.stderr  # nothing that is printed may get into the protocol
+    server.start_io(stdout=output)
+    return server.exit_code
+
+
+def _serve_tcp(server: Server, port: str) -> int:
+    """Serve one editor that connects to a port of this machine."""
+    try:
+        if not (port.isascii() and port.isdigit() and int(port) <= _LAST_PORT):
+            raise OSError(f"expected a port of this machine, 0 to {_LAST_PORT}")
+        server.start_tcp("127.0.0.1", int(port))
+    except OSError as error:
+        why = os.strerror(error.errno) if error.errno else error
+        print(f"btq-lsp: cannot serve on `--tcp {port}`: {why}", file=sys.stderr)
+        return _TROUBLE
+    except SystemExit:  # so pygls ends, at `exit`
+        pass
+    return server.exit_code
 
 
 def make_server() -> Server:
@@ -51,6 +66,8 @@ def make_server() -> Server:
     return server
 
 
+_TROUBLE = 2  # usage or I/O, as everywhere
+_LAST_PORT = 65_535
 _DESCRIPTION = "The language server of btq, for editors."
 
 

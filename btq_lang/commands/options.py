@@ -31,5 +31,5 @@ class CheckOptions:
 def add_server_options(parser: ArgumentParser) -> None:
     """The options of `btq lsp` and of `btq-lsp`."""
     parser.add_argument("--stdio", action="store_true", help="over standard input and output: the default")
-    parser.add_argument("--tcp", type=int, metavar="PORT", help="one editor, over a port of this machine")
+    parser.add_argument("--tcp", metavar="PORT", help="one editor, over a port of this machine")
     parser.add_argument("--log", choices=("error", "warning", "info", "debug"), default="error", help="default: error")

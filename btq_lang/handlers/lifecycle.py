@@ -20,6 +20,8 @@ def register(server: Server) -> None:
         convert.agree(server.workspace.position_encoding)
         server.protocol.trace = params.trace or types.TraceValue.Off
         _settle(session, params.initialization_options)
+        if params.process_id is not None:
+            server.end_with(params.process_id)
 
     @server.feature(types.INITIALIZED)
     async def initialized(_: types.InitializedParams) -> None:

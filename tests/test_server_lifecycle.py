@@ -1,0 +1,153 @@
+"""How the server begins and ends, as an editor sees its process: initialize, shutdown, exit, an editor that is gone."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from lsp_editor import SERVER, Editor, Message
+
+from btq_lang import editor as btq_editor
+
+NOT_INITIALIZED, INVALID_REQUEST = -32002, -32600
+
+
+@pytest.fixture
+def editor(tmp_path: Path) -> Iterator[Editor]:
+    editor = Editor(tmp_path)
+    editor.open("main.btq", "BehaviorTree Main\n    Pick\n")
+    with editor.process:
+        yield editor
+        editor.process.kill()
+
+
+def refusal(answer: Message) -> tuple[int, str]:
+    return answer["error"]["code"], answer["error"]["message"]
+
+
+def test_after_shutdown_every_request_is_refused(editor: Editor) -> None:
+    assert editor.request("shutdown") is None
+    expected = INVALID_REQUEST, "the server is shut down: it accepts only `exit`"
+    assert refusal(editor.ask("textDocument/hover", **editor.at("main.btq", 1, 5))) == expected
+    assert refusal(editor.ask("textDocument/hover")) == expected  # as above, whatever is wrong with it besides
+    assert refusal(editor.ask("textDocument/somethingNew", **editor.document("main.btq"))) == expected
+    assert refusal(editor.ask("initialize", capabilities={}, processId=None, rootUri=None)) == expected
+    assert refusal(editor.ask("shutdown")) == expected
+    editor.change("main.btq", "")  # a notification has no answer
+    editor.notify("exit")
+    assert editor.process.wait(timeout=20) == 0
+
+
+def test_exit_without_shutdown_is_a_failure(editor: Editor) -> None:
+    editor.notify("exit")
+    assert editor.process.wait(timeout=20) == 1
+
+
+def test_it_is_initialized_once(editor: Editor) -> None:
+    again = editor.ask("initialize", capabilities={}, processId=None, rootUri=None)
+    assert refusal(again) == (
+        INVALID_REQUEST,
+        "the server is already initialized: `initialize` can be sent only once",
+    )
+    assert editor.request("textDocument/documentSymbol", **editor.document("main.btq"))[0]["name"] == "Main"
+    assert editor.close() == ""
+
+
+def test_before_initialize_every_request_is_refused(tmp_path: Path) -> None:
+    class Hasty(Editor):
+        def request(self, method: str, **params: object) -> object:
+            if method == "initialize":
+                early = self.ask("textDocument/hover", **self.at("main.btq", 0, 0))
+                assert refusal(early) == (NOT_INITIALIZED, "the server is not initialized: send `initialize` first")
+            return super().request(method, **params)
+
+    assert Hasty(tmp_path).close() == ""
+
+
+@pytest.mark.parametrize("is_shut_down", [False, True])
+def test_it_ends_with_its_standard_input(is_shut_down: bool, editor: Editor) -> None:
+    if is_shut_down:
+        editor.request("shutdown")
+    assert editor.process.stdin is not None
+    editor.process.stdin.close()
+    assert editor.process.wait(timeout=20) == (0 if is_shut_down else 1)
+
+
+def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
+    """While its standard input stays open, as where another process has inherited it."""
+    with subprocess.Popen((sys.executable, "-c", "input()"), stdin=subprocess.PIPE) as crashing:
+        editor = Editor(tmp_path, processId=crashing.pid)
+        editor.open("main.btq", "BehaviorTree Main\n    Pick\n")
+        assert editor.diagnostics("main.btq") == []
+        crashing.kill()
+        crashing.wait()
+        with editor.process as server:
+            assert server.wait(timeout=60) == 1
+            assert server.stderr is not None
+            assert server.stderr.read() == b"ERROR:btq_lang.editor:the editor's process %d has ended\n" % crashing.pid
+
+
+def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
+    program = "import btq_lang.editor as editor; editor.A_LOOK = 0; from btq_lang.server import main; main([])"
+    editor = Editor(tmp_path, command=(sys.executable, "-c", program), processId=os.getpid())
+    for number in range(20):
+        editor.open(f"main{number}.btq", "")
+        assert editor.diagnostics(f"main{number}.btq") == []
+    assert editor.close() == ""
+    assert 0 < btq_editor.A_LOOK <= 10
+
+
+@pytest.mark.parametrize("port", ["99999", "-1", "port", "example.invalid:5007", ""])
+@pytest.mark.parametrize("command", [SERVER[:-1], (sys.executable, "-m", "btq_lang", "lsp")])
+def test_what_is_no_port_is_a_usage_error(port: str, command: tuple[str, ...]) -> None:
+    done = subprocess.run((*command, f"--tcp={port}"), capture_output=True, text=True, timeout=60, check=False)
+    why = f"btq-lsp: cannot serve on `--tcp {port}`: expected a port of this machine, 0 to 65535\n"
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", why)
+
+
+def test_a_port_that_is_taken_is_a_usage_error() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        command = (*SERVER[:-1], "--tcp", str(port))
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    line = f"btq-lsp: cannot serve on `--tcp {port}`: "
+    assert (done.returncode, done.stderr[: len(line)], done.stderr.count("\n")) == (2, line, 1)
+
+
+@pytest.mark.parametrize("is_shut_down", [False, True])
+def test_over_a_port_it_ends_the_same(is_shut_down: bool, tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = (*SERVER[:-1], "--tcp", str(port), "--log", "info")
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        next(line for line in process.stderr if "Serving on" in line)
+        bridge = "import socket, sys, threading\n" + BRIDGE.replace("PORT", str(port))
+        editor = Editor(tmp_path, command=(sys.executable, "-c", bridge))
+        if is_shut_down:
+            editor.request("shutdown")
+        editor.notify("exit")
+        assert process.wait(timeout=20) == (0 if is_shut_down else 1)
+        process.stderr.read()
+        editor.process.communicate(timeout=20)
+
+
+# Standard input and output of an editor, to and from a port.
+BRIDGE = """
+port = socket.create_connection(("127.0.0.1", PORT))
+def send():
+    while data := sys.stdin.buffer.read1():
+        port.sendall(data)
+threading.Thread(target=send, daemon=True).start()
+while data := port.recv(65536):
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+"""
