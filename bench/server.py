@@ -30,6 +30,7 @@ from report import ENVIRONMENT, Goal
 
 FILES, NODES_A_FILE, LARGE = 100, 500, 10_000
 MANY, NODES_OF_MANY = 1_000, 50
+ONE_TREE = {1_000: 60, 5_000: 250, 40_000: 2_000}  # nodes below one node, and the milliseconds that a key may take
 
 BTQ = (sys.executable, "-c", "from btq_lang.server import main; main(['--stdio'])")
 BARE = (
@@ -59,6 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "start": lambda: starts(options.starts),
         "edits": lambda: typing(FILES, NODES_A_FILE, options),
         "large": lambda: typing(1, LARGE, options),
+        "tree": lambda: one_tree(options),
         "many": lambda: many_files(options.spelling),
     }
     for part, measure in parts.items():
@@ -163,6 +165,39 @@ def _typed(files: int, nodes: int, options: argparse.Namespace) -> tuple[list[Se
         in_the_end = server.memory() - bare
         server.end()
     return [edits, completion, hover, definition, first, full, delta], memory, in_the_end
+
+
+def one_tree(options: argparse.Namespace) -> tuple[list[Series], list[Goal]]:
+    """From a key to the completion that is asked for with it, by the clock, in a file that is one flat tree."""
+    measured, goals = [], []
+    for nodes, limit in ONE_TREE.items():
+        keys = _least([_keys_in_one_tree(nodes) for _ in range(options.repeats)])
+        taken = 1000 * percentile(keys.wall, 99)
+        measured.append(keys)
+        goals.append(Goal(f"{keys.name}: p99 ms by the clock <= {limit}", taken, taken <= limit))
+    return measured, goals
+
+
+def _keys_in_one_tree(nodes: int) -> Series:
+    """A node is typed in the middle of a tree, after it has been checked as it was; all is checked after each key."""
+    size = f"{nodes:,} nodes".replace(",", " ")
+    keys = Series(f"key to completion, one tree of {size}")
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "mission.btq"
+        lines = "".join(f"        Action Step{number} (level = {number})\n" for number in range(nodes))
+        path.write_text(f"BehaviorTree Main\n    ->\n{lines}", encoding="utf-8")
+        server = Server(BTQ, Path(name))
+        document = server.open(path)
+        server.wait_for(is_about(path))
+        at = document.text.index("\n", len(document.text) // 2)
+        for index, letter in enumerate("\n        Charge (level = 80)"):
+            with server.measuring(keys):
+                server.type(document, Stroke(at + index, 0, letter))
+                place = {"textDocument": document.name, "position": document.position(at + index + 1)}
+                server.request("textDocument/completion", **place)
+            server.wait_for(is_of(document))
+        server.end()
+    return keys
 
 
 def many_files(spelling: missions.Spelling) -> tuple[list[Series], list[Goal]]:
@@ -291,6 +326,11 @@ class Server:
 
     def change(self, document: Document, stroke: Stroke) -> None:
         """Type, and wait for the diagnostics of what is typed."""
+        self.type(document, stroke)
+        self.wait_for(is_of(document))
+
+    def type(self, document: Document, stroke: Stroke) -> None:
+        """Change a document, here and there."""
         end = stroke.offset + stroke.gone
         change: Message = {"text": stroke.text}
         if self.takes_parts:
@@ -301,12 +341,6 @@ class Server:
             change["text"] = document.text
         name = {"uri": document.uri, "version": document.version}
         self.notify("textDocument/didChange", textDocument=name, contentChanges=[change])
-        self.wait_for(
-            lambda message: (
-                message.get("method") == _DIAGNOSTICS
-                and (message["params"]["uri"], message["params"].get("version")) == (document.uri, document.version)
-            )
-        )
 
     def request(self, method: str, **params: Any) -> Any:
         self._count += 1
@@ -383,6 +417,14 @@ def is_about(path: Path) -> Callable[[Message], bool]:
     return lambda message: message.get("method") == _DIAGNOSTICS and message["params"]["uri"] == uri
 
 
+def is_of(document: Document) -> Callable[[Message], bool]:
+    """Whether a message tells the diagnostics of a document as it is now."""
+    now = document.uri, document.version
+    return lambda message: (
+        message.get("method") == _DIAGNOSTICS and (message["params"]["uri"], message["params"].get("version")) == now
+    )
+
+
 def is_progress(message: Message) -> bool:
     return message.get("method") == "$/progress"
 
@@ -427,7 +469,7 @@ def as_text(measured: Sequence[Series], goals: Sequence[Goal]) -> str:
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = report.options(__doc__)
-    parser.add_argument("--only", choices=("start", "edits", "large", "many"), help="measure one part")
+    parser.add_argument("--only", choices=("start", "edits", "large", "tree", "many"), help="measure one part")
     parser.add_argument(
         "--rounds", type=int, default=20, help="how often something is typed, some 30 edits (default 20)"
     )

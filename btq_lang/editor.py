@@ -46,6 +46,7 @@ class Refused(JsonRpcException):
 NOTHING = Json('{"kind": "full", "items": []}')
 TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
+MOST_REST = 0.5  # seconds, for which a file that takes long to check is left alone after a key
 A_LOOK = 5  # seconds between two looks at whether the editor's process still runs
 MOST_DETAILS = 500  # a parameter may hold a whole text
 
@@ -80,6 +81,7 @@ class Server(LanguageServer):
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
         self.waiting: dict[str, None] = {}
+        self.last_key = -MOST_REST  # when something was typed
         self._pause: asyncio.TimerHandle | None = None
         self._preparing: asyncio.Task[None] | None = None
         self.answering = 0  # how many questions are answered step by step: somebody waits
@@ -269,10 +271,17 @@ class Server(LanguageServer):
     def check_soon(self, paths: Iterable[str]) -> None:
         """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
         self.waiting = dict.fromkeys((*paths, *self.waiting))
-        if self._preparing is not None:
-            self._preparing.cancel()
+        for idle in (self._pause, self._preparing):
+            if idle is not None:
+                idle.cancel()
         if self.task is None or self.task.done():
             self.task = asyncio.ensure_future(self._check())
+
+    async def rest(self, path: str) -> None:
+        """Let whoever types ask first: wait after the last key as long as it takes to check a file."""
+        clock = asyncio.get_running_loop().time
+        while (rest := self.last_key + min(self.session.took.get(path, 0), MOST_REST) - clock()) > 0:
+            await asyncio.sleep(rest)
 
     async def _check(self) -> None:
         """Check file by file, and listen between two: an edit that comes meanwhile is checked first, and what is asked
@@ -289,6 +298,9 @@ class Server(LanguageServer):
             is_open = path in self.session.open
             if not is_open and (self.answering or loop.time() < told + TO_ASK):
                 await asyncio.sleep(TO_ASK / 10)
+                continue
+            await self.rest(path)
+            if path != next(iter(self.waiting)):  # another file was typed in meanwhile
                 continue
             del self.waiting[path]
             try:

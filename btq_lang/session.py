@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Iterable, Set
+from time import perf_counter
 from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
@@ -32,12 +33,14 @@ class Session:
         folders: the editor's folders; empty where single files are open.
         open: the texts of open files, by path.
         settings: what the editor's user has set.
+        took: how many seconds the last check of an open file has taken, by path.
     """
 
     def __init__(self) -> None:
         self.folders: tuple[str, ...] = ()
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
+        self.took: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
         self._workspaces: list[Workspace] = []
@@ -75,6 +78,7 @@ class Session:
 
         text = self.open.pop(path, None)
         self._answers.pop(path, None)
+        self.took.pop(path, None)
         self._checked.pop(path, None)  # it counts from items, which nobody holds any more
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
         if is_of_folder and text is not None and read(path)[0] == text:
@@ -190,7 +194,9 @@ class Session:
         from btq_lang.checks.answers import Answers
 
         if path in self.open:
+            begin = perf_counter()
             found = check_again(workspace, path, self._answers.setdefault(path, Answers()))
+            self.took[path] = perf_counter() - begin
         else:  # placed, for what counts from items would hold them
             found = Findings.placed(check(workspace, path))
         self._checked[path] = ref(workspace), found

@@ -1132,6 +1132,66 @@ def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(mon
     asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
 
 
+# A server that says what it does, and for which every file takes a minute to check.
+SLOW = """
+import sys
+from btq_lang import editor, features, session
+editor.MOST_REST = 60
+check, complete = session.Session.findings, features.complete
+def slow(self, path):
+    print("check", file=sys.stderr)
+    found = check(self, path)
+    self.took = {path: 60}
+    return found
+def say(*place):
+    print("complete", file=sys.stderr)
+    return complete(*place)
+session.Session.findings, features.complete = slow, say
+from btq_lang.server import main
+main([])
+"""
+
+
+def test_a_completion_does_not_wait_for_the_check_of_the_key_before_it(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, command=(sys.executable, "-c", SLOW))
+    editor.open("main.btq", RIGHT)
+    assert editor.diagnostics("main.btq") == []
+    for _ in range(5):
+        editor.change("main.btq", part((3, 16), (3, 16), "k"))
+        assert editor.request("textDocument/completion", **editor.at("main.btq", 3, 17))["items"] != []
+    assert editor.close().split() == ["check", *["complete"] * 5]
+
+
+def test_nor_does_it_where_the_editor_asks_for_diagnostics(tmp_path: Path) -> None:
+    editor = Editor(tmp_path, capabilities=PULLS, command=(sys.executable, "-c", SLOW))
+    editor.open("main.btq", RIGHT)
+    editor.request("textDocument/diagnostic", **editor.document("main.btq"))
+    for number in range(5):
+        editor.change("main.btq", part((3, 16), (3, 16), "k"))
+        editor.send(id=f"slow{number}", method="textDocument/diagnostic", params=editor.document("main.btq"))
+        assert editor.request("textDocument/completion", **editor.at("main.btq", 3, 17))["items"] != []
+        editor.notify("$/cancelRequest", id=f"slow{number}")  # as an editor does at the next key
+        answer = editor.wait_for(lambda message, number=number: message.get("id") == f"slow{number}")
+        assert answer["error"]["code"] == -32800
+    assert editor.close().split() == ["check", *["complete"] * 5]
+
+
+def test_a_key_ends_a_pause() -> None:
+    async def press() -> None:
+        server = Telling()
+        server.check_soon(("open",))
+        assert server.task is not None
+        await server.task
+        pause = server._pause
+        assert pause is not None
+        assert not pause.cancelled()
+        server.check_soon(("open",))
+        assert pause.cancelled()
+        await server.task
+
+    asyncio.run(press())
+
+
 def test_the_server_on_a_port_of_this_machine(tmp_path: Path) -> None:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

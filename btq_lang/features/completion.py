@@ -7,6 +7,7 @@ each in its own way.
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
@@ -16,12 +17,14 @@ from btq_lang.features import proposals as offer
 from btq_lang.features.clause_words import Expected, expected, is_count, is_window
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.measures import Measured, measured_at
-from btq_lang.features.place import Place, place_at
+from btq_lang.features.place import Place, item_tokens, place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
+from btq_lang.file import File
 from btq_lang.record import Record, replace
+from btq_lang.syntax import is_name
 from btq_lang.text import Span
-from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.workspace import Workspace
 
 
@@ -44,16 +47,29 @@ def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -
     name = one.label.strip("{}")
     if one.kind not in ("node", "instance", "tag", "key") or one.include or lookup(name) is not None:
         return False
-    if name not in workspace.files[path].text[span.start : span.end]:
+    file = workspace.files[path]
+    if name not in file.text[span.start : span.end] or _is_elsewhere(file, span, name):
         return False
-    is_here = False
-    for entry, mention in workspace.files[path].mentioned(name):  # the first one elsewhere is enough
-        at = mention.span.shifted(entry.start)
-        if at.start < span.start or at.end > span.end:
+    others = (file for other, file in workspace.files.items() if other != path and name in file.text)
+    return not any(any(file.mentioned(name)) for file in others)
+
+
+def _is_elsewhere(file: File, span: Span, name: str) -> bool:
+    """Whether a name is also mentioned outside a span.  Mostly the tokens tell: all words of a tree are many."""
+    if is_name(name):
+        for found in re.finditer(rf"(?<!\w){re.escape(name)}(?!\w)", file.text):
+            if span.start <= found.start() < span.end:
+                continue
+            tokens = item_tokens(file, found.start())
+            token = tokens[bisect_right(tokens, found.start(), key=lambda token: token.start) - 1]
+            if token.kind == NAME and token.text == name:
+                return True
+            if token.kind not in (NAME, COMMENT):  # in quotes or braces it depends on what they hold
+                break
+        else:
             return False
-        is_here = True
-    elsewhere = (file for other, file in workspace.files.items() if other != path and name in file.text)
-    return is_here and not any(any(file.mentioned(name)) for file in elsewhere)
+    places = (mention.span.shifted(entry.start) for entry, mention in file.mentioned(name))
+    return any(place.start < span.start or place.end > span.end for place in places)
 
 
 def _complete(workspace: Workspace, path: str, offset: int) -> Completion:

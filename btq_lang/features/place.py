@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from btq_lang.features.clause_words import opens_condition
 from btq_lang.file import File
 from btq_lang.record import Record
-from btq_lang.syntax import unquote
+from btq_lang.scan import line_start
+from btq_lang.syntax import Item, Node, Tree, unquote
 from btq_lang.text import Span
 from btq_lang.token_list import tokens as tokens_of
 from btq_lang.tokens import (
@@ -139,13 +140,36 @@ def place_at(workspace: Workspace, path: str, offset: int) -> Place:
 
 
 def item_tokens(file: File, offset: int) -> Sequence[Token]:
-    """The tokens of the item that an offset is in, or behind: of a file that is typed in, no more need be cut."""
+    """The tokens around an offset that its place depends on: those of the item that it is in, or behind, and of a tree
+    only the lines of the nodes around it, and all from the last node before it up to the next one."""
+    found: list[Token] = []
+    for start, end in _stretches(file, offset):
+        if found:
+            found.append(Token(NEWLINE, start, ""))  # a line that lacks its end, as in open brackets, ends all the same
+        cut = tokens_of(file.text[start:end])
+        found += [Token(token.kind, token.start + start, token.text) for token in cut] if start else cut
+    return found
+
+
+def _stretches(file: File, offset: int) -> list[Span]:
+    """What of a text the place of an offset depends on."""
     entries = file.parsed.entries
     index = bisect_right(entries, offset, key=lambda entry: entry.start)
-    start = entries[index - 1].start if index else 0
+    start = base = entries[index - 1].start if index else 0
     end = entries[index].start if index < len(entries) else len(file.text)
-    found = tokens_of(file.text[start:end])
-    return [Token(token.kind, token.start + start, token.text) for token in found] if start else found
+    found: list[Span] = []
+    around: Item | Node | None = entries[index - 1].item if index else None
+    while isinstance(around, Tree | Node) and around.children:
+        index = bisect_right(around.children, offset - base, key=lambda child: child.start)
+        if index < len(around.children):
+            end = base + around.children[index].start
+        if index == 0:
+            break
+        found.append(Span(start, line_start(file.text, start, base + around.children[0].start)))
+        last = around.children[index - 1]
+        start = line_start(file.text, start, base + last.start)
+        around = last if isinstance(last, Node) else None
+    return [*found, Span(start, end)]
 
 
 def word_text(token: Token) -> str:

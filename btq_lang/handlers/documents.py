@@ -30,6 +30,7 @@ def register(server: Server) -> None:
         path = convert.path(params.text_document.uri)
         server.versions[path] = params.text_document.version
         server.check_soon(session.edit(path, convert.changed(session.lines(path), params.content_changes)))
+        server.last_key = asyncio.get_running_loop().time()  # now, for the edit itself may have taken long
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
@@ -46,8 +47,10 @@ def _diagnostics(server: Server) -> None:
         types.TEXT_DOCUMENT_DIAGNOSTIC,
         types.DiagnosticOptions(identifier="btq", inter_file_dependencies=True, workspace_diagnostics=True),
     )
-    def document_diagnostic(params: types.DocumentDiagnosticParams) -> Json:
-        return server.report(convert.path(params.text_document.uri), params.previous_result_id)
+    async def document_diagnostic(params: types.DocumentDiagnosticParams) -> Json:
+        path = convert.path(params.text_document.uri)
+        await server.rest(path)
+        return server.report(path, params.previous_result_id)
 
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Json:
