@@ -258,10 +258,19 @@ def absolute(path: str) -> str:
     return os.path.abspath(path).replace(os.sep, "/")
 
 
+def work_in(folder: str) -> None:
+    """Show paths relative to an editor's folder from now on; its server may run in any other."""
+    global _folder
+    _folder = folder
+
+
 def shown(path: str) -> str:
-    """An absolute path as people read it: relative to the current folder where it is inside it."""
-    here = absolute(".").rstrip("/") + "/"
+    """An absolute path as people read it: relative to the folder that they work in where it is inside it."""
+    here = (_folder or absolute(".")).rstrip("/") + "/"
     return path.removeprefix(here)
+
+
+_folder = ""  # else the current one
 
 
 def _upwards(folder: str) -> Iterator[str]:

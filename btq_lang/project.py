@@ -48,6 +48,7 @@ class Project(Record):
         select: the only rules to apply; empty for all.
         ignore: rules not to apply.
         exclude: patterns of what a folder's check leaves out.
+        folders: those that people work in: an editor's folders, or the current one.
     """
 
     root: str = "."
@@ -59,6 +60,16 @@ class Project(Record):
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
+    folders: tuple[str, ...] = ()
+
+    def shown(self, path: str) -> str:
+        """A path as people read it: relative to the folder that they work in where it is inside one, else as it is."""
+        for folder in self.folders or (self.root,):
+            if path == folder:
+                return "."
+            if path.startswith(f"{folder.rstrip('/')}/"):
+                return path[len(folder.rstrip("/")) + 1 :]
+        return path
 
     @property
     def pinned(self) -> bool:

@@ -93,6 +93,7 @@ class Session:
         if self._files is None:
             self._files = Files()
             self._files.overlay = self.open
+        self._files.folders = self.folders
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
         groups, _ = self._files.groups((*self.folders, *self.open))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -116,6 +117,17 @@ def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
     )
     assert "  = help: Replace `Sequnce` by `Sequence`\n" in done.stdout
     assert done.stdout.endswith("Found 1 error, 1 warning\n")
+
+
+def test_check_names_folders_as_seen_from_the_current_one(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "btq.toml").write_text('include-paths = ["shared", "/opt/missions"]\n')
+    (tmp_path / "lab").mkdir()
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "lab" / "main.btq").write_text('include "gone.btq"\nBehaviorTree Main\n    Wait\n')
+    (note,) = (
+        line for line in btq("check", "--select", "missing-include").stdout.splitlines() if "include-paths" in line
+    )
+    assert re.findall("`[^`]*`", note)[:3] == ["`lab`", "`shared`", "`/opt/missions`"]
 
 
 def test_check_concise_and_json_agree(btq: Run, tmp_path: Path) -> None:

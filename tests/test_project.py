@@ -211,3 +211,16 @@ def test_every_text_gives_a_project(text: str, kind: str) -> None:
         if problem.position:
             assert 0 <= problem.position.line < lines.line_count
             assert 0 <= problem.position.column <= len(lines.line(problem.position.line)) + 1
+
+
+def test_a_path_is_shown_as_seen_from_where_people_work() -> None:
+    project = Project("/home/lab/robot", folders=("/home/lab", "/srv/common/"))
+    shown = {
+        "/home/lab/robot/a.btq": "robot/a.btq",
+        "/srv/common/b.btq": "b.btq",
+        "/home/labs/c.btq": "/home/labs/c.btq",
+        "/home/lab": ".",
+    }
+    assert {path: project.shown(path) for path in shown} == shown
+    assert Project("/home/lab/robot").shown("/home/lab/robot/a.btq") == "a.btq"
+    assert (Project().shown("a/b.btq"), Project().shown(".")) == ("a/b.btq", ".")

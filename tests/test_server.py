@@ -465,6 +465,50 @@ def test_hover_and_signature(editor: Editor) -> None:
     assert editor.request("textDocument/hover", **editor.at("main.btq", 3, 2)) is None
 
 
+SCATTERED = {
+    "a/main.btq": (
+        'include "../b/lib.btq"\ninclude "../c/trees.xml"\ninclude "gone.btq"\ninclude "../../else/out.btq"\n'
+        "BehaviorTree Main\n    Drive satisfies soon satisfices gentle\n"
+        "BehaviorTree Other\n    ->\n        SubTree Xml\n        SubTree Out\n"
+    ),
+    "b/lib.btq": 'QualityReq soon\n    takes at most 30 s\nquality gentle : safety "soft"\n',
+    "c/trees.xml": '<root BTCPP_format="4"><BehaviorTree ID="Xml"><Action ID="Go"/></BehaviorTree></root>\n',
+    "../else/out.btq": "BehaviorTree Out\n    Wait\n",
+}
+
+
+@pytest.mark.parametrize("project", ["", "btq.toml", "a/btq.toml"])
+def test_paths_are_shown_as_seen_from_the_editor_s_folder(tmp_path: Path, project: str) -> None:
+    """Wherever the project file is, and wherever the server was started; what is outside the folder in full."""
+    root = tmp_path / "folder"
+    for name, text in {**SCATTERED, **({project: ""} if project else {})}.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    editor = Editor(root)
+    editor.open("a/main.btq", SCATTERED["a/main.btq"])
+    (missing,) = (each for each in editor.published("a/main.btq")["diagnostics"] if each["code"] == "missing-include")
+    assert re.findall("`[^`]*`", missing["message"])[:2] == ["`gone.btq`", "`a`"]
+
+    def shown(line: int, character: int) -> list[str]:
+        hover = editor.request("textDocument/hover", **editor.at("a/main.btq", line, character))
+        return re.findall(r"[^\s(]+\.(?:btq|xml)", hover["contents"]["value"])
+
+    assert shown(5, 21) == ["a/main.btq"]  # where soon is attached
+    assert shown(5, 38) == ["b/lib.btq"]
+    assert shown(8, 17) == ["c/trees.xml", "a/main.btq"]
+    assert shown(9, 17) == [f"{tmp_path}/else/out.btq", "a/main.btq"]
+    refused = editor.ask("textDocument/rename", **editor.at("a/main.btq", 8, 17), newName="New")["error"]["message"]
+    assert re.findall(r"\S+\.xml", refused) == ["c/trees.xml"]
+    document = {"uri": editor.uri("a/main.btq")}
+    page = editor.request("workspace/executeCommand", command="btq.server.overview", arguments=[document])
+    assert {place.rpartition("/")[0] for place in re.findall(r'title="(\S+):\d+:\d+"', page)} == {
+        *("a", "b", "c", f"{tmp_path}/else")
+    }
+    built = editor.ask("workspace/executeCommand", command="btq.server.build", arguments=[document])
+    assert built["error"]["message"].startswith("a/main.btq:3:9: error[missing-include] ")
+    assert editor.close() == ""
+
+
 def test_structure(editor: Editor) -> None:
     editor.open("skills.btq", SKILLS)
     editor.open("main.btq", MISSION)
@@ -739,9 +783,7 @@ def test_a_build_writes_what_the_command_line_writes(tmp_path: Path) -> None:
     document = editor.document("main.btq")["textDocument"]
     done = editor.request("workspace/executeCommand", command="btq.server.build", arguments=[document])
     assert done["files"] == [editor.uri("main.xml"), editor.uri("skills.xml")]
-    assert sorted(done["said"].split()) == sorted(
-        ["wrote", str(tmp_path / "main.xml"), "wrote", f"{tmp_path}/skills.xml"]
-    )
+    assert sorted(done["said"].split()) == ["main.xml", "skills.xml", "wrote", "wrote"]
     assert 'from="table"' in (tmp_path / "main.xml").read_text(encoding="utf-8")
     (tmp_path / "main.btq").write_text(MISSION.replace("shelf", "table"), encoding="utf-8")
     again = subprocess.run([sys.executable, "-m", "btq_lang", "build", "--check", str(tmp_path)], check=False)
@@ -870,15 +912,15 @@ def test_xml_is_never_edited(foreign: Editor) -> None:
             "dock.xml",
             3,
             21,
-            f"cannot rename `Home`: its definition is in {foreign.root}/dock.xml, which is not a .btq file",
+            "cannot rename `Home`: its definition is in dock.xml, which is not a .btq file",
         ),
         (
             "main.btq",
             2,
             13,
-            f"cannot rename `Dock`: its definition is in {foreign.root}/dock.xml, which is not a .btq file",
+            "cannot rename `Dock`: its definition is in dock.xml, which is not a .btq file",
         ),
-        ("other.btq", 1, 5, f"cannot rename `Pick`: {foreign.root}/dock.xml, which is not a .btq file, also uses it"),
+        ("other.btq", 1, 5, "cannot rename `Pick`: dock.xml, which is not a .btq file, also uses it"),
     ):
         refused = foreign.ask("textDocument/rename", **foreign.at(name, line, character), newName="another")
         assert refused["error"] == {"code": -32803, "message": reason}
@@ -940,8 +982,8 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
     editor.open("main.btq", WRONG)
     for _ in range(3):
         answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
-        told = "internal error: ZeroDivisionError: broken while reading {path}; report it in btq's issue tracker"
-        assert answer["error"] == {"code": -32603, "message": told.format(path=tmp_path / "main.btq")}
+        told = "internal error: ZeroDivisionError: broken while reading main.btq; report it in btq's issue tracker"
+        assert answer["error"] == {"code": -32603, "message": told}
     unknown = editor.ask("workspace/executeCommand", command="btq.unknown", arguments=[])
     assert unknown["error"]["code"] == -32602
     assert editor.diagnostics("main.btq") != []
@@ -963,9 +1005,9 @@ def test_what_raises_while_somebody_types_is_logged_once(tmp_path: Path, broken:
         editor.change("main.btq", RIGHT)
         editor.ask("textDocument/foldingRange", **editor.document("main.btq"))
     shown = [message["params"]["message"] for message in editor.kept if message["method"] == "window/showMessage"]
-    told = "internal error: ZeroDivisionError: broken while reading {path}; report it in btq's issue tracker"
+    told = "internal error: ZeroDivisionError: broken while reading main.btq; report it in btq's issue tracker"
     places = 2 if is_told else 1  # it is opened, and changed
-    assert shown == [told.format(path=tmp_path / "main.btq")] * (places if is_told else 0)
+    assert shown == [told] * (places if is_told else 0)
     assert editor.close().splitlines().count("ZeroDivisionError: broken") == places
 
 

@@ -35,7 +35,7 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
     project = view.project
     places = ", ".join(
-        f"`{place}`{' (no folder)' if place in project.lost_paths else ''}"
+        f"`{project.shown(place)}`{' (no folder)' if place in project.lost_paths else ''}"
         for place in (folder or ".", *project.include_paths)
     )
     yield Diagnostic(

@@ -6,7 +6,7 @@ import os.path
 import sys
 
 from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
-from btq_lang.record import Record
+from btq_lang.record import Record, replace
 from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -62,11 +62,13 @@ class Files:
     Attributes:
         overlay: texts that count instead of the files on the disk, by path: standard input, an editor's buffers.
         stdin: the path that standard input goes by, once it was read.
+        folders: before which paths are shown: the current folder, or an editor's folders.
     """
 
     def __init__(self) -> None:
         self.overlay: dict[str, str] = {}
         self.stdin: str | None = None
+        self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
 
     def groups(
@@ -127,6 +129,7 @@ class Files:
         loaded = load((path for path in paths if path not in known), project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
+        project = replace(project, folders=self.folders)
         return Group(Workspace(files, project), given, loaded.damaged, loaded.absent, project_file), loaded.problems
 
     def _file(self, path: str, text: str) -> File:

@@ -78,7 +78,7 @@ def tree(workspace: Workspace, path: str, name: str) -> str:
     attached = clauses_detail(item.clauses) if isinstance(item, Tree) else ""
     ports = _ports(ports_of_tree(workspace, found.path, name))
     count = sum(1 for _ in item.walk()) if isinstance(item, Tree) else 0
-    size = f"{count} node{'s' if count != 1 else ''} · {shown_path(workspace, found.path)}"
+    size = f"{count} node{'s' if count != 1 else ''} · {workspace.project.shown(found.path)}"
     wanted = Subject(What.TREE, name, home_of(found))
     return "\n\n".join(filter(None, (shown, attached, size, ports, used(workspace, wanted, "Run by"))))
 
@@ -153,16 +153,11 @@ def place_of(workspace: Workspace, found: Found) -> str:
     item = found.entry.item if found.entry is not None else None
     if isinstance(item, Apply) and found.entry is not None:
         text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
-        return f"`{' '.join(text.split())}` ({shown_path(workspace, found.path)})"
+        return f"`{' '.join(text.split())}` ({workspace.project.shown(found.path)})"
     name = item.name.text if isinstance(item, Tree | Requirement | Signal | Context) and item.name else ""
     where = f"`{called(node)}`" + (f" in `{name}`" if name else "") if node is not None else f"`{name}`" if name else ""
-    path = shown_path(workspace, found.path)
+    path = workspace.project.shown(found.path)
     return f"{where} ({path})" if where else path
-
-
-def shown_path(workspace: Workspace, path: str) -> str:
-    """A path as a person in the project says it."""
-    return path.removeprefix(workspace.project.root.rstrip("/") + "/")
 
 
 def called(node: Node) -> str:
@@ -191,7 +186,7 @@ def own_quality(workspace: Workspace, found: Definition) -> str:
     parent = f" · {'.'.join(name.text for name in item.parent.names)}" if item.parent else ""
     text = item.text.text if item.text else ""
     return "\n\n".join(
-        filter(None, (f"**{found.symbol.name}**{parent}", text, f"_declared in {shown_path(workspace, found.path)}_"))
+        filter(None, (f"**{found.symbol.name}**{parent}", text, f"_declared in {workspace.project.shown(found.path)}_"))
     )
 
 
@@ -199,7 +194,7 @@ def declared(workspace: Workspace, found: Definition) -> str:
     """A signal or a context, as its file has it."""
     item = found.symbol.target
     text = workspace.files[found.path].text[found.entry.start + item.start : found.entry.start + item.end]
-    return f"```btq\n{text}\n```\n\n_{shown_path(workspace, found.path)}_"
+    return f"```btq\n{text}\n```\n\n_{workspace.project.shown(found.path)}_"
 
 
 def key(workspace: Workspace, wanted: Subject, writes: Iterable[Found], reads: Iterable[Found]) -> str:

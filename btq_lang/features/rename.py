@@ -67,7 +67,8 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
     places = tuple(everywhere(workspace, wanted))
     foreign = next((place.path for place in places if not is_btq(place.path)), None)
     if foreign is not None:  # a node without a model means the same in files that know nothing of each other
-        return Refusal(f"cannot rename `{wanted.name}`: {foreign}, which is not a .btq file, also uses it")
+        shown = workspace.project.shown(foreign)
+        return Refusal(f"cannot rename `{wanted.name}`: {shown}, which is not a .btq file, also uses it")
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
     reasons: list[str] = []
@@ -92,11 +93,13 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
         return f"cannot rename `{wanted.name}`: the quality model defines it"
     if wanted.home.startswith(ENGINE):
         return f"cannot rename `{wanted.name}`: the engine defines it"
-    place = definition(workspace, found.path, wanted)
+    place, shown = definition(workspace, found.path, wanted), workspace.project.shown
     if place is not None and not is_btq(place.path):
-        return f"cannot rename `{wanted.name}`: its definition is in {place.path}, which is not a .btq file"
+        return f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which is not a .btq file"
     if place is not None and not wanted.home:
-        return f"cannot rename `{wanted.name}`: its definition is in {place.path}, which this file does not include"
+        return (
+            f"cannot rename `{wanted.name}`: its definition is in {shown(place.path)}, which this file does not include"
+        )
     unresolved = (What.TREE, What.REQUIREMENT, What.SIGNAL, What.CONTEXT, What.QUALITY, What.PARAMETER)
     if wanted.what in unresolved and place is None and wanted.what is not What.PARAMETER:
         return f"cannot rename `{wanted.name}`: it is not defined"
@@ -105,7 +108,7 @@ def _refusal(workspace: Workspace, wanted: Subject, found: Found) -> str:
     for path in workspace.scope(found.path).paths:
         file = workspace.files[path]
         if not is_btq(path) and wanted.name in file.text:
-            return f"cannot rename `{wanted.name}`: {path}, which is not a .btq file, may also use it"
+            return f"cannot rename `{wanted.name}`: {shown(path)}, which is not a .btq file, may also use it"
     return ""
 
 

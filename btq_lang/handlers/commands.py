@@ -92,10 +92,8 @@ def register(server: Server) -> None:
             (place,) = places
             server.window_show_document(types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range))
             return
-        named = [f"{_shown(convert.path(place.uri), session.folders)}:{place.range.start.line + 1}" for place in places]
+        from btq_lang.project import Project  # as above
+
+        shown = Project(folders=session.folders).shown
+        named = [f"{shown(convert.path(place.uri))}:{place.range.start.line + 1}" for place in places]
         server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(named)))
-
-
-def _shown(path: str, folders: tuple[str, ...]) -> str:
-    """A path as it is called in the editor's folders."""
-    return next((path.removeprefix(f"{folder}/") for folder in folders if path.startswith(f"{folder}/")), path)

@@ -27,7 +27,7 @@ def register(server: Server) -> None:
     async def initialized(_: types.InitializedParams) -> None:
         # Not in `initialize`: the editor waits for that answer, and what looks at files takes long to import.
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
-        session.folders = tuple(map(convert.path, folders))
+        _work_in(session, tuple(map(convert.path, folders)))
         capabilities = server.client_capabilities.workspace
         keep_what_is_there()
         try:
@@ -52,13 +52,20 @@ def register(server: Server) -> None:
     def did_change_workspace_folders(params: types.DidChangeWorkspaceFoldersParams) -> None:
         gone = {convert.path(folder.uri) for folder in params.event.removed}
         new = [convert.path(folder.uri) for folder in params.event.added]
-        session.folders = (*(folder for folder in session.folders if folder not in gone), *new)
+        _work_in(session, (*(folder for folder in session.folders if folder not in gone), *new))
         server.reload()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_watched_files(params: types.DidChangeWatchedFilesParams) -> None:
         if _concerns(session, {convert.path(change.uri) for change in params.changes}):
             server.reload()
+
+
+def _work_in(session: Session, folders: tuple[str, ...]) -> None:
+    from btq_lang.loader import work_in  # an editor waits for the server to start
+
+    session.folders = folders
+    work_in(folders[0] if folders else "")
 
 
 async def _register_watchers(server: Server) -> None:
