@@ -354,8 +354,8 @@ def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:  # noqa: F811  #
     loose = f"signal force : N initially 0 N\n{QUICK}".replace("5 s\n", "5 s\n    never force >= 50 N\n")
     btq.write(mission=loose)
     assert btq.build("mission.btq")[2] == (
-        "mission.btq:4:5: not held: quick, `never force >= 50 N` is about no node\n"
-        f"clauses of requirements: 1 enforced, 1 monitored, 1 about no node\n{SEEN}"
+        "mission.btq:4:5: not checked: quick, `never force >= 50 N` applies to no node\n"
+        f"clauses of requirements: 1 enforced, 1 monitored, 1 without a node\n{SEEN}"
     )
     side: Any = json.loads(btq.read("mission.qreq.json"))
     assert [each.get("clauses_without_nodes") for each in side["requirements"]] == [["never force >= 50 N"], None]
@@ -370,8 +370,8 @@ def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> N
     assert btq.build("mission.btq")[2] == f"clauses of requirements: 2 monitored\n{SEEN}"
     btq.write(mission=main.format(""))
     assert btq.build("mission.btq")[2] == (
-        "rules.btq:3:5: not held: quick, `succeeds` is about no node\n"
-        f"clauses of requirements: 1 monitored, 1 about no node\n{SEEN}2 files left as they are\n"
+        "rules.btq:3:5: not checked: quick, `succeeds` applies to no node\n"
+        f"clauses of requirements: 1 monitored, 1 without a node\n{SEEN}2 files left as they are\n"
     )
 
 

@@ -665,19 +665,19 @@ BehaviorTree Main
             "table",
             (
                 "  Heat safely                                       not attached\n",
-                "`never force >= 50 N` is about no node\n",
+                "`never force >= 50 N` applies to no node\n",
                 "Hard requirements that are not enforced everywhere\n  r5, m.btq:2\n",
                 "Clauses without a node\n  r5, m.btq:2: never force >= 50 N\n",
-                "1 requirement (2 clauses: 1 enforced, 1 about no node), 1 of them hard and not enforced everywhere",
+                "1 requirement (2 clauses: 1 enforced, 1 without a node), 1 of them hard and not enforced everywhere",
             ),
         ),
         (
             "markdown",
             (
-                " | enforced, not attached<br>`never force >= 50 N` is about no node | ",
+                " | enforced, not attached<br>`never force >= 50 N` applies to no node | ",
                 "* Hard requirements that are not enforced everywhere: r5 (m.btq:2)\n",
                 "* Clauses without a node: r5 (m.btq:2): `never force >= 50 N`\n",
-                "1 requirement (2 clauses: 1 enforced, 1 about no node), 1 of them hard and not enforced everywhere",
+                "1 requirement (2 clauses: 1 enforced, 1 without a node), 1 of them hard and not enforced everywhere",
             ),
         ),
         (
@@ -692,11 +692,11 @@ BehaviorTree Main
             "html",
             (
                 'data-way="enforced, not attached"',
-                '<span class="way none">not attached</span> <small><code>never force &gt;= 50 N</code> is about no',
+                '<span class="way none">not attached</span> <small><code>never force &gt;= 50 N</code> applies to no',
                 "<h3>Clauses without a node (1)</h3>",
                 "</small> <code>never force &gt;= 50 N</code></li>",
                 "<h3>Hard requirements that are not enforced everywhere (1)</h3>",
-                "(2 clauses: 1 enforced, 1 about no node)",
+                "(2 clauses: 1 enforced, 1 without a node)",
             ),
         ),
     ],

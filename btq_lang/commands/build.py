@@ -246,12 +246,12 @@ def _tell_clauses(made: list[Enforcement], groups: tuple[Group, ...], verbose: b
     }
     loose = {key: place for key, place in loose.items() if key not in known}  # one file's may be another's
     for (requirement, clause, *_), place in loose.items():
-        remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` is about no node")
-        _tell((remark,), "not held", groups)
+        remark = Remark(*_absolute(place, groups), f"{requirement}, `{clause}` applies to no node")
+        _tell((remark,), "not checked", groups)
     if clauses:
         ways = [held.way for held in clauses.values()]
         counted = [f"{ways.count(way)} {way}" for way in ("enforced", "monitored", "reviewed") if way in ways]
-        counted += [f"{len(loose)} about no node"] if loose else []
+        counted += [f"{len(loose)} without a node"] if loose else []
         print(f"clauses of requirements: {', '.join(counted)}", file=sys.stderr)
 
 

@@ -220,5 +220,5 @@ _IO_ERROR = """# io-error
 
 A file that cannot be read or written, or that is not UTF-8.
 
-It is no rule: it stands in reports that machines read (JSON, JUnit, GitHub) where a rule would stand. Nothing
-selects or silences it, and the command ends with exit code 2."""
+It is not a rule: in reports for machines (JSON, JUnit, GitHub) it takes the place of one. Nothing selects or
+silences it, and the command ends with exit code 2."""

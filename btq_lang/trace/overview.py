@@ -100,7 +100,7 @@ class RequirementRow(Record):
     def whys(self) -> tuple[str, ...]:
         """Why no more is done about its clauses, each reason once."""
         found = [clause.why for use in self.uses for clause in use.clauses if clause.way == "monitored" and clause.why]
-        return tuple(dict.fromkeys((*found, *(f"`{clause}` is about no node" for clause in self.loose))))
+        return tuple(dict.fromkeys((*found, *(f"`{clause}` applies to no node" for clause in self.loose))))
 
     @property
     def nodes(self) -> tuple[str, ...]:

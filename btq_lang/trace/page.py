@@ -88,7 +88,7 @@ def _requirements(overview: Overview) -> Iterator[str]:
     if not overview.requirements:
         yield "<p>There are none.</p></section>"
         return
-    yield "<table><caption>What is demanded, of which nodes, and how it is held</caption>"
+    yield "<table><caption>What is demanded, of which nodes, and how it is ensured</caption>"
     yield _head("Requirement", "Holds for", "How")
     characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
     for each in overview.requirements:
@@ -140,7 +140,7 @@ def _ways(each: RequirementRow) -> str:
         said = f" <small>{code}</small>" if why else ""
         lines.append(f'<li><span class="way {way}">{way}</span>{said}</li>')
     for clause in each.loose:
-        said = f"<small><code>{escape(clause)}</code> is about no node</small>"
+        said = f"<small><code>{escape(clause)}</code> applies to no node</small>"
         lines.append(f'<li><span class="way none">not attached</span> {said}</li>')
     return f"<ul>{''.join(lines)}</ul>"
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 def summary(overview: Overview) -> str:
     """How many there are of everything, in a sentence."""
     ways = {way: sum(getattr(total, way) for total in overview.totals) for way in ("enforced", "monitored", "reviewed")}
-    ways["about no node"] = len(overview.loose)
+    ways["without a node"] = len(overview.loose)
     held = ", ".join(f"{number} {way}" for way, number in ways.items() if number)
     said = f"{counted(len(overview.requirements), 'requirement')}"
     said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
