@@ -138,7 +138,7 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument("--verbatim", action="store_true", help="exactly what the file says: nothing mended or added")
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
     parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
-    parser.add_argument("--verbose", action="store_true", help="show how every clause is ensured")
+    parser.add_argument("--verbose", action="store_true", help="show how every clause is enforced")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
     parser.set_defaults(report="full")  # editors want a line for each error
     _add_color(parser)
@@ -176,7 +176,7 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "trace",
-        "show which requirements hold for which nodes, how they are ensured, and what is missing",
+        "show which requirements hold for which nodes, how they are enforced, and what is missing",
         epilog="exit codes: 0 written; 1 written, but of missions with errors; 2 usage or I/O\n\n"
         "examples:\n  btq trace                               the project in this folder\n"
         "  btq trace --format html -o trace.html   a page with the trees\n"

@@ -1,4 +1,4 @@
-"""`btq trace`: which requirements hold for which nodes, how they are ensured, and what is missing."""
+"""`btq trace`: which requirements hold for which nodes, how they are enforced, and what is missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The overview of missions that a safety engineer asks for: requirement, quality, nodes, how it is ensured, and where.
+"""The overview of missions that a safety engineer asks for: requirement, quality, nodes, how it is enforced, and where.
 
 One invariant: everything is said once, in a row with a key, and the same missions give the same overview.
 

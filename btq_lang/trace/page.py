@@ -88,7 +88,7 @@ def _requirements(overview: Overview) -> Iterator[str]:
     if not overview.requirements:
         yield "<p>There are none.</p></section>"
         return
-    yield "<table><caption>What is demanded, of which nodes, and how it is ensured</caption>"
+    yield "<table><caption>Requirements, their nodes, and how they are enforced</caption>"
     yield _head("Requirement", "Holds for", "How")
     characteristics = {quality.key: quality.characteristic for quality in overview.qualities}
     for each in overview.requirements:
