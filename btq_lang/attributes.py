@@ -215,7 +215,7 @@ class AttributeParser(ClauseParser):
         place = span
         if word == "satisfied" and self.is_word(by, "by") and self.kinds[by + 1] in (NAME, STRING):
             place = Span(span.start, self.starts[by] + len("by"))
-        fix = replace_fix(f"Replace `{word}` by `{meant}`", place, meant)
+        fix = replace_fix(f"Replace `{word}` with `{meant}`", place, meant)
         message = f"unknown word `{word}`; did you mean `{meant}`?"
         self.complain("syntax-error", span, message, (), (fix,))
 

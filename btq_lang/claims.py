@@ -108,7 +108,7 @@ class ClaimParser(ConditionParser):
             return False
         if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERBS:
             return False
-        fix = replace_fix(f"Replace `{self.raw}` by `every`", self.here(), "every")
+        fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every")
         self.complain("syntax-error", self.here(), "all nodes of a kind are written `every …`", (), (fix,))
         self.advance()
         return True
@@ -184,7 +184,7 @@ class ClaimParser(ConditionParser):
 
     def misspelt(self, span: Span, word: str, likely: str) -> None:
         """Complain of a word that begins no clause, and pass over the rest."""
-        fix = replace_fix(f"Replace `{word}` by `{likely}`", span, likely)
+        fix = replace_fix(f"Replace `{word}` with `{likely}`", span, likely)
         self.complain("syntax-error", span, f"unknown word `{word}`; did you mean `{likely}`?", (), (fix,))
         self.recover()
 

@@ -372,7 +372,7 @@ class ClauseParser(ClaimParser):
         """Complain that `violation` is missing, and pass over what is meant for it: `on failure fail`."""
         following = self.index + 1
         if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
-            fix = replace_fix(f"Replace `{self.raw}` by `violation`", self.here(), "violation")
+            fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
             self.complain("syntax-error", self.here(), f"expected `violation`, found `{self.raw}`", (), (fix,))
             self.advance()
         else:
@@ -479,7 +479,7 @@ class ClauseParser(ClaimParser):
         meant = meant or tuple(word for word in _OTHER_WORDS.get(self.raw, ()) if word in words)
         if self.kind != NAME or not meant:
             return self.missing_word(what)
-        fixes = tuple(replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word) for word in meant)
+        fixes = tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
         self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), fixes)
         self.advance()
         return None

@@ -224,7 +224,7 @@ class ConditionParser(Cursor):
                     meant = _OTHER_FUNCTIONS.get(self.raw)
                     fixes = self.replaced_by(FUNCTIONS)
                     if meant is not None:
-                        fixes = (replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant),)
+                        fixes = (replace_fix(f"Replace `{self.raw}` with `{meant}`", self.here(), meant),)
                     self.expected(f"a function ({functions})", (), fixes)
                     return None
                 return Operand(self.take())

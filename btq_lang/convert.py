@@ -244,7 +244,7 @@ class Converter:
     def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> Json:
         """Proposals, written at once: of a large file they are hundreds, for an editor that waits."""
         file = workspace.files[path]
-        assert file.origin is None, "nobody is asked what may stand in XML"
+        assert file.origin is None, "XML has no completion"
         range_, of_path = self._range_as_json(file.lines, found.span), as_json(path)
         items = []
         for number, one in enumerate(found.proposals):

@@ -214,7 +214,7 @@ class Cursor:
             return True
         fixes: tuple[Fix, ...] = ()
         if self.kind == NAME and self.raw in instead:
-            fixes = (replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word),)
+            fixes = (replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word),)
         elif forgotten:
             fixes = (replace_fix(f"Put `{word}` before it", Span(self.here().start, self.here().start), f"{word} "),)
         self.expected(f"`{word}`", (), fixes)
@@ -347,7 +347,7 @@ class Cursor:
     def replaced_by(self, words: Iterable[str]) -> tuple[Fix, ...]:
         """The fix for a word at hand that is probably one of `words`, misspelt; none for any other."""
         meant = near(self.raw, words, limit=1) if self.kind == NAME else ()
-        return tuple(replace_fix(f"Replace `{self.raw}` by `{word}`", self.here(), word) for word in meant)
+        return tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
 
     def complain(
         self, rule: str, span: Span, message: str, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()

@@ -56,7 +56,7 @@ class Fix(Record):
     """A change that mends a diagnostic.
 
     Attributes:
-        title: what it does, as a button says it: "Replace `Rety` by `Retry`".
+        title: what it does, as a button says it: "Replace `Rety` with `Retry`".
         safe: it keeps the meaning and removes the diagnostic; `btq check --fix` applies only these.
     """
 

@@ -293,7 +293,7 @@ class Parser(NodeParser):
             return "" if other == "include" or self.raw in ("def", "class") else other
         if not meant or not (following in (NAME, STRING) or (meant in _ALONE and following in (NEWLINE, OPEN))):
             return ""
-        fix = replace_fix(f"Replace `{self.raw}` by `{meant}`", self.here(), meant)
+        fix = replace_fix(f"Replace `{self.raw}` with `{meant}`", self.here(), meant)
         message = f"unknown word `{self.raw}`; did you mean `{meant}`?"
         self.complain("syntax-error", self.here(), message, (), (fix,))
         return read_as(self.raw)
@@ -663,7 +663,7 @@ class Parser(NodeParser):
         """The fix for an item as another language writes it: `import stations`, `def main():`."""
         at = self.here()
         rest = Span(self.starts[self.index + 1], line_end(self.text, at.start))
-        title = f"Replace `{self.raw}` by `{meant}`"
+        title = f"Replace `{self.raw}` with `{meant}`"
         if meant == "include" and self.kinds[self.index + 1] == NAME and self.kinds[self.index + 2] == NEWLINE:
             end = path_end(self.text, rest.start)
             name = self.text[rest.start : end]

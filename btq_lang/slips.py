@@ -53,7 +53,7 @@ def unknown_unit(text: str, start: int, end: int) -> Diagnostic:
     wanted = measured(_WORD.findall(text[line_start(text, 0, start) : start]))
     symbols = _nearest_units(word, wanted)
     fixes = tuple(
-        replace_fix(f"Replace `{word}` by `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
+        replace_fix(f"Replace `{word}` with `{symbol}`", Span(start, end), f" {symbol}" if glued else symbol)
         for symbol in symbols
     )
     notes: tuple[str, ...] = ()

@@ -27,9 +27,9 @@ def test_what_may_be_meant() -> None:
     assert_problems(
         elsewhere, 'missions/main.btq:1:9 error missing-include «"skills.btq"» cannot find the file `skills.btq`'
     )
-    assert_fix(elsewhere, "Replace it by `../shared/skills.btq`", elsewhere.replace('"skills', '"../shared/skills'))
+    assert_fix(elsewhere, "Replace it with `../shared/skills.btq`", elsewhere.replace('"skills', '"../shared/skills'))
     misspelt = '//- main.btq\ninclude "skils.btq"\n//- skills.btq\n'
-    assert_fix(misspelt, "Replace it by `skills.btq`", misspelt.replace("skils", "skills"))
+    assert_fix(misspelt, "Replace it with `skills.btq`", misspelt.replace("skils", "skills"))
 
 
 def test_an_empty_path() -> None:

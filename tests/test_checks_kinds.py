@@ -45,7 +45,7 @@ def test_a_name_that_may_be_meant(node: str) -> None:
 )
 def test_a_slip_of_a_built_in(slip: str, meant: str) -> None:
     assert_problems(tree(slip), f"3:9 warning unknown-node «{slip}» unknown node `{slip}`; did you mean `{meant}`?")
-    assert_fix(tree(slip), f"Replace `{slip}` by `{meant}`", tree(meant))
+    assert_fix(tree(slip), f"Replace `{slip}` with `{meant}`", tree(meant))
 
 
 @pytest.mark.parametrize(("model", "node"), [("Pick", "Pik"), ("MoveBase", "movebase"), ("OpenDoor", "OpenDoors")])
@@ -180,7 +180,7 @@ def test_one_mistake_in_a_name_is_told_once() -> None:
     )
     assert_problems(
         palette + tree("CoroAction"),
-        "5:9 warning not-an-engine-node «CoroAction» `CoroAction` is no node of the engine",
+        "5:9 warning not-an-engine-node «CoroAction» `CoroAction` is not built into BehaviorTree.CPP 4.6–4.10",
     )
 
 
@@ -189,7 +189,9 @@ def test_one_mistake_in_a_name_is_told_once() -> None:
 
 def test_a_quoted_kind_is_the_xml_tag() -> None:
     text = tree('"Retry" (num_attempts = 3)\n            X')
-    assert_problems(text, '3:9 warning not-an-engine-node «"Retry"» `Retry` is no node of the engine')
+    assert_problems(
+        text, '3:9 warning not-an-engine-node «"Retry"» `Retry` is not built into BehaviorTree.CPP 4.6–4.10'
+    )
     assert_fix(text, "Remove the quotes", text.replace('"', ""))
     assert_clean(tree('"RetryUntilSuccessful" (num_attempts = 3)\n            X'))
     assert_clean("Decorator Retry\n" + tree('"Retry"\n            X'))  # the program's own
@@ -200,12 +202,14 @@ def test_a_word_of_version_3_is_read_as_that_of_today() -> None:
     assert_problems(
         text,
         "3:9 error child-count «SequenceStar» `SequenceStar` requires 1 or more children, found none",
-        "3:9 warning not-an-engine-node «SequenceStar» `SequenceStar` is no node of the engine",
+        "3:9 warning not-an-engine-node «SequenceStar» `SequenceStar` is not built into BehaviorTree.CPP 4.6–4.10",
     )
-    assert_fix(text, "Replace it by `SequenceWithMemory`", tree("SequenceWithMemory"), safe=True)
+    assert_fix(text, "Replace it with `SequenceWithMemory`", tree("SequenceWithMemory"), safe=True)
     plus = "BehaviorTree Main\n    SubTreePlus (ID = Pick)\nBehaviorTree Pick\n    X\n"
-    assert_problems(plus, "2:5 warning not-an-engine-node «SubTreePlus» `SubTreePlus` is no node of the engine")
-    assert_fix(plus, "Replace it by `SubTree`", plus.replace("Plus", ""))
+    assert_problems(
+        plus, "2:5 warning not-an-engine-node «SubTreePlus» `SubTreePlus` is not built into BehaviorTree.CPP 4.6–4.10"
+    )
+    assert_fix(plus, "Replace it with `SubTree`", plus.replace("Plus", ""))
 
 
 def test_a_model_makes_a_word_a_node() -> None:
@@ -240,13 +244,13 @@ def test_only_what_can_stay_as_it_is_is_mended_safely() -> None:
     assert_problems(
         fits, "4:9 warning category-mismatch «Action» `Open` is written as Action, but its model declares Condition"
     )
-    assert_fix(fits, "Replace it by `Condition`", fits.replace("        Action", "        Condition"), safe=True)
+    assert_fix(fits, "Replace it with `Condition`", fits.replace("        Action", "        Condition"), safe=True)
     childless = "Decorator Slow\n" + tree("Action Slow")  # a decorator without a child would be the next mistake
     assert_problems(
         childless,
         "4:9 warning category-mismatch «Action» `Slow` is written as Action, but its model declares Decorator",
     )
-    assert_fix(childless, "Replace it by `Decorator`", childless.replace("        Action", "        Decorator"))
+    assert_fix(childless, "Replace it with `Decorator`", childless.replace("        Action", "        Decorator"))
 
 
 def test_categories_that_agree_or_that_nobody_knows() -> None:
@@ -260,7 +264,7 @@ def test_categories_that_agree_or_that_nobody_knows() -> None:
 
 def test_a_category_in_small_letters() -> None:
     assert_fix(
-        "BehaviorTree A\n    action Lower\n", "Replace `action` by `Action`", "BehaviorTree A\n    Action Lower\n"
+        "BehaviorTree A\n    action Lower\n", "Replace `action` with `Action`", "BehaviorTree A\n    Action Lower\n"
     )
     assert_clean("BehaviorTree A\n    action\n")
 

@@ -18,10 +18,10 @@ SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
         ("keeps speed <= -3", "Write `-3 m/s`", "keeps speed <= -3 m/s"),
         ("takes at most 30", "Write `30 s`", "takes at most 30 s"),
         ("keeps speed <= 3 m/s²", "Write `^2`", "keeps speed <= 3 m/s^2"),
-        ("keeps sped <= 3 m/s", "Replace `sped` by `speed`", "keeps speed <= 3 m/s"),
-        ("Mian/X takes at most 3 s", "Replace `Mian` by `Main`", "Main/X takes at most 3 s"),
-        ("every Y takes at most 3 s", "Replace `Y` by `X`", None),
-        ("Xylophon takes at most 3 s", "Replace `Xylophon` by `Xylophone`", "Xylophone takes at most 3 s"),
+        ("keeps sped <= 3 m/s", "Replace `sped` with `speed`", "keeps speed <= 3 m/s"),
+        ("Mian/X takes at most 3 s", "Replace `Mian` with `Main`", "Main/X takes at most 3 s"),
+        ("every Y takes at most 3 s", "Replace `Y` with `X`", None),
+        ("Xylophon takes at most 3 s", "Replace `Xylophon` with `Xylophone`", "Xylophone takes at most 3 s"),
     ],
 )
 def test_what_was_probably_meant(clause: str, title: str, mended: str | None) -> None:
@@ -115,4 +115,4 @@ def test_the_near_name_comes_before_the_declaration() -> None:
     text = "signal battery : % from {battery}\ncontext low : batery < 20 %\n"
     (found,) = check(Workspace.of({"main.btq": text}), "main.btq")
     assert found.notes == ("or declare it: `signal batery : % from {batery}`",)
-    assert [fix.title for fix in found.fixes] == ["Replace `batery` by `battery`"]
+    assert [fix.title for fix in found.fixes] == ["Replace `batery` with `battery`"]

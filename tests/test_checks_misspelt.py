@@ -73,8 +73,8 @@ def test_without_models_two_places_that_are_alone_are_told_once_and_either_may_b
     text = "BehaviorTree Main\n    ->\n        A (x = {picture})\n        B (x = {pictuer})\n"
     assert findings(text, RULE) == ["3 warning «picture» `picture` appears only here; did you mean `pictuer`?"]
     assert fixes(text, RULE) == [
-        ("Replace `picture` by `pictuer`", False, text.replace("picture", "pictuer")),
-        ("Replace `pictuer` by `picture`", False, text.replace("pictuer", "picture")),
+        ("Replace `picture` with `pictuer`", False, text.replace("picture", "pictuer")),
+        ("Replace `pictuer` with `picture`", False, text.replace("pictuer", "picture")),
     ]
 
 

@@ -41,7 +41,7 @@ def test_a_port_of_another_name_is_one_mistake(wrong: str, right: str) -> None:
     assert_problems(
         text, f"3:{column} error unknown-port «{key}» `{kind}` has no port `{key}`; did you mean `{meant}`?"
     )
-    assert_fix(text, f"Replace `{key}` by `{meant}`", tree(f"{right}\n            X"))
+    assert_fix(text, f"Replace `{key}` with `{meant}`", tree(f"{right}\n            X"))
 
 
 def test_a_port_that_has_a_value_is_not_meant() -> None:
@@ -133,7 +133,7 @@ def test_an_id_where_the_engine_takes_none() -> None:
     assert_problems(
         tree("-> (ID = a)\n            X"), "3:13 error unknown-port «ID» the engine refuses the attribute `ID` on `->`"
     )
-    assert_fix(tree("-> (ID = a)\n            X"), "Replace `ID` by `name`", tree("-> (name = a)\n            X"))
+    assert_fix(tree("-> (ID = a)\n            X"), "Replace `ID` with `name`", tree("-> (name = a)\n            X"))
     assert_clean(tree("Action (ID = Move)"))
 
 
@@ -164,7 +164,9 @@ def test_a_shared_blackboard_of_version_3() -> None:
         "3:23 warning unknown-attribute «__shared_blackboard» "
         "the engine silently ignores `__shared_blackboard`; did you mean `_autoremap`?",
     )
-    assert_fix(text, "Replace `__shared_blackboard` by `_autoremap`", text.replace("__shared_blackboard", "_autoremap"))
+    assert_fix(
+        text, "Replace `__shared_blackboard` with `_autoremap`", text.replace("__shared_blackboard", "_autoremap")
+    )
     off = tree("SubTree Pick (object = a grip = {g} __shared_blackboard = false)") + PICK
     assert_clean(off)  # ignoring it is what was wanted
 

@@ -45,7 +45,7 @@ def test_a_name_is_looked_at_wherever_it_stands() -> None:
         "5:29 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
         "6:41 warning unknown-quality «safty» unknown quality `safty`; did you mean `safety`?",
     )
-    assert_fix(node("safty"), "Replace `safty` by `safety`", node("safety"))
+    assert_fix(node("safty"), "Replace `safty` with `safety`", node("safety"))
 
 
 # ---- qualities of one's own ------------------------------------------------------------------------------------------
@@ -57,11 +57,11 @@ def test_own_qualities() -> None:
         assert_clean(node(quality, own))
     assert_clean('//- main.btq\ninclude "own.btq"\n' + node("night-quiet") + f"//- own.btq\n{own}")
     assert_clean(node("usability", "quality usability\n"))  # one's own word means what one says
-    assert_fix(node("night-quit", own), "Replace `night-quit` by `night-quiet`", node("night-quiet", own))
+    assert_fix(node("night-quit", own), "Replace `night-quit` with `night-quiet`", node("night-quiet", own))
     spaced = 'quality "quiet nights?" : safety\n'
     assert_fix(
         node('"quiet night?"', spaced),
-        'Replace `quiet night?` by `"quiet nights?"`',
+        'Replace `quiet night?` with `"quiet nights?"`',
         node('"quiet nights?"', spaced),
     )
 
@@ -88,7 +88,7 @@ def test_the_edition_of_a_file_and_of_a_project() -> None:
 def test_an_edition_that_there_is_not() -> None:
     text = node("safety", "qualities iso25010-2025\n")
     assert_problems(text, "1:11 warning unknown-quality «iso25010-2025» unknown quality model `iso25010-2025`")
-    assert_fix(text, "Replace it by `iso25010-2023`", text.replace("2025", "2023"))
+    assert_fix(text, "Replace it with `iso25010-2023`", text.replace("2025", "2023"))
 
 
 def test_a_name_without_an_equal_is_not_changed_safely() -> None:
@@ -103,7 +103,7 @@ def test_another_word_is_changed_safely() -> None:
         node("latency"),
         "2:18 hint old-quality-name «latency» `latency` is an alias of `performance-efficiency.time-behaviour`",
     )
-    title = "Replace it by `performance-efficiency.time-behaviour`"
+    title = "Replace it with `performance-efficiency.time-behaviour`"
     assert_fix(node("latency"), title, node("performance-efficiency.time-behaviour"), safe=True)
     # As the paper prints it: the bracket goes, too.
     assert_fix(
@@ -132,6 +132,6 @@ def test_words_that_may_mean_this_or_that(word: str) -> None:
 def test_each_meaning_is_offered() -> None:
     assert_fix(
         node("robustness"),
-        "Replace it by `reliability.fault-tolerance`: Fault tolerance",
+        "Replace it with `reliability.fault-tolerance`: Fault tolerance",
         node("reliability.fault-tolerance"),
     )

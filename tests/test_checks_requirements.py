@@ -38,7 +38,7 @@ def test_a_requirement_of_a_file_that_is_not_included() -> None:
 
 def test_a_name_that_needs_quotes() -> None:
     text = 'QualityReq "in time" "Be quick"\nBehaviorTree Main\n    X satisfies "in tme"\n'
-    assert_fix(text, "Replace `in tme` by `in time`", text.replace("tme", "time"))
+    assert_fix(text, "Replace `in tme` with `in time`", text.replace("tme", "time"))
 
 
 # ---- conflicting-requirement -----------------------------------------------------------------------------------------
@@ -162,7 +162,7 @@ def test_a_requirement_where_a_quality_is_meant_to_stand() -> None:
     message = "`rq1` is a requirement, not a quality"
     text = RULE + "BehaviorTree Main\n    X satisfices {}\n"
     assert_problems(text.format("rq1"), f"4:18 warning unknown-quality «rq1» {message}")
-    assert_fix(text.format("rq1"), "Replace `satisfices` by `satisfies`", RULE + TREE, safe=True)
+    assert_fix(text.format("rq1"), "Replace `satisfices` with `satisfies`", RULE + TREE, safe=True)
     assert_problems(text.format("safety, rq1"), f"4:26 warning unknown-quality «rq1» {message}")
     assert_problems(
         RULE + "BehaviorTree Main\n    satisfices rq1\n    X\n", f"4:16 warning unknown-quality «rq1» {message}"
@@ -175,7 +175,7 @@ def test_a_quality_where_a_requirement_is_meant_to_stand() -> None:
     for quality, safe in (("safety", True), ("gentle", True), ("performance", False)):
         assert_problems(text.format(quality), f"3:17 {message.format(quality)}")
         fixed = text.format(quality).replace("satisfies", "satisfices")
-        assert_fix(text.format(quality), "Replace `satisfies` by `satisfices`", fixed, safe=safe)
+        assert_fix(text.format(quality), "Replace `satisfies` with `satisfices`", fixed, safe=safe)
     assert_problems("apply safety to X\nBehaviorTree Main\n    X\n", f"1:7 {message.format('safety')}")
 
 
@@ -203,7 +203,7 @@ def test_a_misspelt_clause_line_is_read_as_a_node(parent: str) -> None:
     text = f"{RULE}BehaviorTree Main\n    {parent}\n        satisfys rq1\n"
     assert_problems(text, f"5:9 warning clause-as-node «satisfys» btq reads `satisfys` as a node here; {MEANT}")
     if "X" in parent:
-        assert_fix(text, "Replace `satisfys` by `satisfies`", text.replace("satisfys", "satisfies"))
+        assert_fix(text, "Replace `satisfys` with `satisfies`", text.replace("satisfys", "satisfies"))
 
 
 def test_a_misspelt_clause_line_with_a_list() -> None:

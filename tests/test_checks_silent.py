@@ -173,7 +173,7 @@ def test_two_ports_of_one_name() -> None:
 )
 def test_misspelt_types(type_: str, meant: str) -> None:
     text = f"Action A\n    input a : {type_}\nBehaviorTree Main\n    A (a = {{x}})\n"
-    assert fixes(text, "misspelt-type") == [(f"Replace `{type_}` by `{meant}`", False, text.replace(type_, meant))]
+    assert fixes(text, "misspelt-type") == [(f"Replace `{type_}` with `{meant}`", False, text.replace(type_, meant))]
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ def test_a_comment_that_can_silence_nothing_is_told() -> None:
     )
     assert_fix(
         tree("Foo  # btq: ignore[unknown-nod]"),
-        "Replace `unknown-nod` by `unknown-node`",
+        "Replace `unknown-nod` with `unknown-node`",
         tree("Foo  # btq: ignore[unknown-node]"),
     )
     assert_clean(tree("# btq: ignore[useless-ignore]", "Foo  # btq: ignore[unknown-nod]"))

@@ -35,7 +35,7 @@ def test_a_tree_that_4_6_does_not_read(engines: tuple[str, ...], severity: str |
 def test_the_way_to_an_unknown_tree() -> None:
     misspelt = "BehaviorTree Main\n    SubTree Pik\n" + PICK
     assert_problems(misspelt, "2:13 error unknown-tree «Pik» unknown tree `Pik`; did you mean `Pick`?")
-    assert_fix(misspelt, "Replace `Pik` by `Pick`", misspelt.replace("Pik\n", "Pick\n"))
+    assert_fix(misspelt, "Replace `Pik` with `Pick`", misspelt.replace("Pik\n", "Pick\n"))
     node = "Action Pick\nBehaviorTree Main\n    SubTree Pick First\n"
     assert_problems(node, "3:13 error unknown-tree «Pick» `Pick` is a node, not a tree")
     assert_fix(node, "Write only `Pick`", node.replace("SubTree ", ""))

@@ -115,7 +115,7 @@ def test_check_shows_the_place(btq: Run, tmp_path: Path) -> None:
     assert done.stdout.startswith(
         "warning[unknown-node]: unknown node `Sequnce`; did you mean `Sequence`?\n --> main.btq:3:9\n"
     )
-    assert "  = help: Replace `Sequnce` by `Sequence`\n" in done.stdout
+    assert "  = help: Replace `Sequnce` with `Sequence`\n" in done.stdout
     assert done.stdout.endswith("Found 1 error, 1 warning\n")
 
 

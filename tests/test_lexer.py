@@ -603,8 +603,8 @@ def test_an_unknown_unit_is_one_diagnostic(source: str, expected: str, wrong: st
 
 
 def test_an_unknown_unit_can_be_replaced() -> None:
-    assert_fix("context a : b < 30sek", "Replace `sek` by `s`", "context a : b < 30 s")
-    assert_fix("context a : b < 30 °C", "Replace `°C` by `degC`", "context a : b < 30 degC")
+    assert_fix("context a : b < 30sek", "Replace `sek` with `s`", "context a : b < 30 s")
+    assert_fix("context a : b < 30 °C", "Replace `°C` with `degC`", "context a : b < 30 degC")
 
 
 # ---- strings --------------------------------------------------------------------------------------------------------

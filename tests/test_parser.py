@@ -125,13 +125,13 @@ def test_a_misspelt_item_is_read_as_the_one_that_was_meant(written: str, meant: 
     word, right = written.split(" ")[0], meant.split(" ")[0]
     problem = f"1:1 syntax-error «{word}» unknown word `{word}`; did you mean `{right}`?"
     assert_parse(written, dump(parse(meant)), problem)
-    assert_fix(written, f"Replace `{word}` by `{right}`", meant)
+    assert_fix(written, f"Replace `{word}` with `{right}`", meant)
 
 
 def test_a_misspelt_model_is_passed_over() -> None:
     problem = "1:1 syntax-error «Conditon» unknown word `Conditon`; did you mean `Condition`?"
     assert_parse("Conditon a\n  input b\nsignal c : m", "skipped\nsignal c : m", problem)
-    assert_fix("Conditon a\n  input b\n", "Replace `Conditon` by `Condition`", "Condition a\n  input b\n")
+    assert_fix("Conditon a\n  input b\n", "Replace `Conditon` with `Condition`", "Condition a\n  input b\n")
 
 
 def test_lines_that_are_indented_for_no_reason_are_one_diagnostic() -> None:

@@ -432,7 +432,7 @@ def test_an_unknown_compound_unit_in_a_value() -> None:
     problem = "1:10 unknown-unit «m/sek» unknown unit `m/sek`; did you mean `m/s`?"
     assert_node("X (a = 3 m/sek b = 1)", "X (a=3 m/sek b=1)", problem)
     assert_node("X (a = 3 sek b = 1)", "X (a=3 b=1)", "1:10 unknown-unit «sek» unknown unit `sek`; did you mean `s`?")
-    assert_fix("BehaviorTree t\n  X (a = 3 sek)", "Replace `sek` by `s`", "BehaviorTree t\n  X (a = 3 s)")
+    assert_fix("BehaviorTree t\n  X (a = 3 sek)", "Replace `sek` with `s`", "BehaviorTree t\n  X (a = 3 s)")
 
 
 def test_each_line_of_brackets_has_its_own_diagnostic() -> None:

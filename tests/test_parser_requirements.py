@@ -338,7 +338,7 @@ def test_a_misspelt_clause(clause: str, word: str, likely: str) -> None:
     problem = f"1:{clause.index(word) + 1} syntax-error «{word}» unknown word `{word}`; did you mean `{likely}`?"
     assert_clause(clause, "", problem)
     text = f"QualityReq a\n    {clause}\n"
-    assert_fix(text, f"Replace `{word}` by `{likely}`", text.replace(word, likely))
+    assert_fix(text, f"Replace `{word}` with `{likely}`", text.replace(word, likely))
 
 
 # ---- the other clauses ----------------------------------------------------------------------------------------------
@@ -557,8 +557,8 @@ def test_a_word_of_few_that_is_misspelt() -> None:
     text = "QualityReq a\n    {}"
     for wrong, right in (("fails", "fail"), ("failure", "fail"), ("halts", "halt"), ("warning", "warn")):
         line = f"on violation {wrong}"
-        assert_fix(text.format(line), f"Replace `{wrong}` by `{right}`", text.format(f"on violation {right}"))
-    assert_fix(text.format("verified by tests"), "Replace `tests` by `test`", text.format("verified by test"))
+        assert_fix(text.format(line), f"Replace `{wrong}` with `{right}`", text.format(f"on violation {right}"))
+    assert_fix(text.format("verified by tests"), "Replace `tests` with `test`", text.format("verified by test"))
 
 
 def test_brackets_in_brackets_have_an_end() -> None:

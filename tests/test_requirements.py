@@ -289,7 +289,7 @@ def test_a_tag_that_nothing_has() -> None:
     text += "BehaviorTree Main\n    A Home tags driving, heavy\n"
     (problem,) = resolved(text).problems
     assert problem.diagnostic.message == "no node has the tag `drivng`; did you mean `driving`?"
-    assert [fix.title for fix in problem.diagnostic.fixes] == ["Replace `drivng` by `driving`"]
+    assert [fix.title for fix in problem.diagnostic.fixes] == ["Replace `drivng` with `driving`"]
 
 
 def test_every() -> None:

@@ -657,7 +657,7 @@ def test_code_actions(editor: Editor) -> None:
         "textDocument/codeAction", **editor.document("main.btq"), range=place, context={"diagnostics": []}
     )
     assert [each["title"] for each in found[:2]] == [
-        "Replace `Sequnce` by `Sequence`",
+        "Replace `Sequnce` with `Sequence`",
         "Silence `unknown-node` on this line",
     ]
     assert found[0]["diagnostics"][0]["code"] == "unknown-node"

@@ -21,7 +21,7 @@ def other_word(view: View, entry: Entry, use: Use, rule: str, *, requirement: bo
     is_, is_not = ("requirement", "quality") if requirement else ("quality", "requirement")
     word, other = _WORDS if requirement else _WORDS[::-1]
     span = _alone(view, entry, use, word)
-    fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` by `{other}`", span, other, safe=safe),) if span else ()
+    fixes: tuple[Fix, ...] = (replace_fix(f"Replace `{word}` with `{other}`", span, other, safe=safe),) if span else ()
     message = f"`{use.name}` is a {is_}, not a {is_not}"
     notes = ("`satisfices` names qualities, `satisfies` names requirements",)
     return Diagnostic(rule, use.span, message, notes=notes, fixes=fixes)

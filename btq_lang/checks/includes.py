@@ -31,7 +31,7 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     folder = posixpath.dirname(view.path)
     fixes = tuple(
-        replace_fix(f"Replace it by `{other}`", include.path.span, quote(other)) for other in _meant(view, path)
+        replace_fix(f"Replace it with `{other}`", include.path.span, quote(other)) for other in _meant(view, path)
     )
     project = view.project
     places = ", ".join(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.caches import cache_of
+from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
@@ -55,7 +56,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
             continue  # no node of the engine, which is told
         elif (category := _category_meant(seen)) is not None:
-            fix = replace_fix(f"Replace `{name.text}` by `{category}`", name.span, category)
+            fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
         elif not (_is_refused(view, seen, name) or _is_clause(seen) or misspelt_clause(seen.node)):
@@ -71,7 +72,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         text = name.text
         if seen.kind is not None and seen.kind.tag == text:
             continue
-        message = f"`{text}` is no node of the engine"
+        message = f"`{text}` is not built into BehaviorTree.CPP {VERSIONS[0]}–{VERSIONS[-1]}"
         known = KNOWN_WORDS.get(text)
         if known is not None and (not name.quoted or known.tag == name.text):
             fixes = _of_today(seen, name, known)
@@ -146,7 +147,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
         least, most = CHILDREN[category]
         fits = least <= len(seen.node.children) and (most is None or len(seen.node.children) <= most)
         safe = category != "SubTree" and (fits or seen.kind is not None)
-        fix = replace_fix(f"Replace it by `{category}`", written_as.span, category, safe=safe)
+        fix = replace_fix(f"Replace it with `{category}`", written_as.span, category, safe=safe)
         message = f"{seen.shown} is written as {written_as.raw}, but {who} {category}"
         related = model_related(view, seen, "the model")
         yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
@@ -171,7 +172,7 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # the parser has said so already
         if meant:
             message = f"btq reads `{name.text}` as a node here; did you mean `{meant}`?"
-            fix = replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, meant)
+            fix = replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, meant)
             yield Diagnostic("clause-as-node", name.span, message, fixes=(fix,))
             continue
         yield Diagnostic(
@@ -242,10 +243,10 @@ def _of_today(seen: SeenNode, name: Word, known: KnownWord) -> tuple[Fix, ...]:
     """The node of today in the place of an older engine's."""
     if known.replacement is not None:
         # Without quotes the old word is read as the new one already, so nothing but this diagnostic changes.
-        title = f"Replace it by `{known.replacement}`"
+        title = f"Replace it with `{known.replacement}`"
         return (replace_fix(title, name.span, known.replacement, safe=not name.quoted),)
     if known.category == "SubTree" and seen.node.category is None:
-        return (replace_fix("Replace it by `SubTree`", name.span, "SubTree"),)
+        return (replace_fix("Replace it with `SubTree`", name.span, "SubTree"),)
     return ()
 
 
@@ -274,7 +275,7 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
             return
     if not likely and not view.is_first_use(entry, seen.node, name.text):
         return  # what is missing is one model, however many nodes would need it
-    fixes = tuple(replace_fix(f"Replace `{name.text}` by `{meant}`", name.span, written(meant)) for meant in likely)
+    fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
     if not likely:
         category, ports = view.look_up(lookups.custom_node, name.text)

@@ -118,9 +118,9 @@ def _told(mentions: Iterable[Mention], mention: Mention, meant: str, is_single: 
         message = f"nothing writes `{name}`, which is read here; did you mean `{meant}`?"
     elif not mention.reads and mention.writes:
         message = f"nothing reads `{name}`, which is written here; did you mean `{meant}`?"
-    fixes = [replace_fix(f"Replace `{name}` by `{meant}`", mention.span, meant)]
+    fixes = [replace_fix(f"Replace `{name}` with `{meant}`", mention.span, meant)]
     if is_single and other is not None:
-        fixes.append(replace_fix(f"Replace `{meant}` by `{name}`", other.span, name))
+        fixes.append(replace_fix(f"Replace `{meant}` with `{name}`", other.span, name))
     related = (Related(Place(other.span), f"`{meant}`"),) if other is not None else ()
     return Diagnostic("misspelt-entry", mention.span, message, related=related, fixes=tuple(fixes))
 

@@ -39,7 +39,9 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for key, likely in meant.items():
             # The engine takes any port of a SubTree, and a model without ports is often one that nobody finished.
             harmless = (seen.is_subtree and not required.intersection(likely)) or not (known or seen.kind)
-            fixes = tuple(replace_fix(f"Replace `{key.text}` by `{port}`", key.span, written(port)) for port in likely)
+            fixes = tuple(
+                replace_fix(f"Replace `{key.text}` with `{port}`", key.span, written(port)) for port in likely
+            )
             yield Diagnostic(
                 "unknown-port",
                 key.span,
@@ -116,7 +118,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
                     severity=Severity.WARNING if is_port else Severity.HINT,
                 )
             elif not (key in _OF_TODAY and _is_off(pair.value)):
-                fixes = tuple(replace_fix(f"Replace `{key}` by `{name}`", pair.key.span, name) for name in likely)
+                fixes = tuple(replace_fix(f"Replace `{key}` with `{name}`", pair.key.span, name) for name in likely)
                 message = f"the engine silently ignores `{key}`{did_you_mean(likely)}"
                 yield Diagnostic("unknown-attribute", pair.key.span, message, fixes=fixes)
 
@@ -168,7 +170,7 @@ def misspelt_type(view: View, entry: Entry) -> Iterator[Diagnostic]:
             likely = [known for known in _TYPES if abs(len(known) - len(name)) < 2 and distance(name, known) == 1]
             if port.type is None or not likely:
                 continue
-            fix = replace_fix(f"Replace `{name}` by `{likely[0]}`", port.type.span, likely[0])
+            fix = replace_fix(f"Replace `{name}` with `{likely[0]}`", port.type.span, likely[0])
             message = f"unknown type `{name}`; did you mean `{likely[0]}`?"
             yield Diagnostic("misspelt-type", port.type.span, message, fixes=(fix,))
 
@@ -269,7 +271,7 @@ def _forbidden_id(seen: SeenNode) -> Iterator[Diagnostic]:
     for pair in node.attributes:
         if pair.key.text == "ID":
             message = f"the engine refuses the attribute `ID` on {seen.shown}"
-            fix = replace_fix("Replace `ID` by `name`", pair.key.span, "name")
+            fix = replace_fix("Replace `ID` with `name`", pair.key.span, "name")
             fixes = () if node.name is not None else (fix,)
             yield Diagnostic("unknown-port", pair.key.span, message, fixes=fixes)
 

@@ -25,7 +25,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
         edition = entry.item.edition
         if edition.text not in EDITIONS:
             message = f"unknown quality model `{edition.text}`"
-            fixes = tuple(replace_fix(f"Replace it by `{name}`", edition.span, name) for name in EDITIONS)
+            fixes = tuple(replace_fix(f"Replace it with `{name}`", edition.span, name) for name in EDITIONS)
             yield Diagnostic("unknown-quality", edition.span, message, fixes=fixes)
     for use, match in _matches(view, entry):
         if match.kind != "unknown":
@@ -45,7 +45,7 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"unknown quality `{use.name}`{did_you_mean(meant)}",
             notes=() if meant else (f"declare your own quality with a line `quality {written(_last(use))}`",),
             fixes=tuple(
-                replace_fix(f"Replace `{use.name}` by `{name}`", _whole(view, entry, use), name) for name in meant
+                replace_fix(f"Replace `{use.name}` with `{name}`", _whole(view, entry, use), name) for name in meant
             ),
         )
 
@@ -71,7 +71,9 @@ def old_quality_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             message,
             notes=notes,
             fixes=tuple(
-                replace_fix(f"Replace it by `{candidate.id}`", _whole(view, entry, use), candidate.id, safe=match.safe)
+                replace_fix(
+                    f"Replace it with `{candidate.id}`", _whole(view, entry, use), candidate.id, safe=match.safe
+                )
                 for candidate in match.candidates[:3]
             ),
             tags=() if is_alias else (Tag.DEPRECATED,),
@@ -91,7 +93,9 @@ def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
             f"ambiguous quality name `{use.name}`" + (f"; btq reads it as `{usual}`" if usual else ""),
             notes=(match.explanation,) if match.explanation else (),
             fixes=tuple(
-                replace_fix(f"Replace it by `{candidate.id}`: {candidate.name}", _whole(view, entry, use), candidate.id)
+                replace_fix(
+                    f"Replace it with `{candidate.id}`: {candidate.name}", _whole(view, entry, use), candidate.id
+                )
                 for candidate in match.candidates[:4]
             ),
             severity=Severity.INFO if usual else None,

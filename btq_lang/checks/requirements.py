@@ -34,7 +34,7 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.REQUIREMENT)
-        fixes += tuple(replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name)) for name in likely)
+        fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown requirement `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         yield Diagnostic("unknown-requirement", use.span, message, fixes=fixes)
 

@@ -72,7 +72,7 @@ class Suppressions:
 def _useless(name: str, span: Span) -> Iterator[Diagnostic]:
     if message := unknown_rule(name):
         likely = near(name, RULES, limit=1)
-        fixes = tuple(replace_fix(f"Replace `{name}` by `{rule}`", span, rule) for rule in likely)
+        fixes = tuple(replace_fix(f"Replace `{name}` with `{rule}`", span, rule) for rule in likely)
         yield Diagnostic("useless-ignore", span, message, fixes=fixes)
     elif name in UNREADABLE:
         message = f"`{name}` cannot be silenced: after this error btq cannot read the file reliably"

@@ -45,7 +45,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         elsewhere = view.elsewhere(Kind.TREE, use.name)
         fixes = tuple(include_fix(view, path) for path in elsewhere[:3])
         likely = view.near(use.name, Kind.TREE)
-        fixes += tuple(replace_fix(f"Replace `{use.name}` by `{name}`", use.span, written(name)) for name in likely)
+        fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown tree `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
         model = view.scope.find(Kind.MODEL, use.name)
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):

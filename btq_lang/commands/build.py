@@ -268,7 +268,7 @@ def _tell_guessed(exports: list[Export]) -> None:
 
 def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
     """The file of a place, and where it is in that."""
-    assert place.path is not None, "a clause stands in a file"
+    assert place.path is not None, "a clause is part of a file"
     file = next(group.workspace.files[place.path] for group in groups if place.path in group.workspace.files)
     return place.path, place.span.shifted(file.start_of(place.anchor)) if place.anchor is not None else place.span
 

@@ -179,7 +179,7 @@ class _Words(Listener):
         if what is What.VALUE:
             is_own = isinstance(owner, Requirement) and any(one.name.text == name for one in owner.parameters)
             return USED[What.PARAMETER] if is_own else VALUE
-        assert what is What.PLACE, "rules stand in no item, and of all others it is known how they look"
+        assert what is What.PLACE, "a rule belongs to no item, and the look of all other words is known"
         return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
 
 

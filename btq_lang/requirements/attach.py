@@ -313,7 +313,7 @@ def _no_parameter(reader: Reader, requirement: Requirement, argument: WrittenArg
     word: Word = argument.name
     known = [parameter.name for parameter in requirement.parameters]
     likely = [name for name in near(word.text, known) if is_name(name)]
-    fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in likely)
+    fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in likely)
     notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
     reader.complain(
         "wrong-argument",

@@ -200,7 +200,7 @@ class PathReader(Asker):
         elif self.knows_all_nodes:
             likely = self._meant(path)
             fixes = tuple(
-                replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)) for word, name in likely
+                replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for word, name in likely
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
             self.complain("unmatched-path", path.span, message, fixes=fixes)
@@ -223,7 +223,7 @@ class PathReader(Asker):
 
     def _no_match(self, word: Word, message: str, known: Iterable[str], notes: tuple[str, ...] = ()) -> None:
         likely = near(word.text, known)
-        fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, _written(name)) for name in likely)
+        fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:

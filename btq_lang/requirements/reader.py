@@ -212,7 +212,7 @@ class Reader(PathReader):
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
             return  # told as a subtraction without blanks
         meant = near(word.text, self.names(*kinds)) if word.text not in _OF_PYTHON else (word.text.lower(),)
-        fixes = tuple(replace_fix(f"Replace `{word.text}` by `{name}`", word.span, name) for name in meant)
+        fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
             last = Span(word.end - 1, word.end)

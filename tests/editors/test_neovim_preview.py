@@ -173,5 +173,5 @@ def test_a_mission_that_is_not_saved_and_a_program_that_is_not_there_are_told(nv
         said += re.findall(r"btq: (.*)", run.stdout + run.stderr)
     assert [line.strip() for line in said] == [
         "save this mission first, then its trees can be shown",
-        "no-such was not found; :help btq_program",
+        "no-such not found; see :help btq_program",
     ]

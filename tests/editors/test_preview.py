@@ -87,7 +87,7 @@ def test_it_follows_the_file(page: Page, tmp_path: Path) -> None:
     assert page.locator("#said").text_content() == ""
     (tmp_path / "main.btq").write_text("QualityReq soon\n    takes at most 30 s\n")
     see_boxes(page)
-    assert page.locator("#said").text_content() == "There is no tree in main.btq"
+    assert page.locator("#said").text_content() == "No tree in main.btq"
     (tmp_path / "main.btq").write_text("BehaviorTree Main\n    Dock\n")
     see_boxes(page, "Dock")
     assert page.locator("#said").text_content() == ""

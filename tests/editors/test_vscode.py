@@ -597,7 +597,7 @@ def test_the_copy_in_the_package_serves_as_well(code: Workbench) -> None:
 
 def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
     code.settings(**{**ENVIRONMENT, "btq.interpreter": "/no/such/python"})
-    toast = code.see(".notification-toast:has-text('/no/such/python, which is no Python 3.10 or newer')")
+    toast = code.see(".notification-toast:has-text('/no/such/python, which is not Python 3.10 or newer')")
     assert toast.locator(".notification-list-item-buttons-container a").all_inner_texts() == [
         "Choose Python…",
         "Get Python",
@@ -605,7 +605,7 @@ def test_without_a_python_it_says_so_and_offers_help(code: Workbench) -> None:
     code.write("main.btq", "BehaviorTree Main\n    Dock\n")
     code.open("main.btq")
     code.command("btq: Open Requirements Overview Beside")
-    refusal = code.see(".notification-toast:has-text('The btq server does not run.')")
+    refusal = code.see(".notification-toast:has-text('The btq server is not running.')")
     assert refusal.locator(".notification-list-item-buttons-container a").all_inner_texts() == [
         "Restart Server",
         "Show Log",
@@ -618,7 +618,7 @@ def test_the_walkthrough_ends_in_a_checked_mission(code: Workbench) -> None:
     (code.folder / "robot").mkdir()
     code.command("Welcome: Open Walkthrough...")
     code.choose("A checked mission in five minutes")
-    code.see(".getting-started-step:has-text('Begin a project')").click()
+    code.see(".getting-started-step:has-text('Create a project')").click()
     code.see(".getting-started-step .monaco-button:has-text('New Project')").click()
     code.choose_empty(code.folder / "robot")
     code.see(".tab.active:has-text('mission.btq')")

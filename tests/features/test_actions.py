@@ -17,7 +17,7 @@ EXAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".btq", 
 def test_fixes_of_diagnostics() -> None:
     check_action(
         "BehaviorTree Main\n    Sequ$0nce\n        Pick\n        Place\n",
-        "Replace `Sequnce` by `Sequence`",
+        "Replace `Sequnce` with `Sequence`",
         "BehaviorTree Main\n    Sequence\n        Pick\n        Place\n",
     )
 

@@ -33,8 +33,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
 
   const line = (): Promise<string[]> => commandLine(context);
   const ask: Ask = async (command, ...parameters) => {
-    await turn; // who asks while it starts gets an answer
-    if (!client?.isRunning()) throw new Error("The btq server does not run.");
+    await turn; // a request during the start gets an answer
+    if (!client?.isRunning()) throw new Error("The btq server is not running.");
     return client.sendRequest(ExecuteCommandRequest.type, { command, arguments: parameters });
   };
   const xml = new XmlView(context, ask);
@@ -147,7 +147,7 @@ async function start(
       },
     );
     client.registerFeature({
-      // The server shows lenses that can be clicked only where it is told that somebody knows what to do then.
+      // The server sends clickable lenses only to clients that announce a command for them.
       fillClientCapabilities: (capabilities) => (capabilities.experimental = { commands: ["btq.showReferences"] }),
       initialize: () => undefined,
       getState: () => ({ kind: "static" }),
@@ -172,7 +172,7 @@ async function start(
   }
 }
 
-/** The command, which says what the server refuses, and offers what helps where there is none. */
+/** The command, which shows why the server refuses, and offers help if none runs. */
 function orSay(command: () => Promise<void>): () => Promise<void> {
   const show = "Show Log";
   const restart = "Restart Server";
@@ -189,7 +189,7 @@ function orSay(command: () => Promise<void>): () => Promise<void> {
   };
 }
 
-/** Says why there is no server, and offers what helps. */
+/** Shows why no server runs, and offers help. */
 async function explain(error: unknown): Promise<void> {
   const choose = "Choose Python…";
   const get = "Get Python";
@@ -222,7 +222,7 @@ async function copyNodePath(ask: Ask): Promise<void> {
   const textDocument = { uri: editor.document.uri.toString() };
   const path = await ask("btq.server.nodePath", { textDocument, position: { line, character } });
   if (typeof path !== "string") {
-    void vscode.window.showInformationMessage("No node stands here.");
+    void vscode.window.showInformationMessage("No node at the cursor.");
     return;
   }
   await vscode.env.clipboard.writeText(path);
@@ -233,7 +233,7 @@ async function copyNodePath(ask: Ask): Promise<void> {
 async function newProject(context: vscode.ExtensionContext): Promise<void> {
   const chosen = await vscode.window.showOpenDialog({
     title: "The folder of the new project",
-    openLabel: "Begin Here",
+    openLabel: "Create Here",
     defaultUri: vscode.workspace.workspaceFolders?.[0]?.uri,
     canSelectFiles: false,
     canSelectFolders: true,
@@ -288,7 +288,7 @@ function complaint(command: string, words: string[]): Promise<string> {
   );
 }
 
-/** The command line of btq that belongs to the server; empty, with a message, where there is no Python. */
+/** The command line of btq that belongs to the server; empty, with a message, without a Python. */
 async function commandLine(context: vscode.ExtensionContext): Promise<string[]> {
   try {
     return (server ?? (await findServer(context.extensionPath, await activeInterpreter()))).btq;

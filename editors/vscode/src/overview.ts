@@ -16,7 +16,7 @@ export class OverviewView {
     private readonly ask: Ask,
   ) {
     context.subscriptions.push(
-      // Requirements may stand in any other mission.  While somebody types, tables that jump would only disturb.
+      // Requirements may be in any other mission.  While somebody types, tables that jump would only disturb.
       vscode.workspace.onDidSaveTextDocument(({ languageId }) => {
         if (languageId === "btq") void this.draw();
       }),
@@ -24,7 +24,7 @@ export class OverviewView {
     );
   }
 
-  /** The overview of the active editor's mission, beside it; rejects with the reason why there is none. */
+  /** The overview of the active editor's mission, beside it; rejects with the reason if it cannot. */
   async show(): Promise<void> {
     const editor = vscode.window.activeTextEditor;
     const document = editor?.document;

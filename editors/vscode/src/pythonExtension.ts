@@ -29,6 +29,6 @@ async function api(): Promise<PythonApi | undefined> {
     const found = await extension?.activate();
     return found?.environments ? found : undefined;
   } catch {
-    return undefined; // its trouble is told by itself; ours goes on without it
+    return undefined; // it reports its own trouble; ours continues without it
   }
 }

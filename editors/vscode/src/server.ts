@@ -38,7 +38,7 @@ export async function findServer(extensionPath: string, active: string | undefin
   const strategy = settings.get<string>("importStrategy");
   const chosen = await firstRecent([setting, active]);
   if (setting && chosen?.path !== setting) {
-    throw new NoPython(`The setting btq.interpreter names ${setting}, which is no Python 3.10 or newer.`);
+    throw new NoPython(`The setting btq.interpreter names ${setting}, which is not Python 3.10 or newer.`);
   }
   if (strategy === "fromEnvironment") {
     if (chosen?.hasBtq) {
@@ -56,7 +56,7 @@ export async function findServer(extensionPath: string, active: string | undefin
   }
   const python = chosen ?? (await firstRecent(NAMES));
   if (!python) {
-    throw new NoPython("btq needs Python 3.10 or newer to check missions, and found none.");
+    throw new NoPython("btq requires Python 3.10 or newer to check missions, and found none.");
   }
   return {
     command: python.path,
@@ -66,7 +66,7 @@ export async function findServer(extensionPath: string, active: string | undefin
   };
 }
 
-// `py` is Windows' launcher; the Store's `python` that only advertises fails when asked, like any other that is none.
+// `py` is Windows' launcher; the Store's `python` that only advertises fails when run, like any other that is not Python.
 const NAMES = process.platform === "win32" ? ["python", "py", "python3"] : ["python3", "python"];
 // A package that lies in the opened folder is not what is installed, and must not be run for looking at a file.  Python
 // has a flag for that (-P) from 3.11 on only, and -I would also forget PYTHONPATH, which ROS needs.

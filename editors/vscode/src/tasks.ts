@@ -1,5 +1,5 @@
 // The tasks `btq: check` and `btq: build`: the same commands as on a build server, for all folders of the window.
-// One invariant: a problem stands in the Problems view once: what the server shows there, a task leaves to it.
+// One invariant: a problem appears in the Problems view once: what the server shows there, a task leaves to it.
 import * as vscode from "vscode";
 
 type Command = "check" | "build";

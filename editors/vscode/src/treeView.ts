@@ -9,14 +9,14 @@ import type { Ask } from "./xml";
 
 interface Picture {
   readonly svg: string;
-  /** Where each node stands, by the id of its group in the picture; in the order of the text. */
+  /** The place of each node, by the id of its group in the picture; in the order of the text. */
   readonly nodes: Record<string, { readonly line: number; readonly character: number }>;
 }
 
 /** The names of the nodes that are folded, and whether notes are; the key of a node; a picture. */
 type FromPage = { readonly draw: string[] } | { readonly go: string } | { readonly save: string };
 
-/** What stands on the tab of a page beside a mission: the mission's own icon. */
+/** The tab of a page beside a mission: the mission's own icon. */
 export function iconPath({ extensionUri }: vscode.ExtensionContext): { light: vscode.Uri; dark: vscode.Uri } {
   const icon = (theme: string): vscode.Uri => vscode.Uri.joinPath(extensionUri, "images", `file-${theme}.svg`);
   return { light: icon("light"), dark: icon("dark") };
@@ -35,7 +35,7 @@ export class TreeView {
   ) {
     context.subscriptions.push(
       vscode.workspace.onDidChangeTextDocument(({ document }) => {
-        // Requirements may stand in any other mission.
+        // Requirements may be in any other mission.
         if (document.languageId === "btq") this.soon();
       }),
       vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => {

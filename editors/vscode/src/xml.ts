@@ -1,4 +1,4 @@
-// The XML of a mission as it stands in the editor, saved or not, in a document beside it that cannot be edited.
+// The XML of a mission as it is in the editor, saved or not, in a document beside it that cannot be edited.
 import * as vscode from "vscode";
 
 const SCHEME = "btq-xml";

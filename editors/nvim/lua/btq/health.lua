@@ -13,13 +13,13 @@ local report = {
 function M.check()
   report.start('btq')
   if vim.fn.has('nvim-0.7') == 0 then
-    report.error('Neovim 0.7 or newer is needed')
+    report.error('this plug-in requires Neovim 0.7 or newer')
   end
   local command = require('btq').command()
   if vim.fn.executable(command[1]) ~= 1 then
-    report.error(command[1] .. ' was not found', {
+    report.error(command[1] .. ' not found', {
       'python3 -m pip install /path/to/btq',
-      "or name it: let g:btq_cmd = ['/path/to/btq-lsp']",
+      "or set its path: let g:btq_cmd = ['/path/to/btq-lsp']",
     })
     return
   end
@@ -38,7 +38,7 @@ function M.check()
     end
   end
   if serving == 0 then
-    report.info('no server runs: open a mission, and one is started')
+    report.info('no server runs: open a mission to start one')
   end
 end
 

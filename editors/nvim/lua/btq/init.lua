@@ -61,13 +61,13 @@ function M.setup()
   })
 end
 
---- Whether the server's program is there; the first time that it is not is told, for no version of Neovim tells it.
+--- Whether the server's program is there; reports it the first time that it is not, because no version of Neovim does.
 function M.found()
   local program = M.command()[1]
   if vim.fn.executable(program) == 1 then
     return true
   end
-  vim.notify_once('btq: ' .. program .. ' was not found; :checkhealth btq says more', vim.log.levels.WARN)
+  vim.notify_once('btq: ' .. program .. ' not found; run :checkhealth btq', vim.log.levels.WARN)
   return false
 end
 

@@ -1,5 +1,5 @@
 -- `:BtqPreview`: the trees of a mission in the browser, following what is typed and the cursor; a click there leads here.
--- One invariant: the program that serves the page is told everything over its standard input, so that nothing but this
+-- One invariant: the program that serves the page receives everything over its standard input, so that nothing but this
 -- Neovim can tell it anything, and it ends with the buffer or with Neovim.
 local M = {}
 
@@ -18,17 +18,17 @@ function M.run(stop)
   end
   local file = vim.api.nvim_buf_get_name(buffer)
   if vim.fn.filereadable(file) == 0 then
-    return vim.notify('btq: save this mission first, then its trees can be shown', vim.log.levels.WARN)
+    return vim.notify('btq: save this mission first to show its trees', vim.log.levels.WARN)
   end
   local command = require('btq').program()
   if vim.fn.executable(command[1]) ~= 1 then
-    return vim.notify('btq: ' .. command[1] .. ' was not found; :help btq_program', vim.log.levels.WARN)
+    return vim.notify('btq: ' .. command[1] .. ' not found; see :help btq_program', vim.log.levels.WARN)
   end
   vim.list_extend(command, { 'preview', file, '--follow', '--open' })
   local job
   job = vim.fn.jobstart(command, {
     on_stdout = M.lines(function(line)
-      M.told(buffer, line)
+      M.printed(buffer, line)
     end),
     on_stderr = M.lines(function(line)
       vim.notify(line, vim.log.levels.WARN)
@@ -85,8 +85,8 @@ function M.follow(buffer, job)
   cursor()
 end
 
---- What the program prints: where the page is, and where a node stands that was clicked.
-function M.told(buffer, said)
+--- What the program prints: the address of the page, and the place of a clicked node.
+function M.printed(buffer, said)
   local line, column = said:match(':(%d+):(%d+)$')
   if not line then
     return vim.notify('btq: ' .. said)
