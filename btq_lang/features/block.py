@@ -23,10 +23,12 @@ class Block(Record):
     Attributes:
         span: from its first word to the end of its last line, without the line end.
         blanks: what its first line begins with.
+        begins_its_line: no comment is in front of its first word.
     """
 
     span: Span
     blanks: str
+    begins_its_line: bool = True
 
 
 class Standing(Record):
@@ -57,7 +59,9 @@ def node_at(file: File, entry: Entry, offset: int) -> Standing | None:
 def block_of(file: File, entry: Entry, node: Node) -> Block:
     """The lines of a node and all below it."""
     start = entry.start + node.start
-    return Block(Span(start, _line_end(file.text, entry.start + node.block_end)), blanks_before(file.text, start))
+    blanks = blanks_before(file.text, start)
+    span = Span(start, _line_end(file.text, entry.start + node.block_end))
+    return Block(span, blanks, start == _line_start(file.text, start) + len(blanks))
 
 
 def moved(file: File, block: Block, blanks: str) -> str:

@@ -61,8 +61,9 @@ def refactorings(workspace: Workspace, path: str, offset: int) -> Iterator[Refac
         return
     yield from _extract(workspace, path, standing)
     yield from _inline(workspace, path, standing)
-    yield from _unwrap(workspace, path, standing)
-    yield from _wrap(workspace, path, standing)
+    if block_of(file, entry, standing.node).begins_its_line:
+        yield from _unwrap(workspace, path, standing)
+        yield from _wrap(workspace, path, standing)
 
 
 # ---- a subtree taken out ----

@@ -248,6 +248,12 @@ def test_what_is_not_unwrapped() -> None:
     check_no_action("BehaviorTree Main\n    $0->\n        Pick\n        Place\n", "Unwrap")
     check_no_action("BehaviorTree Main\n    $0Inverter satisfies rq\n        Pick\n", "Unwrap")
     check_no_action("BehaviorTree Main\n    $0Inverter  # why\n        Pick\n", "Unwrap")
+    check_no_action("BehaviorTree Main\n    /* why */ $0Inverter\n        Pick\n", "Unwrap")
+
+
+def test_a_node_after_a_comment_is_not_wrapped() -> None:
+    check_no_action("BehaviorTree Main\n    /* why */ $0Pick\n", "Wrap")
+    check_no_action("BehaviorTree Main\n    /* why\n    */ $0Pick\n", "Wrap")
 
 
 def test_lift_a_requirement() -> None:
