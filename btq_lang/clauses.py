@@ -136,14 +136,14 @@ class ClauseParser(ClaimParser):
         return Word(NAME, start, text)
 
     def torn_quality(self, quality: QualityPath) -> None:
-        """Complain of `time behaviour`: a quality's name has no blanks."""
+        """Complain of `time behaviour`: a quality's name has no spaces."""
         last = quality.names[-1]
         if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
             return
         if self.raw not in VERBS and self.raw not in HEADS:
             fix = replace_fix("Write `-`", Span(last.end + self.base, self.here().start), "-")
             span = Span(last.start + self.base, self.here().end)
-            self.complain("syntax-error", span, "a quality's name has no blanks", (), (fix,))
+            self.complain("syntax-error", span, "a quality's name has no spaces", (), (fix,))
             self.advance()
 
     def bare_title(self, has_quality: bool) -> Word | None:

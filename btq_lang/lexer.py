@@ -501,8 +501,8 @@ class Lexer:
         start, end = self._whole_word(at)
         sign = _COMMENT_SIGN.search(text, start)
         assert sign is not None, "there is a sign: that is why we are here"
-        message = f"`{sign[0]}` begins a comment only after a blank"
-        insert = replace_fix(f"Put a blank before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
+        message = f"`{sign[0]}` begins a comment only after a space"
+        insert = replace_fix(f"Put a space before `{sign[0]}`", Span(sign.start(), sign.start()), " ")
         in_value = bool(self.raws) and self.raws[-1] == "="
         if start == sign.start() and not in_value:
             fix = Fix(insert.title, insert.changes, safe=True)
@@ -691,7 +691,7 @@ class Lexer:
         if expected.startswith(blanks) or blanks.startswith(expected):
             message = f"an indentation of {_shown(blanks)} matches no open block"
         else:
-            message = f"tabs and blanks are mixed: {_shown(blanks)} cannot be compared with {_shown(expected)}"
+            message = f"tabs and spaces are mixed: {_shown(blanks)} cannot be compared with {_shown(expected)}"
         note = f"btq reads the line as if indented by {_shown(expected)}"
         span = Span(self.line_start, self.line_start + len(blanks))
         fix = replace_fix(f"Indent it by {_shown(expected)}", span, expected)
@@ -716,7 +716,7 @@ def _shown(blanks: str) -> str:
         return "nothing"
     tabs = blanks.count("\t")
     parts = [
-        f"{count} {word}{'s' * (count > 1)}" for count, word in ((tabs, "tab"), (len(blanks) - tabs, "blank")) if count
+        f"{count} {word}{'s' * (count > 1)}" for count, word in ((tabs, "tab"), (len(blanks) - tabs, "space")) if count
     ]
     return " and ".join(parts)
 

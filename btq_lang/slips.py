@@ -152,6 +152,6 @@ INSTEAD: Final = {
     "&": "write `and`",
     "|": "write `or`; `||` is the symbol of Parallel",
     **dict.fromkeys(_OTHER_QUOTES, "strings go in straight quotes"),
-    "\xa0": "this is a no-break space: use an ordinary blank",
+    "\xa0": "this is a no-break space: use an ordinary space",
     "\ufeff": "a byte order mark belongs at the start of a file",
 }

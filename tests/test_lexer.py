@@ -122,12 +122,12 @@ def test_a_dedent_to_a_column_of_no_block_is_one_diagnostic() -> None:
             E
           F
     """
-    problem = "5:1 inconsistent-indentation «      » an indentation of 6 blanks matches no open block"
+    problem = "5:1 inconsistent-indentation «      » an indentation of 6 spaces matches no open block"
     parsed = assert_parse(text, tree, problem)
-    assert parsed.diagnostics[0].notes == ("btq reads the line as if indented by 8 blanks",)
+    assert parsed.diagnostics[0].notes == ("btq reads the line as if indented by 8 spaces",)
     assert_fix(
         "BehaviorTree t\n    A\n  B\n",
-        "Indent it by 4 blanks",
+        "Indent it by 4 spaces",
         "BehaviorTree t\n    A\n    B\n",
     )
 
@@ -135,11 +135,11 @@ def test_a_dedent_to_a_column_of_no_block_is_one_diagnostic() -> None:
 @pytest.mark.parametrize(
     ("line", "title", "mended"),
     [
-        (" " * 9 + "D", "Indent it by 8 blanks", " " * 8 + "D"),
-        (" " * 10 + "D", "Indent it by 12 blanks", " " * 12 + "D"),
-        (" " * 7 + "D", "Indent it by 8 blanks", " " * 8 + "D"),
-        ("\t\t\tD", "Indent it by 12 blanks", " " * 12 + "D"),
-        ("\tD", "Indent it by 4 blanks", "    D"),
+        (" " * 9 + "D", "Indent it by 8 spaces", " " * 8 + "D"),
+        (" " * 10 + "D", "Indent it by 12 spaces", " " * 12 + "D"),
+        (" " * 7 + "D", "Indent it by 8 spaces", " " * 8 + "D"),
+        ("\t\t\tD", "Indent it by 12 spaces", " " * 12 + "D"),
+        ("\tD", "Indent it by 4 spaces", "    D"),
     ],
 )
 def test_a_column_of_no_block_is_taken_for_the_nearer_one(line: str, title: str, mended: str) -> None:
@@ -157,7 +157,7 @@ def test_the_adopted_column_may_open_blocks() -> None:
               C
             D
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «      » an indentation of 6 blanks matches no open block")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «      » an indentation of 6 spaces matches no open block")
 
 
 def test_tabs_and_spaces_that_cannot_be_compared_are_one_diagnostic() -> None:
@@ -170,7 +170,7 @@ def test_tabs_and_spaces_that_cannot_be_compared_are_one_diagnostic() -> None:
           C
             D
     """
-    message = "tabs and blanks are mixed: 8 blanks cannot be compared with 1 tab"
+    message = "tabs and spaces are mixed: 8 spaces cannot be compared with 1 tab"
     assert_parse(text, tree, f"4:1 inconsistent-indentation «        » {message}")
 
 
@@ -189,7 +189,7 @@ def test_an_item_at_a_column_of_no_block_is_still_an_item() -> None:
         tree u
           B
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «  » an indentation of 2 blanks matches no open block")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «  » an indentation of 2 spaces matches no open block")
 
 
 def test_an_item_at_a_column_of_no_block_in_a_root() -> None:
@@ -207,7 +207,7 @@ def test_an_item_at_a_column_of_no_block_in_a_root() -> None:
           tree u
             B
     """
-    assert_parse(text, tree, "4:1 inconsistent-indentation «        » an indentation of 8 blanks matches no open block")
+    assert_parse(text, tree, "4:1 inconsistent-indentation «        » an indentation of 8 spaces matches no open block")
 
 
 # ---- brackets -------------------------------------------------------------------------------------------------------
@@ -767,13 +767,13 @@ def test_comments(text: str, expected: str) -> None:
 )
 def test_a_comment_sign_inside_a_word_is_an_error_that_says_quote_this(text: str, word: str, sign: str) -> None:
     column = len(text) - len(word) + 1
-    message = f"`{sign}` begins a comment only after a blank; put this in quotes"
+    message = f"`{sign}` begins a comment only after a space; put this in quotes"
     assert_lex(text, f"NAME {word} | NL", f"1:{column} misplaced-comment «{word}» {message}")
 
 
 @pytest.mark.parametrize(("source", "sign"), [("#ff0000", "#"), ("//a", "//"), ("/*a*/", "/*")])
 def test_a_comment_sign_behind_an_equals_sign_is_an_error_too(source: str, sign: str) -> None:
-    message = f"`{sign}` begins a comment only after a blank; put this in quotes"
+    message = f"`{sign}` begins a comment only after a space; put this in quotes"
     assert_value(source, f"NAME {source}", f"1:1 misplaced-comment «{source}» {message}")
     text = f"BehaviorTree a\n  X (color = {source} b = 1)"
     problem = f"2:14 misplaced-comment «{source}» {message}"
@@ -783,10 +783,10 @@ def test_a_comment_sign_behind_an_equals_sign_is_an_error_too(source: str, sign:
 
 def test_a_word_with_a_comment_sign_can_be_quoted_or_parted() -> None:
     text = "BehaviorTree a\n  X Weed#2\n  Y"
-    problem = "2:5 misplaced-comment «Weed#2» `#` begins a comment only after a blank; put this in quotes"
+    problem = "2:5 misplaced-comment «Weed#2» `#` begins a comment only after a space; put this in quotes"
     assert_parse(text, "tree a\n  X as Weed#2\n  Y", problem)
     assert_fix(text, "Put quotes around it", 'BehaviorTree a\n  X "Weed#2"\n  Y')
-    assert_fix(text, "Put a blank before `#`", "BehaviorTree a\n  X Weed #2\n  Y")
+    assert_fix(text, "Put a space before `#`", "BehaviorTree a\n  X Weed #2\n  Y")
 
 
 @pytest.mark.parametrize("word", ["->", "'a'", "{a}"])
@@ -794,9 +794,9 @@ def test_behind_what_is_no_word_a_blank_is_missing(word: str) -> None:
     kind = {"->": "SYMBOL", "'a'": "STRING", "{a}": "BRACED"}[word]
     at = len(word) + 1
     assert_lex(f"{word}#b c", f"{kind} {word} | COMMENT #b c | NL",
-               f"1:{at} misplaced-comment «#» `#` begins a comment only after a blank")  # fmt: skip
+               f"1:{at} misplaced-comment «#» `#` begins a comment only after a space")  # fmt: skip
     assert_fix(
-        "BehaviorTree a\n  ->// b\n    X", "Put a blank before `//`", "BehaviorTree a\n  -> // b\n    X", safe=True
+        "BehaviorTree a\n  ->// b\n    X", "Put a space before `//`", "BehaviorTree a\n  -> // b\n    X", safe=True
     )
 
 
@@ -834,7 +834,7 @@ def test_comments_are_tokens_wherever_they_stand() -> None:
         ("&", "write `and`"),
         ("|", "write `or`; `||` is the symbol of Parallel"),
         ("[", "attributes go in round brackets: `(key = value)`"),
-        ("\xa0", "this is a no-break space: use an ordinary blank"),
+        ("\xa0", "this is a no-break space: use an ordinary space"),
     ],
 )
 def test_a_character_that_begins_nothing_is_left_out_with_one_diagnostic_a_line(character: str, note: str) -> None:

@@ -140,10 +140,10 @@ def test_what_no_reader_can_make_sense_of(text: str, problem: str) -> None:
         ('<a b="<"/>', [("a", [("b", "<")])], "write `<` in a value as `&lt;`"),
         ('<a b="& &c;"/>', [("a", [("b", "& &c;")])], "write `&` as `&amp;`"),
         ("<a><!-- -- --></a>", [("a", []), " -- "], "write `- -` in comments"),
-        ('<a b="1"c="2"/>', [("a", [("b", "1"), ("c", "2")])], "put a blank between attributes"),
+        ('<a b="1"c="2"/>', [("a", [("b", "1"), ("c", "2")])], "put a space between attributes"),
         ("text<a/>", [("a", [])], "remove the text before the document element"),
         ("<a/><b/>", [("a", [])], "one element contains the whole file: remove the text after it"),
-        ("< a/>", [("a", [])], "put no blank between `<` and the name"),
+        ("< a/>", [("a", [])], "put no space between `<` and the name"),
         ('<?xml version="2.0"?><a/>', [("a", [])], 'write version="1.0"'),
     ],
 )

@@ -415,7 +415,7 @@ class _Writer:
         if self.marks is not None:
             self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
-            message = "`*/` in a comment is written `* /`, or the comment loses its last blank"
+            message = "`*/` in a comment is written `* /`, or the comment loses its last space"
             self.changes.append(Change(Span(content.start, end), message))
 
     def blank_line(self) -> None:

@@ -86,7 +86,7 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
         "find what is wrong with missions, before the robot does",
         epilog="exit codes: 0 clean, or nothing worse than hints; 1 errors or warnings; 2 usage or I/O\n\n"
         "examples:\n  btq check                          the project in this folder\n"
-        "  btq check --fix mission.btq        and mend what is certain\n"
+        "  btq check --fix mission.btq        and apply the safe fixes\n"
         "  btq check --output-format github   annotations in a pull request\n",
     )
     _add_paths(parser)
@@ -105,8 +105,8 @@ def _add_format(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "format",
-        "settle indentation, blanks and the order of clauses",
-        epilog="exit codes: 0 formatted; 1 files with syntax errors, left as they are, or changes to make\n"
+        "normalize indentation, spaces and the order of clauses",
+        epilog="exit codes: 0 formatted; 1 files with syntax errors, left unchanged, or changes to make\n"
         "(--check, --diff); 2 usage or I/O\n\n"
         "examples:\n  btq format                   the project in this folder\n"
         "  btq format --check           in CI: is everything formatted?\n"
@@ -135,7 +135,9 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--no-enforce", action="store_true", help="the plain tree: nothing around nodes for requirements"
     )
-    parser.add_argument("--verbatim", action="store_true", help="exactly what the file says: nothing mended or added")
+    parser.add_argument(
+        "--verbatim", action="store_true", help="exactly the content of the file: no repairs and no additions"
+    )
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
     parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
     parser.add_argument("--verbose", action="store_true", help="show how every clause is enforced")
@@ -167,7 +169,7 @@ def _add_import(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="XML files, `-` for standard input")
     _add_folder(parser, "DIR", "the folder to write into; default: that of each file")
-    parser.add_argument("--keep-v3", action="store_true", help="leave files for version 3 of the engine as they are")
+    parser.add_argument("--keep-v3", action="store_true", help="keep the syntax of files for version 3 of the engine")
     parser.add_argument("--force", action="store_true", help="overwrite existing .btq files")
     _add_color(parser)
 

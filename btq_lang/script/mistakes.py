@@ -107,7 +107,7 @@ def braced(text: str, span: Span, name: str) -> Diagnostic:
 
 def strange_blank(span: Span) -> Diagnostic:
     return error(
-        span, "the engine does not accept this character as a blank", replace_fix("Write a blank", span, " ", safe=True)
+        span, "the engine does not accept this character as a space", replace_fix("Write a space", span, " ", safe=True)
     )
 
 
@@ -138,8 +138,8 @@ def too_large(span: Span, raw: str) -> Diagnostic:
 
 
 def glued_hexadecimal(span: Span) -> Diagnostic:
-    fix = replace_fix("Put a blank between them", Span(span.end, span.end), " ", safe=True)
-    return error(span, "a hexadecimal number and the `..` after it need a blank between them", fix)
+    fix = replace_fix("Put a space between them", Span(span.end, span.end), " ", safe=True)
+    return error(span, "a hexadecimal number and the `..` after it need a space between them", fix)
 
 
 def no_such(text: str, span: Span) -> Diagnostic:

@@ -232,7 +232,7 @@ def _glued_number(node: Binary, text: str, targets: _Targets) -> Iterable[Diagno
     while not isinstance(last, Group) and (inside := children(last)):
         last = inside[-1]
     if isinstance(last, Number) and text.startswith("..", last.end) and last.raw[:2] not in ("0x", "0X"):
-        fix = Fix("Put a blank between them", (Change(Place(Span(last.end, last.end)), " "),), safe=True)
+        fix = Fix("Put a space between them", (Change(Place(Span(last.end, last.end)), " "),), safe=True)
         yield _refused(fix, last, "a number with `..` at its end", targets.old, targets)
 
 
