@@ -285,7 +285,7 @@ FROM_PYTHON: Final[list[Case]] = [
     (
         "BehaviorTree Main\n    ->\n        Go\n\t\tTurn\n",
         "4:1 error inconsistent-indentation «\t\t» tabs and spaces are mixed: 2 tabs cannot be compared with 8 "
-        "blanks | "
+        "spaces | "
         "btq reads the line as if indented by 8 spaces",
         tree("->", "    Go", "    Turn"),
     ),
