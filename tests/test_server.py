@@ -711,7 +711,7 @@ def test_hints_and_lenses_can_be_switched_off(editor: Editor) -> None:
     (hint,) = editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole)
     assert (hint["label"], hint["position"]) == ("= 2000", {"line": 1, "character": 23})
     (lens,) = editor.request("textDocument/codeLens", **editor.document("main.btq"))
-    assert (lens["command"]["title"], lens["command"]["command"]) == ("0 calls", "")
+    assert (lens["command"]["title"], lens["command"]["command"]) == ("main tree", "")
     editor.notify("workspace/didChangeConfiguration", settings={"btq": {"inlayHints": False, "codeLens": False}})
     assert editor.request("textDocument/inlayHint", **editor.document("main.btq"), range=whole) == []
     assert editor.request("textDocument/codeLens", **editor.document("main.btq")) == []
@@ -719,12 +719,13 @@ def test_hints_and_lenses_can_be_switched_off(editor: Editor) -> None:
 
 def test_a_lens_calls_the_command_of_an_editor_that_has_it(tmp_path: Path) -> None:
     editor = Editor(tmp_path, capabilities={"experimental": {"commands": ["btq.showReferences"]}})
-    editor.open("main.btq", "Root Main\nBehaviorTree Main\n    Pick\n")
-    (lens,) = editor.request("textDocument/codeLens", **editor.document("main.btq"))
+    editor.open("main.btq", "Root Main\nBehaviorTree Main\n    SubTree Dock\nBehaviorTree Dock\n    Pick\n")
+    main, lens = editor.request("textDocument/codeLens", **editor.document("main.btq"))
+    assert main["command"] == {"title": "main tree", "command": ""}  # nothing to open: a plain title
     assert (lens["command"]["title"], lens["command"]["command"]) == ("1 call", "btq.showReferences")
     uri, place, uses = lens["command"]["arguments"]
-    assert (uri, place) == (editor.uri("main.btq"), {"line": 1, "character": 13})
-    assert uses == [{"uri": uri, "range": {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 9}}}]
+    assert (uri, place) == (editor.uri("main.btq"), {"line": 3, "character": 13})
+    assert uses == [{"uri": uri, "range": {"start": {"line": 2, "character": 12}, "end": {"line": 2, "character": 16}}}]
     assert editor.close() == ""
 
 
@@ -734,7 +735,7 @@ def test_a_lens_of_any_other_editor_names_or_shows_the_places(tmp_path: Path) ->
         editor = Editor(tmp_path, capabilities=capabilities)
         editor.open("main.btq", once)
         lens, unused = editor.request("textDocument/codeLens", **editor.document("main.btq"))
-        assert (unused["command"]["title"], unused["command"]["command"]) == ("0 calls", "")
+        assert unused["command"] == {"title": "main tree", "command": ""}
         assert (lens["command"]["title"], lens["command"]["command"]) == ("1 use", "btq.server.uses")
         assert lens["command"]["command"] in editor.capabilities["executeCommandProvider"]["commands"]
         editor.request("workspace/executeCommand", **{key: lens["command"][key] for key in ("command", "arguments")})

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from btq_lang.features import describe
 from btq_lang.features.held import missions_of
-from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, quality_of, subject
+from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.file import Definition
@@ -14,10 +14,11 @@ from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
 from btq_lang.requirements import requirements
-from btq_lang.syntax import Claim, Requirement
+from btq_lang.syntax import Claim, Entry, Requirement, Root
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
 
+_COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}
 _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds
 
 
@@ -63,28 +64,51 @@ def inlay_hints(workspace: Workspace, path: str, within: Span) -> tuple[Hint, ..
 
 
 def code_lenses(workspace: Workspace, path: str) -> tuple[Lens, ...]:
-    """How often a requirement is named, for how many nodes it holds by its own words, and how often a tree is run."""
+    """How many places use a requirement, how many nodes it names itself, how many nodes call a tree; the main tree.
+
+    What a reader counts: a requirement that is defined at a node is used there, and has a lens only where there is more
+    to see; the `Root` that names the main tree does not call it.
+    """
     found: list[Lens] = []
     for place in workspace.defined_in(path):
-        kinds = {Kind.REQUIREMENT: (What.REQUIREMENT, "use", "uses"), Kind.TREE: (What.TREE, "call", "calls")}
-        if place.symbol.kind not in kinds or workspace.scope(path).find(place.symbol.kind, place.symbol.name) != place:
+        kind = place.symbol.kind
+        if kind not in _COUNTED or workspace.scope(path).find(kind, place.symbol.name) != place:
             continue
-        what, one, many = kinds[place.symbol.kind]
-        uses = tuple(
-            (use.path, use.span)
-            for use in everywhere(workspace, Subject(what, place.symbol.name, home_of(place)))
-            if (use.path, use.span) != (place.path, place.span)
+        what = _COUNTED[kind]
+        own = place.path, place.span
+        mentions = [*everywhere(workspace, Subject(what, place.symbol.name, home_of(place)))]
+        others = tuple(
+            (one.path, one.span) for one in mentions if (one.path, one.span) != own and not _is_root(one.entry)
         )
-        titles = [f"{len(uses)} {one if len(uses) == 1 else many}"]
+        if kind is Kind.TREE:
+            is_top = path not in workspace.included_files and is_main(workspace, path, place.entry)
+            is_main_tree = is_top or any(_is_root(one.entry) for one in mentions)
+            titles = ["main tree"] if is_main_tree else []
+            if others or not is_main_tree:
+                titles.append(_counted(len(others), "call"))
+            found.append(Lens(place.span, ", ".join(titles), others))
+            continue
+        is_in_place = not isinstance(place.entry.item, Requirement)
+        uses = (own, *others) if is_in_place and others else others
+        titles = [_counted(len(uses), "use")]
         nodes: tuple[tuple[str, Span], ...] = ()
         if _names_its_subject(place):
             missions = missions_of(workspace, path)
             nodes = tuple(dict.fromkeys(at for one in missions[:_MOST_MISSIONS] for at in _held(workspace, one, place)))
-            some = f"{len(nodes)} node{'s' if len(nodes) != 1 else ''}"
             more = " or more" if len(missions) > _MOST_MISSIONS else ""
-            titles = [*(titles if uses or not nodes else ()), *((f"holds for {some}{more}",) if nodes else ())]
-        found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
+            holds = [f"holds for {_counted(len(nodes), 'node')}{more}"] if nodes else []
+            titles = [*(titles if uses or not nodes else ()), *holds]
+        if uses or nodes or not is_in_place:
+            found.append(Lens(place.span, ", ".join(titles), tuple(dict.fromkeys((*uses, *nodes)))))
     return tuple(found)
+
+
+def _counted(number: int, word: str) -> str:
+    return f"{number} {word}{'s' if number != 1 else ''}"
+
+
+def _is_root(entry: Entry | None) -> bool:
+    return entry is not None and isinstance(entry.item, Root)
 
 
 def _names_its_subject(found: Definition) -> bool:

@@ -91,9 +91,11 @@ def register(server: Server) -> None:
         for lens in features.code_lenses(workspace, path):
             range_ = convert.range(workspace, path, lens.span)
             uses = [convert.location(workspace, *use) for use in lens.places]
-            if server.knows_command(SHOW_REFERENCES):
+            if not uses:
+                command = types.Command(lens.title, "")  # a plain title: there is nothing to open
+            elif server.knows_command(SHOW_REFERENCES):
                 command = types.Command(lens.title, SHOW_REFERENCES, arguments=[convert.uri(path), range_.start, uses])
             else:
-                command = types.Command(lens.title, USES if uses else "", arguments=[uses] if uses else None)
+                command = types.Command(lens.title, USES, arguments=[uses])
             found.append(types.CodeLens(range_, command))
         return found

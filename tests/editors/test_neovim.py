@@ -265,6 +265,34 @@ def test_a_code_lens_lists_the_uses(neovim: Neovim) -> None:
     assert neovim.run({"main.btq": text}, script) == [5, 6]
 
 
+def test_a_code_lens_with_nothing_to_open_is_a_title(neovim: Neovim) -> None:
+    """To run it opens nothing, and no version warns that the server lacks a command."""
+    script = """
+    btq.wait(btq.client, 'the server')
+    local warned = {}
+    vim.notify = function(text) table.insert(warned, text) end
+    vim.notify_once = vim.notify
+    if vim.lsp.codelens.enable then
+      vim.lsp.codelens.enable(true)
+    else
+      vim.lsp.codelens.refresh()
+    end
+    local shown
+    btq.wait(function()
+      local found = vim.lsp.codelens.get(vim.lsp.codelens.enable and { bufnr = 0 } or 0)
+      shown = found[1] and (found[1].lens or found[1]).command.title
+      return shown
+    end, 'a lens')
+    vim.fn.cursor(1, 1)
+    vim.lsp.codelens.run()
+    vim.wait(500)
+    return { shown, warned, vim.fn.getqflist() }
+    """
+    shown, said, listed = neovim.run({"main.btq": "BehaviorTree Main\n    Dock\n"}, script)
+    assert (shown, listed) == ("main tree", [])
+    assert said in ([], ["No executable codelens found at current line"])  # 0.10 says so
+
+
 def test_one_server_serves_a_project(neovim: Neovim) -> None:
     script = """
     btq.wait(btq.client, 'the server')

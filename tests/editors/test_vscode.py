@@ -192,9 +192,10 @@ def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
     code.write("demands.btq", REQUIREMENTS)
     code.write("visit.btq", MISSION)
     code.open("visit.btq")
+    code.see(".codelens-decoration:has-text('main tree'):not(:has(a))")  # there is nothing to open
     code.open("demands.btq")
-    code.see(".codelens-decoration a").click()
-    code.see(".peekview-widget .reference-zone-widget, .zone-widget .ref-tree, .peekview-widget")
+    code.see(".codelens-decoration a:text-is('1 use')").click()
+    code.see(".peekview-widget .ref-tree .monaco-list-row:has-text('satisfies soon_there')")
     code.keys("Escape")
 
 

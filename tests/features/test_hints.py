@@ -61,12 +61,44 @@ def test_lenses() -> None:
     )
 
 
+def test_a_requirement_that_is_defined_at_its_only_node_has_no_lens() -> None:
+    """It is used where it is defined: neither `0 uses` nor a line for nothing."""
+    check_lenses(
+        'BehaviorTree Main\n    ->\n        A (satisfices Quality = safety (QualityReq ID = "rq1" description = "d"))\n'
+        '        B satisfies QualityReq rq2 "Soon" takes at most 3 s\n'
+        '        C satisfies QualityReq rq3 "Soon" takes at most 3 s\n        D satisfies rq3\n',
+        "Main: main tree",
+        "rq3: 2 uses",
+    )
+
+
+def test_a_requirement_at_a_node_holds_for_the_nodes_that_it_names() -> None:
+    check_lenses(
+        'BehaviorTree Main\n    ->\n        A satisfies QualityReq rq "Soon" B takes at most 3 s\n        B\n',
+        "Main: main tree",
+        "rq: holds for 1 node",
+    )
+
+
+def test_the_main_tree_is_called_so() -> None:
+    check_lenses("BehaviorTree A\n    SubTree B\nBehaviorTree B\n    C\n", "A: main tree", "B: 1 call")
+    check_lenses("Root B\nBehaviorTree A\n    SubTree B\nBehaviorTree B\n    C\n", "A: 0 calls", "B: main tree, 1 call")
+    check_lenses("BehaviorTree A\n    C\nBehaviorTree B\n    C\n", "A: 0 calls", "B: 0 calls")
+
+
+def test_the_main_tree_of_a_mission_may_be_in_a_library() -> None:
+    library = "BehaviorTree Dock\n    Pick\nBehaviorTree Home\n    Drive\n"
+    check_lenses(
+        f'//- lib.btq\n{library}//- main.btq\ninclude "lib.btq"\nRoot Dock\n', "Dock: main tree", "Home: 0 calls"
+    )
+
+
 def test_classic_repeats_have_one_lens() -> None:
     check_lenses(
         "BehaviorTree Main\n    ->\n        A (satisfies QualityReq ID = x description = y)\n"
         "        B (satisfies QualityReq ID = x description = y)\n",
-        "Main: 0 calls",
-        "x: 1 use",
+        "Main: main tree",
+        "x: 2 uses",
     )
 
 
@@ -103,7 +135,7 @@ def test_requirements_that_name_their_own_subjects() -> None:
         "added: holds for 2 nodes",
         "both: 1 use, holds for 1 node",
         "nothing: 0 uses",
-        "Main: 1 call",
+        "Main: main tree",
     )
 
 

@@ -36,6 +36,9 @@ local function capabilities()
   return known
 end
 
+--- What the client does by itself: a code lens with nothing to open has no command, and Neovim would warn about that.
+local COMMANDS = { [''] = function() end }
+
 --- Start the server for every mission that is opened from now on.
 function M.setup()
   vim.lsp.commands['btq.showReferences'] = function(command, context)
@@ -46,7 +49,13 @@ function M.setup()
   end
   local starts_by_itself = vim.lsp.config and vim.lsp.enable -- 0.11 and newer
   if starts_by_itself then
-    vim.lsp.config('btq', { cmd = M.command(), capabilities = capabilities(), filetypes = { 'btq' }, root_markers = MARKERS })
+    vim.lsp.config('btq', {
+      cmd = M.command(),
+      capabilities = capabilities(),
+      commands = COMMANDS,
+      filetypes = { 'btq' },
+      root_markers = MARKERS,
+    })
     vim.lsp.enable('btq')
   end
   vim.api.nvim_create_autocmd('FileType', {
@@ -77,13 +86,22 @@ function M.attach(buffer)
   local file = vim.api.nvim_buf_get_name(buffer)
   local root = M.root(file)
   if vim.lsp.start then -- 0.8 to 0.10
-    vim.lsp.start({ name = 'btq', cmd = command, capabilities = capabilities(), root_dir = root }, { bufnr = buffer })
+    vim.lsp.start(
+      { name = 'btq', cmd = command, capabilities = capabilities(), commands = COMMANDS, root_dir = root },
+      { bufnr = buffer }
+    )
     return
   end
   M.clients = M.clients or {} -- 0.7 does not know which clients are of one project
   local client = M.clients[root]
   if not client or vim.lsp.client_is_stopped(client) then
-    client = vim.lsp.start_client({ name = 'btq', cmd = command, capabilities = capabilities(), root_dir = root })
+    client = vim.lsp.start_client({
+      name = 'btq',
+      cmd = command,
+      capabilities = capabilities(),
+      commands = COMMANDS,
+      root_dir = root,
+    })
     M.clients[root] = client
   end
   vim.lsp.buf_attach_client(buffer, client)
