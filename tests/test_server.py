@@ -660,6 +660,7 @@ def test_code_actions(editor: Editor) -> None:
         "Replace `Sequnce` with `Sequence`",
         "Silence `unknown-node` on this line",
     ]
+    assert [each.get("isPreferred", False) for each in found[:2]] == [True, False]
     assert found[0]["diagnostics"][0]["code"] == "unknown-node"
     assert edits(found[0]["edit"]["changes"][editor.uri("main.btq")]) == [(2, 8, 15, "Sequence")]
     all_ = editor.request(
@@ -669,6 +670,35 @@ def test_code_actions(editor: Editor) -> None:
         context={"diagnostics": [], "only": ["source.fixAll"]},
     )
     assert all_ == []
+
+
+def test_an_editor_knows_the_kinds_of_code_actions_and_gets_those_that_it_asks_for(editor: Editor) -> None:
+    assert editor.capabilities["codeActionProvider"]["codeActionKinds"] == [
+        *("quickfix", "refactor.extract", "refactor.inline", "refactor.rewrite"),
+        *("source.fixAll.btq", "source.organizeImports.btq"),
+    ]
+    editor.open("lib.btq", "BehaviorTree Lib\n    Pick\n")
+    head = 'include "lib.btq"\ninclude "lib.btq"  # twice\nsignal b : % from {b}\nRoot Main\n'
+    editor.open("main.btq", f"{head}BehaviorTree Main\n    Pick satisfices speed\n")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 5, "character": 25}}
+
+    def asked(*only: str) -> list[tuple[str, str, list[tuple[int, int, int, str]]]]:
+        context = {"diagnostics": [], "only": [*only]}
+        found = editor.request("textDocument/codeAction", **editor.document("main.btq"), range=whole, context=context)
+        uri = editor.uri("main.btq")
+        return [(each["kind"], each["title"], edits(each["edit"]["changes"][uri])) for each in found]
+
+    organize = ("source.organizeImports.btq", "Remove 2 duplicate or unused includes", [(0, 0, 0, ""), (1, 0, 19, "")])
+    (fix_all,) = asked("source.fixAll")
+    assert fix_all[:2] == ("source.fixAll.btq", "Apply 1 safe fix")
+    assert asked("source.organizeImports") == [organize]
+    assert asked("source") == [fix_all, organize]
+    assert asked("source.fixAll.ruff") == []
+    assert [each[1] for each in asked("quickfix") if each[1].startswith("Remove")] == [
+        "Remove the unused signal `b`",
+        "Remove the unused include `lib.btq`",
+        "Remove the duplicate include `lib.btq`",
+    ]
 
 
 def test_renamed_files_take_their_includes_with_them(tmp_path: Path) -> None:

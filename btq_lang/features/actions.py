@@ -1,4 +1,4 @@
-"""Code actions: the fixes of diagnostics, all safe ones at once, and refactorings of what stands at a place."""
+"""Code actions: fixes of diagnostics, all safe ones at once, removal of what is unused, refactorings of a place."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
+from btq_lang.features.unused import UNUSED, needless_includes, removal, without
 from btq_lang.fixes import fixed
+from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record
 from btq_lang.rules import UNREADABLE
 from btq_lang.scan import string_end
@@ -16,7 +19,7 @@ from btq_lang.text import Edit, Position, Span
 from btq_lang.tokens import COMMENT, STRING
 from btq_lang.workspace import Workspace
 
-QUICK_FIX, REFACTOR, FIX_ALL = "quickfix", "refactor", "source.fixAll"
+QUICK_FIX, REFACTOR, FIX_ALL, ORGANIZE = "quickfix", "refactor", "source.fixAll.btq", "source.organizeImports.btq"
 
 
 class Action(Record):
@@ -24,10 +27,10 @@ class Action(Record):
 
     Attributes:
         kind: as LSP has them, dots between: quickfix, refactor.extract, refactor.inline, refactor.rewrite,
-            source.fixAll.
+            source.fixAll.btq, source.organizeImports.btq.
         edits: what it changes, by file.
         diagnostic: what it mends.
-        preferred: it is what is most likely wanted.
+        preferred: it is the one obvious repair; an editor may apply it without asking which.
     """
 
     title: str
@@ -48,29 +51,70 @@ def code_actions(
     """
 
     def wanted(kind: str) -> bool:
-        return not only or any(kind == one or kind.startswith(f"{one}.") or one.startswith(f"{kind}.") for one in only)
+        return not only or any(one in ("", kind) or kind.startswith(f"{one}.") for one in only)
 
     diagnostics = tuple(check(workspace, path) if found is None else found)
     actions: list[Action] = []
     if wanted(QUICK_FIX):
-        here = [one for one in diagnostics if one.span.start <= span.end and span.start <= one.span.end]
+        here = [one for one in diagnostics if _touches(one.span, span)]
         for diagnostic in here:
             actions += _fixes(workspace, path, diagnostic)
+            actions += _removal(workspace, path, diagnostic)
+        for include in needless_includes(workspace, path):
+            if _touches(include.span, span):
+                title = f"Remove the {include.why} include `{include.name}`"
+                actions.append(Action(title, QUICK_FIX, {path: without(workspace.files[path], [include])}))
         actions += _silencing(workspace, path, here)
-    if wanted(REFACTOR):
+    if not only or any(one == "" or one.split(".")[0] == REFACTOR for one in only):
         for made in (*refactorings(workspace, path, span.start), *short_form(workspace, path, span.start, diagnostics)):
             if wanted(made.kind):
                 actions.append(Action(made.title, made.kind, made.edits))
     if wanted(FIX_ALL):
         actions += _fix_all(workspace, path, diagnostics)
+    if wanted(ORGANIZE) and (needless := needless_includes(workspace, path)):
+        title = f"Remove {len(needless)} duplicate or unused include{'s' if len(needless) > 1 else ''}"
+        actions.append(Action(title, ORGANIZE, {path: without(workspace.files[path], needless)}))
     return tuple(actions)
 
 
+def _touches(one: Span, other: Span) -> bool:
+    return one.start <= other.end and other.start <= one.end
+
+
 def _fixes(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
+    obvious = _obvious(diagnostic, workspace.files[path].text)
     for fix in diagnostic.fixes:
         edits = edits_of(fix, path)
         if all(workspace.files[target].origin is None for target in edits):
-            yield Action(fix.title, QUICK_FIX, edits, diagnostic, fix.safe)
+            yield Action(fix.title, QUICK_FIX, edits, diagnostic, fix is obvious)
+
+
+def _obvious(diagnostic: Diagnostic, text: str) -> Fix | None:
+    """The one repair that needs no choice: a safe one, or the only near name of a misspelt word, offered first."""
+    safe = [fix for fix in diagnostic.fixes if fix.safe]
+    respelt = [fix for fix in diagnostic.fixes if _respells(fix, diagnostic, text)]
+    return next(iter(safe), respelt[0] if len(respelt) == 1 and respelt[0] is diagnostic.fixes[0] else None)
+
+
+def _respells(fix: Fix, diagnostic: Diagnostic, text: str) -> bool:
+    """Whether a fix replaces a word by a near name, or by the one that the message asks about."""
+    if len(fix.changes) != 1 or fix.changes[0].place.path is not None:
+        return False
+    (start, end), name = fix.changes[0].place.span, fix.changes[0].text.strip(_QUOTES)
+    word = text[start:end].strip(_QUOTES)
+    if not word or not (name[:1].isalpha() or name[:1] == "_"):
+        return False  # a number that another one replaces is not misspelt
+    return bool(near(word, (name,))) or diagnostic.message.endswith(did_you_mean((name,)))
+
+
+def _removal(workspace: Workspace, path: str, diagnostic: Diagnostic) -> Iterator[Action]:
+    """The removal of an item that a rule reports as unused."""
+    what = UNUSED.get(diagnostic.rule)
+    entry = entry_at(workspace, path, diagnostic.span.start)
+    if what is not None and entry is not None:
+        file = workspace.files[path]
+        title = f"Remove the {what} `{file.text[diagnostic.span.start : diagnostic.span.end].strip(_QUOTES)}`"
+        yield Action(title, QUICK_FIX, {path: removal(file, entry)}, diagnostic)
 
 
 def edits_of(fix: Fix, path: str) -> dict[str, tuple[Edit, ...]]:
@@ -106,8 +150,22 @@ def _runs_on(text: str, kind: int) -> bool:
 
 
 def _fix_all(workspace: Workspace, path: str, diagnostics: Sequence[Diagnostic]) -> Iterator[Action]:
-    texts, count = fixed(workspace, {path: diagnostics})
-    if path in texts:
-        whole = Span(0, len(workspace.files[path].text))
-        title = f"Apply {count} safe fix{'es' if count > 1 else ''}"
-        yield Action(title, f"{FIX_ALL}.btq", {path: (Edit(whole, texts[path]),)})
+    """All safe fixes at once; those that touch a place that another one changes come in further rounds."""
+    before = workspace.files[path].text
+    total = 0
+    while True:
+        wanted = sum(any(fix.safe for fix in diagnostic.fixes) for diagnostic in diagnostics)
+        texts, count = fixed(workspace, {path: diagnostics})
+        if path not in texts:
+            break
+        total += count
+        workspace = workspace.with_file(path, texts[path])
+        if count == wanted:
+            break
+        diagnostics = check(workspace, path)
+    if total:
+        title = f"Apply {total} safe fix{'es' if total > 1 else ''}"
+        yield Action(title, FIX_ALL, {path: (Edit(Span(0, len(before)), workspace.files[path].text),)})
+
+
+_QUOTES = " \t\"'"

@@ -121,14 +121,14 @@ def _free_name(workspace: Workspace, path: str, node: Node) -> str:
     own = node.name.text if node.name is not None and not is_placeholder(node) else ""
     base = legal_name(own) if is_name(own) else "Extracted"
     taken = {*taken_names(workspace, path, ""), *NODE_CLAUSES}  # a clause behind SubTree is one, and no name
-    taken.update(*(_names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))
+    taken.update(*(names_of_nodes(workspace.files[each]) for each in workspace.linked(path)))
     name, number = base, 2
     while name in taken or lookup(name) is not None:
         name, number = f"{base}{number}", number + 1
     return name
 
 
-def _names_of_nodes(file: File) -> set[str]:
+def names_of_nodes(file: File) -> set[str]:
     """The IDs of a file's nodes and of the trees that it runs, and those that its placeholders become."""
     found = {name for kind, name in file.used_names if kind in (Kind.MODEL, Kind.TREE)}
     if not found.isdisjoint(PLACEHOLDERS):  # else its tree is not asked for: it may have been let go

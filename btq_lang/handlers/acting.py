@@ -13,7 +13,8 @@ KINDS = [
     types.CodeActionKind.RefactorExtract,
     types.CodeActionKind.RefactorInline,
     types.CodeActionKind.RefactorRewrite,
-    types.CodeActionKind.SourceFixAll,
+    "source.fixAll.btq",
+    "source.organizeImports.btq",
 ]
 _ALL = types.FileOperationFilter(types.FileOperationPattern("**/*"), scheme="file")
 

@@ -188,6 +188,38 @@ def test_the_light_bulb_mends(code: Workbench) -> None:
     code.on_disk("wrong.btq", WRONG.replace("Sequnce", "Sequence"))
 
 
+def test_auto_fix_takes_the_only_near_name(code: Workbench) -> None:
+    """Without a list to choose from: the fix is preferred."""
+    code.write("wrong.btq", WRONG)
+    code.open("wrong.btq")
+    code.see(".squiggly-warning")
+    code.cursor(3, 10)
+    code.command("Auto Fix...")
+    code.see(".view-line:has-text('Sequence')")
+    code.save()
+    code.on_disk("wrong.btq", WRONG.replace("Sequnce", "Sequence"))
+
+
+def test_a_save_applies_the_source_actions_that_are_asked_for(code: Workbench) -> None:
+    actions = {"source.fixAll": "explicit", "source.organizeImports": "explicit"}
+    code.settings(**{**ENVIRONMENT, "editor.codeActionsOnSave": actions})
+    code.write("demands.btq", REQUIREMENTS)
+    text = 'include "demands.btq"  # all\ninclude "demands.btq"  # again\n\nBehaviorTree Visit\n    Dock{}\n'
+    code.write("saved.btq", text.format(" satisfies soon_there"))
+    code.open("saved.btq")
+    code.see(".codelens-decoration")
+    code.cursor(5, 30)
+    code.type(" satisfices speed")
+    code.keys("Escape")
+    code.save()
+    quality = "performance-efficiency.time-behaviour"
+    fixed = text.format(f" satisfies soon_there satisfices {quality}").replace(
+        'include "demands.btq"  # again', "# again"
+    )
+    code.on_disk("saved.btq", fixed)
+    code.settings(**ENVIRONMENT)
+
+
 def test_a_code_lens_shows_the_uses(code: Workbench) -> None:
     code.write("demands.btq", REQUIREMENTS)
     code.write("visit.btq", MISSION)

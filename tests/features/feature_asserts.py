@@ -366,6 +366,11 @@ def check_actions(text: str, *titles: str, only: tuple[str, ...] = ()) -> None:
     assert [one.title for one in _actions(Fixture(text), only)] == list(titles)
 
 
+def check_preferred(text: str, *titles: str) -> None:
+    """Those of all that can be done at the cursor that an editor may apply without asking which."""
+    assert [one.title for one in _actions(Fixture(text)) if one.preferred] == list(titles)
+
+
 def check_no_action(text: str, title: str) -> None:
     """Nothing whose title begins so is offered."""
     assert not [one.title for one in _actions(Fixture(text)) if one.title.startswith(title)]

@@ -5,10 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from feature_asserts import check_action, check_actions, check_all_actions, check_no_action, check_silences
+from feature_asserts import (
+    check_action,
+    check_actions,
+    check_all_actions,
+    check_no_action,
+    check_preferred,
+    check_silences,
+)
 from test_rules import blocks
 
+from btq_lang.features.actions import code_actions
+from btq_lang.loader import open_workspace
 from btq_lang.rules import Severity
+from btq_lang.text import Span
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 EXAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))
@@ -56,11 +66,268 @@ def test_all_safe_fixes_at_once() -> None:
     )
 
 
+def test_safe_fixes_that_touch_each_other_are_all_applied() -> None:
+    check_action(
+        '$0QualityReq rq "Soon"\n    takes at most 3 s\nBehaviorTree Main\n    Pick satisfies rq, rq, rq, rq\n',
+        "Apply 3 safe fixes",
+        'QualityReq rq "Soon"\n    takes at most 3 s\nBehaviorTree Main\n    Pick satisfies rq\n',
+    )
+    check_action(
+        "$0BehaviorTree Main\n    Timeout (msec == 3)\n        Pick satisfices speed, speed\n",
+        "Apply 4 safe fixes",
+        "BehaviorTree Main\n    Timeout (msec = 3)\n        Pick satisfices performance-efficiency.time-behaviour\n",
+    )
+
+
 def test_only_what_is_asked_for() -> None:
     text = "BehaviorTree Main\n    ->\n        SubTree Do$0ck\nBehaviorTree Dock\n    Pick\n"
     check_actions(text, "Inline the tree `Dock`", only=("refactor.inline",))
     check_actions(text, only=("source",))
     check_actions(text, only=("quickfix",))
+
+
+@pytest.mark.parametrize(
+    ("text", "title"),
+    [
+        ("BehaviorTree Main\n    Sequ$0nce\n        Pick\n", "Replace `Sequnce` with `Sequence`"),
+        ("BehaviorTree Main\n    Timeout (msec = 30$0sek)\n        Pick\n", "Replace `sek` with `s`"),
+        (
+            "BehaviorTree Main\n    Retry (num_at$0empts = 3)\n        Pick\n",
+            "Replace `num_atempts` with `num_attempts`",
+        ),
+        ("BehaviorTree Main\n    SubTree Do$0k\nBehaviorTree Dock\n    Pick\n", "Replace `Dok` with `Dock`"),
+        ("BehaviorTre$0 Main\n    Pick\n", "Replace `BehaviorTre` with `BehaviorTree`"),
+        (
+            'BehaviorTree Main\n    SubTree "my do$0k"\nBehaviorTree "my dock"\n    Pick\n',
+            "Replace `my dok` with `my dock`",
+        ),
+        (
+            'QualityReq rq "Soon"\n    tak$0s at most 30 s\nBehaviorTree Main\n    Pick satisfies rq\n',
+            "Replace `taks` with `takes`",
+        ),
+    ],
+)
+def test_the_only_near_name_of_a_misspelt_word_is_preferred(text: str, title: str) -> None:
+    check_preferred(text, title)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "BehaviorTree Main\n    Pick satisfices relib$0ility\n",  # reliability or legibility
+        "//- main.btq\nBehaviorTree Main\n    SubTree Do$0ck\n//- dock.btq\nBehaviorTree Dock\n    Pick\n"
+        "//- dok.btq\nBehaviorTree Dok\n    Pick\n",  # an include, or another tree
+        "BehaviorTree Main\n    Parallel (failure_count = $03)\n        Pick\n",  # what replaces it is not its name
+        "Root Main\nBehaviorTree Main\n    Pick\nBehaviorTree Do$0ck\n    Pick\n",  # used some day, or removed
+    ],
+)
+def test_where_there_is_a_choice_nothing_is_preferred(text: str) -> None:
+    check_preferred(text)
+
+
+def test_a_safe_fix_is_preferred() -> None:
+    check_preferred(
+        "BehaviorTree Main\n    Pick satisfices spe$0ed\n", "Replace it with `performance-efficiency.time-behaviour`"
+    )
+
+
+KINDS = (
+    '//- main.btq\ninclude "lib.btq"\ninclude "lib.btq"\nRoot Main\n'
+    "BehaviorTree Main\n    ->\n        Sequ$0nce satisfices speed\n"
+    "            SubTree Lib\n//- lib.btq\nBehaviorTree Lib\n    Pick\n"
+)
+FIX_ALL = "Apply 1 safe fix"
+ORGANIZE = "Remove 1 duplicate or unused include"
+
+
+@pytest.mark.parametrize(
+    ("only", "titles"),
+    [
+        (("source.fixAll",), (FIX_ALL,)),
+        (("source.fixAll.btq",), (FIX_ALL,)),
+        (("source.fixAll.eslint",), ()),
+        (("source.fixAl",), ()),
+        (("source.organizeImports",), (ORGANIZE,)),
+        (("source.organizeImports.btq",), (ORGANIZE,)),
+        (("source",), (FIX_ALL, ORGANIZE)),
+        (("source.organizeImports", "source.fixAll"), (FIX_ALL, ORGANIZE)),
+        (("quickfix",), ("Replace `Sequnce` with `Sequence`", "Silence `unknown-node` on this line")),
+        (("quickfix.btq",), ()),
+        (("refactor.inline",), ()),
+        (("refactor.rewriter",), ()),
+        (("notebook",), ()),
+    ],
+)
+def test_a_kind_that_is_asked_for_gives_all_below_it(only: tuple[str, ...], titles: tuple[str, ...]) -> None:
+    check_actions(KINDS, *titles, only=only)
+
+
+def test_the_empty_kind_gives_everything() -> None:
+    check_action(KINDS, ORGANIZE, KINDS.replace("$0", "").replace('include "lib.btq"\n', "", 1))
+    check_actions(
+        "BehaviorTree Main\n    Sequ$0nce\n",
+        "Replace `Sequnce` with `Sequence`",
+        "Silence `unknown-node` on this line",
+        *(f"Wrap in {what}" for what in ("Retry", "Timeout", "Inverter", "ForceSuccess", "a Sequence", "a Fallback")),
+        only=("",),
+    )
+
+
+USED = "Root Main\nBehaviorTree Main\n    Pick\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "title", "after"),
+    [
+        (
+            f"signal batt$0ery : % from {{b}}  # of the robot\n\n{USED}",
+            "Remove the unused signal `battery`",
+            USED,
+        ),
+        (
+            f"# what it measures\nsignal batt$0ery : % from {{b}}\n{USED}",
+            "Remove the unused signal `battery`",
+            f"# what it measures\n{USED}",
+        ),
+        (
+            f"signal b : % from {{b}}\ncontext low : b < 3 %\ncontext nev$0er : low\n{USED}",
+            "Remove the unused context `never`",
+            f"signal b : % from {{b}}\ncontext low : b < 3 %\n{USED}",
+        ),
+        (
+            f'{USED}\nQualityReq r$0q "Soon"\n    # soon\n    takes at most 3 s\n    on violation fail\n# end\n',
+            "Remove the unused requirement `rq`",
+            f"{USED}\n# end\n",
+        ),
+        (
+            f"{USED}\n# docks\nBehaviorTree Do$0ck\n    ->\n        Pick  # first\n    # that is all\n\n# next\n"
+            "Action Pick\n",
+            "Remove the unused tree `Dock`",
+            f"{USED}\n# docks\n\n# next\nAction Pick\n",
+        ),
+        (
+            f'{USED}\n\nBehaviorTree "Do$0ck"\n    Pick',
+            "Remove the unused tree `Dock`",
+            USED[:-1],
+        ),
+        (f"{USED}\n\nBehaviorTree Do$0ck\n    Pick\n\n", "Remove the unused tree `Dock`", USED),
+        (
+            f"{USED}BehaviorTree Dock\n    SubTree Home\nBehaviorTree Ho$0me\n    Pick\n",
+            "Remove the unreachable tree `Home`",
+            f"{USED}BehaviorTree Dock\n    SubTree Home\n",
+        ),
+        (
+            "Root Main\n    BehaviorTree Dock$0\n        Pick\n\n    BehaviorTree Main\n        Pick\n",
+            "Remove the unused tree `Dock`",
+            "Root Main\n\n    BehaviorTree Main\n        Pick\n",
+        ),
+        (
+            "/* why */ signal batt$0ery : % from {b}\n" + USED,
+            "Remove the unused signal `battery`",
+            "/* why */ \n" + USED,
+        ),
+    ],
+)
+def test_what_is_unused_is_removed(text: str, title: str, after: str) -> None:
+    check_action(text, title, after)
+
+
+LIBRARIES = (
+    "//- dock.btq\nBehaviorTree Dock\n    Pick\n"
+    "//- home.btq\nsignal away : m from {away}\n\nBehaviorTree Home\n    Pick\n"
+)
+
+
+def test_includes_that_bring_nothing_are_removed() -> None:
+    """The order of the others stays, and so do comments."""
+    mission = "\nRoot Main\nBehaviorTree Main\n    SubTree Dock\n"
+    check_action(
+        f'//- main.btq\n$0# parts\ninclude "home.btq"  # unused\ninclude "dock.btq"\n\ninclude "home.btq"\n\n'
+        f'include "dock.btq"\n{mission}{LIBRARIES}',
+        "Remove 3 duplicate or unused includes",
+        f'//- main.btq\n# parts\n# unused\ninclude "dock.btq"\n{mission}{LIBRARIES}',
+    )
+    check_action(
+        f'//- main.btq\ninclude "ho$0me.btq"\ninclude "dock.btq"\n{mission}{LIBRARIES}',
+        "Remove the unused include `home.btq`",
+        f'//- main.btq\ninclude "dock.btq"\n{mission}{LIBRARIES}',
+    )
+    check_action(
+        f'//- main.btq\ninclude "dock.btq"\ninclude "do$0ck.btq"\n{mission}{LIBRARIES}',
+        "Remove the duplicate include `dock.btq`",
+        f'//- main.btq\ninclude "dock.btq"\n{mission}{LIBRARIES}',
+    )
+
+
+def test_an_include_of_the_same_file_in_other_words_is_a_duplicate() -> None:
+    check_action(
+        '//- main.btq\n$0include "dock.btq"\ninclude "./dock.btq"\nBehaviorTree Main\n    SubTree Dock\n'
+        "//- dock.btq\nBehaviorTree Dock\n    Pick\n",
+        ORGANIZE,
+        '//- main.btq\ninclude "dock.btq"\nBehaviorTree Main\n    SubTree Dock\n'
+        "//- dock.btq\nBehaviorTree Dock\n    Pick\n",
+    )
+
+
+@pytest.mark.parametrize(
+    ("mission", "library"),
+    [
+        ("BehaviorTree Main\n    SubTree Dock\n", "BehaviorTree Dock\n    Pick\n"),
+        ("Root Dock\nBehaviorTree Main\n    Pick\n", "BehaviorTree Dock\n    Pick\n"),
+        ("BehaviorTree Main\n    Pick (at = 3)\n", "Action Pick\n    input at : int\n"),
+        ('BehaviorTree Main\n    ScriptAction (name = "Pick")\n', "Action Pick\n    input at : int\n"),
+        ("BehaviorTree Main\n    Pick satisfies rq\n", 'QualityReq rq "Soon"\n    takes at most 3 s\n'),
+        ("BehaviorTree Main\n    Pick\n", 'QualityReq rq "Soon"\n    takes at most 3 s\n'),  # the overview lists it
+        ("BehaviorTree Main\n    Pick satisfices safety.gentleness\n", 'quality gentleness : safety "soft"\n'),
+        ("BehaviorTree Main\n    Pick\n", "qualities iso25010-2011\n"),
+        (
+            'QualityReq rq "Soon"\n    keeps b > 3 %\nBehaviorTree Main\n    Pick satisfies rq\n',
+            "signal b : % from {b}\n",
+        ),
+        (
+            'QualityReq rq "Soon"\n    takes at most 3 s\n    while low\nBehaviorTree Main\n    Pick satisfies rq\n',
+            "signal b : % from {b}\ncontext low : b < 3 %\n",
+        ),
+        ('QualityReq rq "Soon"\n    takes at most 3 s\nBehaviorTree Main\n    Pick\n', "apply rq to Pick\n"),
+        (
+            'QualityReq rq "Soon"\n    every Go takes at most 3 s\nBehaviorTree Main\n    Go\n',
+            "BehaviorTree Dock\n    Go\n",
+        ),
+        ("BehaviorTree Main\n    Pick (\n", "BehaviorTree Dock\n    Pick\n"),  # its user may be what is not readable
+        ("BehaviorTree Main\n    Pick\n", "BehaviorTree Dock\n    Pick (\n"),
+        ("BehaviorTree A\n    Pick\nBehaviorTree B\n    Pick\n", "BehaviorTree Dock\n    Pick\n"),  # no main tree
+        ('include "nowhere.btq"\nBehaviorTree Main\n    Pick\n', "BehaviorTree Dock\n    Pick\n"),
+        ('BehaviorTree Main\n    Pick\n//- all.btq\ninclude "main.btq"\n', "BehaviorTree Dock\n    Pick\n"),
+    ],
+)
+def test_includes_that_are_used_or_may_be_stay(mission: str, library: str) -> None:
+    text = f'//- main.btq\n$0include "lib.btq"\n{mission}//- lib.btq\n{library}'
+    check_actions(text, only=("source.organizeImports",))
+    check_no_action(text, "Remove the unused include")
+
+
+def test_an_include_stays_where_its_repetition_may_count() -> None:
+    """The engine runs the last of two trees with one ID that it reads."""
+    check_actions(
+        '//- main.btq\n$0include "a.btq"\ninclude "b.btq"\ninclude "a.btq"\nBehaviorTree Main\n    SubTree Dock\n'
+        "//- a.btq\nBehaviorTree Dock\n    Pick\n//- b.btq\nBehaviorTree Dock\n    Place\n",
+        only=("source.organizeImports",),
+    )
+
+
+def test_includes_are_not_sorted() -> None:
+    check_actions(
+        '//- main.btq\n$0include "b.btq"\ninclude "a.btq"\n'
+        "BehaviorTree Main\n    ->\n        SubTree A\n        SubTree B\n"
+        "//- a.btq\nBehaviorTree A\n    Pick\n//- b.btq\nBehaviorTree B\n    Pick\n",
+        only=("source.organizeImports",),
+    )
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+def test_all_includes_of_the_examples_are_needed(example: Path) -> None:
+    workspace = open_workspace(str(example.parent))
+    assert code_actions(workspace, str(example), Span(0, 0), ("source.organizeImports",)) == ()
 
 
 def test_extract() -> None:

@@ -1,0 +1,220 @@
+"""Removal of what is unused: items that a rule reports, and includes that are duplicate or bring nothing.
+
+One invariant: an include is removed only where no finding, no name and no node that a requirement applies to changes.
+Includes are never sorted, because their order has a meaning: of two trees with one ID the engine runs the last one that
+it reads, btq takes the first of two definitions, and a build writes the includes in this order.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+
+from btq_lang.checks import check
+from btq_lang.checks.lookups import is_read
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.features.refactor import names_of_nodes
+from btq_lang.file import File
+from btq_lang.name_kinds import Kind
+from btq_lang.record import Record
+from btq_lang.requirements import requirements
+from btq_lang.syntax import Context, Entry, Include, Model, Models, Root, Signal, Tree, shape
+from btq_lang.text import Edit, LineIndex, Position, Span, apply_edits
+from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
+from btq_lang.workspace import Workspace
+
+UNUSED = {
+    "unused-context": "unused context",
+    "unused-requirement": "unused requirement",
+    "unused-signal": "unused signal",
+    "unused-tree": "unused tree",
+    "unreachable-tree": "unreachable tree",
+}
+
+
+class NeedlessInclude(Record):
+    """An include that can be removed.  why: `duplicate` or `unused`."""
+
+    name: str
+    why: str
+    span: Span
+
+
+def without(file: File, includes: Iterable[NeedlessInclude]) -> tuple[Edit, ...]:
+    """The edits that remove includes; comments after them stay."""
+    return _without(file, [include.span for include in includes])
+
+
+def removal(file: File, entry: Entry) -> tuple[Edit, ...]:
+    """The edits that remove an item with its block, the comments in it and those at the end of its lines."""
+    following = next((other.start for other in file.parsed.entries if other.start > entry.start), len(file.text))
+    start = end = entry.start + entry.item.start
+    column = file.lines.position(start).column
+    for token in file.parsed.tokens:
+        if not start <= token.start < following or token.kind in _NO_WORDS:
+            continue
+        if token.kind != COMMENT or file.lines.position(token.start).column > column:
+            end = token.end
+    return _without(file, [Span(start, end)])
+
+
+@lru_cache(4)  # an editor asks whenever the cursor moves
+def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude, ...]:
+    """The includes of a file that repeat an earlier one, or that bring nothing the mission uses.
+
+    Only a mission has unused ones: a file that includes a library may use what the library includes.
+    """
+    file = workspace.files[path]
+    includes = [include for include in file.includes if include.path is not None]
+    if file.origin is not None or not includes:
+        return ()
+    duplicates = _duplicates(workspace, path, includes)
+    found = [*duplicates]
+    if path not in workspace.included_files and workspace.main_tree(path) is not None and is_read(workspace, path):
+        for include in reversed(includes):
+            rest = [other for other in includes if other is not include and not _is_among(other, found)]
+            gone = _brought_by(workspace, path, include, rest) if not _is_among(include, found) else set()
+            if gone and not _uses(workspace, path, gone) and _changes_nothing(workspace, path, [*found, include]):
+                found.append(include)
+    return tuple(
+        NeedlessInclude(_name(one), "duplicate" if _is_among(one, duplicates) else "unused", _span(file, one))
+        for one in includes
+        if _is_among(one, found)
+    )
+
+
+def _duplicates(workspace: Workspace, path: str, includes: Sequence[Include]) -> list[Include]:
+    """The includes of a file that an earlier one includes; empty where two trees or models have one name, because then
+    the engine may run what it reads last."""
+    seen: set[object] = set()
+    found = []
+    for include in includes:
+        key = workspace.included_by(path, include) or _name(include), shape(include.attributes)
+        if key in seen:
+            found.append(include)
+        seen.add(key)
+    scope = workspace.scope(path)
+    kinds = (Kind.TREE, Kind.MODEL) if found else ()
+    is_clear = not any(scope.is_repeated(kind, name) for kind in kinds for name in scope.names(kind))
+    return found if is_clear else []
+
+
+def _brought_by(workspace: Workspace, path: str, include: Include, others: Sequence[Include]) -> set[str]:
+    """The files that only one of the includes brings; empty where it is not found, or includes the mission."""
+
+    def closure(of: Include) -> set[str]:
+        target = workspace.included_by(path, of)
+        return set(workspace.closure(target)) if target is not None else set()
+
+    own = closure(include)
+    return own.difference(*map(closure, others)) if path not in own else set()
+
+
+def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
+    """Whether a mission uses what some of its files define, or may use it without naming it."""
+    scope = workspace.scope(path)
+    defined = {name for each in gone for name in workspace.files[each].defined_names}
+    if not scope.complete or any(kind in (Kind.REQUIREMENT, Kind.QUALITY) for kind, _ in defined):
+        return True  # the overview lists requirements that no node satisfies; a quality has several spellings
+    rest = [workspace.files[each] for each in scope.paths if each not in gone]
+    named = {(kind, name) for file in rest for kind, name in file.used_names}
+    for file in rest:
+        nodes = names_of_nodes(file)
+        named |= {(kind, name) for kind in (Kind.TREE, Kind.MODEL) for name in nodes}
+        named |= {(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT) for name in file.asked_for}
+    return not named.isdisjoint(defined) or not all(_is_plain(workspace, each) for each in gone)
+
+
+def _is_plain(workspace: Workspace, path: str) -> bool:
+    """Whether a file has no syntax errors and nothing that affects other files by itself, as `apply` does."""
+    file = workspace.files[path]
+    return is_read(workspace, path) and all(isinstance(entry.item, _PLAIN) for entry in file.parsed.entries)
+
+
+def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]) -> bool:
+    """Whether a mission without some of its includes has the same findings, except those about them, and applies its
+    requirements as often."""
+    file = workspace.files[path]
+    spans = [_span(file, include) for include in removed]
+    after = workspace.with_file(path, apply_edits(file.text, _without(file, spans)))
+    if len(requirements(workspace, path).applied) != len(requirements(after, path).applied):
+        return False
+    before = [each for each in check(workspace, path) if not any(_is_in(each.span, span) for span in spans)]
+    return Counter(map(_said, before)) == Counter(map(_said, check(after, path)))
+
+
+def _is_in(span: Span, whole: Span) -> bool:
+    return whole.start <= span.start and span.end <= whole.end
+
+
+def _said(found: Diagnostic) -> tuple[str, str]:
+    return found.rule, found.message
+
+
+def _without(file: File, spans: Iterable[Span]) -> tuple[Edit, ...]:
+    """The edits that remove some spans: with their lines where nothing else is on them, and with the blank lines that
+    would be left over; a comment after one stays."""
+    text, lines = file.text, file.lines
+    edits: list[Edit] = []
+    gone: set[int] = set()
+    for span in spans:
+        first, last = lines.position(span.start).line, lines.position(span.end).line
+        before = text[lines.offset(Position(first, 0)) : span.start].lstrip(_BOM)
+        after = lines.line(last)[lines.position(span.end).column :]
+        if before.strip(" \t") or after.strip(" \t"):
+            edits.append(Edit(Span(span.start, span.end + len(after) - len(after.lstrip(" \t"))), ""))
+        else:
+            gone.update(range(first, last + 1))
+    for first in sorted(gone):
+        if first - 1 in gone:
+            continue  # not the first of its run
+        end = _past(lines, gone, first)
+        if first == 0 or _is_blank(lines, first - 1):
+            while end < lines.line_count and _is_blank(lines, end):
+                end += 1
+                end = _past(lines, gone, end)
+        gone.update(range(first, end))
+        if end < lines.line_count:
+            edits.append(Edit(Span(_start(text, lines, first), lines.offset(Position(end, 0))), ""))
+            continue
+        while first and _is_blank(lines, first - 1):
+            first -= 1
+        start = _start(text, lines, first)
+        if first and text[-1] not in "\r\n":
+            start = lines.offset(Position(first - 1, len(lines.line(first - 1))))
+        edits.append(Edit(Span(start, len(text)), ""))
+    return tuple(sorted(edits, key=lambda edit: edit.span))
+
+
+def _past(lines: LineIndex, gone: set[int], line: int) -> int:
+    while line < lines.line_count and line in gone:
+        line += 1
+    return line
+
+
+def _is_blank(lines: LineIndex, line: int) -> bool:
+    return not lines.line(line).strip(" \t")
+
+
+def _start(text: str, lines: LineIndex, line: int) -> int:
+    start = lines.offset(Position(line, 0))
+    return start + text.startswith(_BOM, start) if line == 0 else start
+
+
+def _span(file: File, include: Include) -> Span:
+    return Span(include.start, include.end).shifted(file.start_of(include))
+
+
+def _name(include: Include) -> str:
+    return include.path.text if include.path is not None else ""
+
+
+def _is_among(one: Include, includes: Sequence[Include]) -> bool:
+    """Whether it is one of them; two includes with the same text are equal, so `in` would not tell."""
+    return any(one is other for other in includes)
+
+
+_BOM = "\ufeff"
+_NO_WORDS = frozenset((NEWLINE, BLANK, INDENT, DEDENT))
+_PLAIN = (Tree, Model, Models, Signal, Context, Include, Root)
