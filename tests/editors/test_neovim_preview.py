@@ -172,6 +172,6 @@ def test_a_mission_that_is_not_saved_and_a_program_that_is_not_there_are_told(nv
         )
         said += re.findall(r"btq: (.*)", run.stdout + run.stderr)
     assert [line.strip() for line in said] == [
-        "save this mission first, then its trees can be shown",
+        "save this mission first to show its trees",
         "no-such not found; see :help btq_program",
     ]
