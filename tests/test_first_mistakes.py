@@ -6,6 +6,9 @@ it, and the mission is clean afterwards.
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import Final
 
 import pytest
@@ -533,6 +536,20 @@ def test_several_mistakes_are_mended_one_after_another(text: str, mended: str) -
         assert after(text, fix) != text
         text = after(text, fix)
     assert text == mended
+
+
+def test_a_person_is_told_what_to_write(tmp_path: Path) -> None:
+    mission = tree("Retry(num_attempts = 5) Again", "    Dock") + "QualityReq r\n    Main Dock succeeds\n"
+    (tmp_path / "mission.btq").write_text(mission, encoding="utf-8")
+    command = [sys.executable, "-m", "btq_lang", "check", "--output-format", "concise", "mission.btq"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout.splitlines()[:2]) == (
+        1,
+        [
+            "mission.btq:2:29: error[syntax-error] a node's label goes before its brackets",
+            "mission.btq:5:5: error[syntax-error] a path is written with `/`: `Main/Dock`",
+        ],
+    )
 
 
 def mistakes(text: str) -> list[Diagnostic]:
