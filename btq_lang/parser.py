@@ -632,7 +632,7 @@ class Parser(NodeParser):
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""
         start = self.start()
         notes: tuple[str, ...] = ()
-        if self.at_word("from") and self.is_word(self.index + 2, "import"):
+        if self.at_word("from") and "import" in self.raws[self.index + 2 : self.index + 3]:
             notes = ('another file is read with `include "stations.btq"`',)
         elif self.kind == NAME and self.raw in NODE_CLAUSES:
             notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)

@@ -163,6 +163,9 @@ def test_a_requirement_where_a_quality_is_meant_to_stand() -> None:
     text = RULE + "BehaviorTree Main\n    X satisfices {}\n"
     assert_problems(text.format("rq1"), f"4:18 warning unknown-quality «rq1» {message}")
     assert_fix(text.format("rq1"), "Replace `satisfices` with `satisfies`", RULE + TREE, safe=True)
+    with_parameter = "QualityReq rq1(d : s)\n    takes at most d\nBehaviorTree Main\n    X {} rq1\n"
+    title = "Replace `satisfices` with `satisfies`"
+    assert_fix(with_parameter.format("satisfices"), title, with_parameter.format("satisfies"), safe=False)
     assert_problems(text.format("safety, rq1"), f"4:26 warning unknown-quality «rq1» {message}")
     assert_problems(
         RULE + "BehaviorTree Main\n    satisfices rq1\n    X\n", f"4:16 warning unknown-quality «rq1» {message}"
@@ -276,6 +279,11 @@ def test_one_that_says_the_same_goes(before: str, after_: str) -> None:
     ((_, safe, fixed),) = fixes(text, "duplicate-clause")
     assert safe
     assert fixed == f'QualityReq a "t"\n    A takes at most 3 s{after_}{USER}'
+
+
+def test_in_one_of_two_equal_definitions_removing_it_would_make_them_differ() -> None:
+    definition = 'QualityReq a "t"\n    A takes at most 3 s\n    on violation fail\n    on violation fail\n'
+    assert [safe for _, safe, _ in fixes(2 * definition + USER, "duplicate-clause")] == [False, False]
 
 
 def test_clauses_of_a_requirement_at_its_node() -> None:

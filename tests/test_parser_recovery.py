@@ -621,3 +621,8 @@ def test_a_lost_quote_before_a_string_that_begins_with_a_sign() -> None:
     parsed = parse(text + '        C (p = "z")\n\nBehaviorTree u\n    D (p = "y")\n')
     (only,) = parsed.diagnostics
     assert (only.rule, only.message, parsed.text[only.span.start : only.span.end]) == ("unclosed-string", LOST, '"x)')
+
+
+def test_a_line_that_ends_after_from() -> None:
+    (only,) = parse("from\n").diagnostics
+    assert (only.rule, only.notes) == ("syntax-error", ("a node goes in the block of a BehaviorTree, indented",))

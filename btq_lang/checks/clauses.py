@@ -45,7 +45,9 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
         first: dict[type, Clause] = {}
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
-                yield _duplicate(view, entry, counts, clause)
+                # What one of several equal definitions leaves out contradicts the others.
+                is_alone = not view.scope.is_repeated(symbol.kind, symbol.name)
+                yield _duplicate(view, entry, counts, clause, is_alone)
 
 
 def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -84,7 +86,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 yield Diagnostic("unused-parameter", parameter.name.span, message, tags=(Tag.UNNECESSARY,))
 
 
-def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diagnostic:
+def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause, is_alone: bool) -> Diagnostic:
     text = view.text[entry.start :]
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
     removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
@@ -94,7 +96,7 @@ def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause) -> Diag
         f"the requirement already states {_ONCE[type(clause)]}: `{said}`",
         related=(Related(Place(Span(counts.start, counts.end)), "this one takes effect"),),
         fixes=tuple(
-            replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=said == again)
+            replace_fix(f"Remove `{words}`", with_blanks(text, each), "", safe=is_alone and said == again)
             for words, each in removals
         ),
     )

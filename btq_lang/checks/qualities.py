@@ -9,7 +9,7 @@ from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
-from btq_lang.syntax import Entry, Qualities
+from btq_lang.syntax import Entry, Qualities, Requirement
 from btq_lang.text import Span
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -30,10 +30,12 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for use, match in _matches(view, entry):
         if match.kind != "unknown":
             continue
-        if view.scope.find(Kind.REQUIREMENT, use.name) is not None:
+        if (definition := view.scope.find(Kind.REQUIREMENT, use.name)) is not None:
             from btq_lang.checks.attached import other_word  # few take one word for the other
 
-            yield other_word(view, entry, use, "unknown-quality", requirement=True)
+            target = definition.symbol.target
+            takes_arguments = isinstance(target, Requirement) and bool(target.parameters)
+            yield other_word(view, entry, use, "unknown-quality", requirement=True, safe=not takes_arguments)
             continue
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
         meant = tuple(dict.fromkeys((*own, *match.near)))[:3]

@@ -254,7 +254,7 @@ def _unwrap(workspace: Workspace, path: str, standing: Standing) -> Iterator[Ref
     file = workspace.files[path]
     child = block_of(file, standing.entry, node.children[0])
     own = block_of(file, standing.entry, node)
-    between = Span(own.span.start, child.span.start - len(child.blanks))
+    between = Span(own.span.start, child.span.start)
     if "#" in file.text[slice(*between)] or "/" in file.text[slice(*between)]:
         return  # a comment would be lost
     first, *others = shifts(file, child, own.blanks)

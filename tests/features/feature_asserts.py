@@ -555,8 +555,8 @@ def answer_everything(text: str, offset: int) -> None:
 
 
 def words_of(text: str) -> list[tuple[str, str]]:
-    """The tokens of a text but for blanks."""
-    return [(token.kind, token.text) for token in tokens_of(text) if token.text.strip()]
+    """The tokens of a text but for blanks and a byte order mark."""
+    return [(token.kind, token.text) for token in tokens_of(text) if token.text.lstrip("\ufeff").strip()]
 
 
 def _lies_in(span: Span, whole: Span) -> bool:

@@ -516,6 +516,8 @@ def test_what_is_not_unwrapped() -> None:
     check_no_action("BehaviorTree Main\n    $0Inverter satisfies rq\n        Pick\n", "Unwrap")
     check_no_action("BehaviorTree Main\n    $0Inverter  # why\n        Pick\n", "Unwrap")
     check_no_action("BehaviorTree Main\n    /* why */ $0Inverter\n        Pick\n", "Unwrap")
+    check_no_action("BehaviorTree Main\n    $0Inverter\n        /* x */ Pick\n", "Unwrap")
+    check_no_action("BehaviorTree Main\n    $0Inverter\n        /* why */Pick\n", "Unwrap")
 
 
 def test_a_node_after_a_comment_is_not_wrapped() -> None:
