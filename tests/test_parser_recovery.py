@@ -625,4 +625,4 @@ def test_a_lost_quote_before_a_string_that_begins_with_a_sign() -> None:
 
 def test_a_line_that_ends_after_from() -> None:
     (only,) = parse("from\n").diagnostics
-    assert (only.rule, only.notes) == ("syntax-error", ("a node goes in the block of a BehaviorTree, indented",))
+    assert (only.rule, only.notes) == ("syntax-error", ("a clause goes in the block of a QualityReq, indented",))
