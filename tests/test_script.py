@@ -205,7 +205,7 @@ REFUSED: list[tuple[str, str, str, str | None]] = [
     # The grammar.
     ("battery > ", ">", "missing operand after `>`", None),
     ("1 +", "+", "missing operand after `+`", None),
-    ("x := ; y := 1", ":=", "missing operand after `:=`", None),
+    ("x := ; y := 1", ":=", "missing right-hand side of `:=`", None),
     ("> 3", ">", "missing operand before `>`", None),
     ("()", "()", "missing expression between the brackets", None),
     ("(a > 3", "(", "missing `)` for this `(`", None),

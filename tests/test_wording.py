@@ -13,6 +13,9 @@ from pathlib import Path
 
 import pytest
 
+import btq_lang as btq
+from btq_lang.workspace import Workspace
+
 ROOT = Path(__file__).resolve().parents[1]
 AVOIDED = re.compile(
     r"\b(?:is no (?!longer\b)|is none\b|speaks? of\b|behind\b|stands?\b|told\b|makes no\b|who asks\b|slip(?:s|ped)?\b)"
@@ -67,3 +70,22 @@ def test_no_phrase_that_readers_stumble_over(pattern: str) -> None:
         for at in AVOIDED.finditer(words)
     ]
     assert wrong == []
+
+
+@pytest.mark.parametrize(
+    ("text", "messages"),
+    [
+        ("Timeout (msec = 30 sek)\n        A\n", ["unknown unit `sek`; did you mean `s`?"]),
+        ("Retry (num_attempts = a)\n        A\n", ["expected an integer for `num_attempts`, found `a`"]),
+        ("Rety (num_attempts = 3)\n        A\n", ["unknown node `Rety`; did you mean `Retry`?"]),
+        ("CoroAction\n", ["`CoroAction` is not built into BehaviorTree.CPP 4.6–4.10"]),
+        (
+            'A satisfies r\nQualityReq r "t"\n    leaves battery >= 3 N\nsignal battery : % from {b}\n',
+            ["cannot compare `battery` (a percentage) with `3 N` (a force)"],
+        ),
+        ('Script (code = "a := ")\n', ["missing right-hand side of `:=`"]),
+    ],
+)
+def test_messages_say_what_is_wrong_and_what_to_do(text: str, messages: list[str]) -> None:
+    workspace = Workspace.of({"main.btq": f"BehaviorTree Main\n    {text}"})
+    assert [found.message for found in btq.check(workspace, "main.btq")] == messages

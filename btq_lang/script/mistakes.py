@@ -162,7 +162,8 @@ def missing_operand(text: str, before: Span | None, at: Span) -> Diagnostic:
         return error(Span(before.start, at.end), "missing expression between the brackets")
     if operator in _POSTFIX and (here == operator or text.endswith(operator, 0, before.start)):
         return error(before, f"scripts have no `{operator}{operator}`; write {_POSTFIX[operator]}")
-    return error(before, f"missing operand after `{operator}`")
+    what = "right-hand side of" if operator == ":=" else "operand after"
+    return error(before, f"missing {what} `{operator}`")
 
 
 def unary_plus(text: str, span: Span) -> Diagnostic:
