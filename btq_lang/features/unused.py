@@ -66,7 +66,7 @@ def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude,
     Only a mission has unused ones: a file that includes a library may use what the library includes.
     """
     file = workspace.files[path]
-    includes = [include for include in file.includes if include.path is not None]
+    includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
     if file.origin is not None or not includes:
         return ()
     duplicates = _duplicates(workspace, path, includes)

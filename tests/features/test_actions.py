@@ -315,6 +315,14 @@ def test_an_include_stays_where_its_repetition_may_count() -> None:
     )
 
 
+def test_an_include_with_a_syntax_error_stays() -> None:
+    check_actions(
+        '//- main.btq\n$0include "lib.btq"\ninclude "lib.btq" again\nBehaviorTree Main\n    SubTree Lib\n'
+        "//- lib.btq\nBehaviorTree Lib\n    Pick\n",
+        only=("source.organizeImports",),
+    )
+
+
 def test_includes_are_not_sorted() -> None:
     check_actions(
         '//- main.btq\n$0include "b.btq"\ninclude "a.btq"\n'
