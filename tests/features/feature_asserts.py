@@ -43,6 +43,7 @@ from btq_lang.project import Project
 from btq_lang.rules import Severity
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.token_list import tokens as tokens_of
+from btq_lang.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN
 from btq_lang.workspace import Workspace
 
 _TAG = re.compile(r"\$0|</?([a-z]+)>")
@@ -555,8 +556,9 @@ def answer_everything(text: str, offset: int) -> None:
 
 
 def words_of(text: str) -> list[tuple[str, str]]:
-    """The tokens of a text but for blanks and a byte order mark."""
-    return [(token.kind, token.text) for token in tokens_of(text) if token.text.lstrip("\ufeff").strip()]
+    """The tokens of a text that may have a colour."""
+    silent = (BLANK, OPEN, CLOSE, ERROR, NEWLINE, INDENT, DEDENT)
+    return [(token.kind, token.text) for token in tokens_of(text) if token.kind not in silent]
 
 
 def _lies_in(span: Span, whole: Span) -> bool:
