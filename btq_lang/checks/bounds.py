@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A part of an attempt, a time below 0, and the attempts of a mission, which starts once."""
+    limits: dict[int, bool] = {}  # by the `id` of the requirement, which may have thousands of claims
     for requirement, claim in _claims(view, entry):
         bound, verb = claim.bound, claim.verb.raw
         is_count = verb in _COUNTED
@@ -39,8 +40,11 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
                 if what == "count" and is_count and not claim.every:
                     yield from _count(requirement, claim, amount, number, is_lower)
-                elif what == "time" and verb in _TIMED and not _is_limit(requirement, claim):
-                    yield from _time(amount, number, is_lower)
+                elif what == "time" and verb in _TIMED:
+                    if id(requirement) not in limits:
+                        limits[id(requirement)] = _has_limits(requirement)
+                    if not (limits[id(requirement)] and verb in ("takes", "succeeds")):
+                        yield from _time(amount, number, is_lower)
 
 
 def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -118,12 +122,12 @@ def _shown(amount: Amount) -> str:
     return f"-{amount.word.raw}" if amount.negative else amount.word.raw
 
 
-def _is_limit(requirement: Requirement, claim: Claim) -> bool:
-    """Whether the engine is to hold the node to it, so that it is told as limit-too-small."""
+def _has_limits(requirement: Requirement) -> bool:
+    """Whether the engine is to hold nodes to its times, so that these are told as limit-too-small."""
     clauses = requirement.clauses
     actions = [clause.action.raw for clause in clauses if isinstance(clause, OnViolation) and clause.action is not None]
     has_odds = any(isinstance(clause, Odds) for clause in clauses)
-    return claim.verb.raw in ("takes", "succeeds") and actions[:1] in (["fail"], ["halt"]) and not has_odds
+    return actions[:1] in (["fail"], ["halt"]) and not has_odds
 
 
 def _has_scope(requirement: Requirement) -> bool:

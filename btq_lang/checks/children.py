@@ -40,7 +40,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # of a child that is meant for a clause, that is told
         if count == 0 and entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
-            if any(seen.node.start <= problem.span.start < after for problem in entry.diagnostics):
+            if view.is_torn(entry, seen.node.start, after - 1):
                 continue  # its child may be what could not be read
         notes: tuple[str, ...] = ()
         if seen.kind is not None and seen.kind.late_count and count:

@@ -58,7 +58,7 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue
         if any(isinstance(clause, Odds) for clause in requirement.clauses):
             continue
-        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+        if view.is_torn(entry, requirement.start, requirement.end):
             continue  # the odds may be what could not be read
         for clause in requirement.clauses:
             if isinstance(clause, Confidence) or (isinstance(clause, Window) and clause.experiments is not None):
@@ -77,7 +77,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or not requirement.parameters:
             continue
-        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+        if view.is_torn(entry, requirement.start, requirement.end):
             continue  # what it is for may be what could not be read
         named = {word.text for word in walk(requirement.clauses) if isinstance(word, Word)}
         for parameter in requirement.parameters:

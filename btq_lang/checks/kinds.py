@@ -46,7 +46,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         name = seen.id
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
-            if not is_torn(entry, seen):
+            if not is_torn(view, entry, seen):
                 message = f"missing ID of this {word.raw}: write `{word.raw} <ID>`"
                 yield Diagnostic("unknown-node", word.span, message, severity=Severity.ERROR)
         elif name is None:
@@ -168,7 +168,7 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         meant = misspelt_clause(seen.node)
         if name is None or not (meant or _is_clause(seen)):
             continue
-        if any(problem.span.start == name.start for problem in entry.diagnostics):
+        if view.is_torn(entry, name.start, name.start):
             continue  # the parser has said so already
         if meant:
             message = f"btq reads `{name.text}` as a node here; did you mean `{meant}`?"
@@ -223,9 +223,9 @@ def likely_category(seen: SeenNode) -> str:
     return ("Action", "Decorator", "Control")[min(len(seen.node.children), 2)]
 
 
-def is_torn(entry: Entry, seen: SeenNode) -> bool:
+def is_torn(view: View, entry: Entry, seen: SeenNode) -> bool:
     """Whether something in a node's own lines could not be read."""
-    return any(seen.node.start <= problem.span.start <= seen.node.end for problem in entry.diagnostics)
+    return view.is_torn(entry, seen.node.start, seen.node.end)
 
 
 def include_place(entry: Entry) -> Span:

@@ -65,7 +65,7 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if seen.is_subtree:  # the engine gives a tree only what it takes for ports
             given = set(filter(is_port_name, given))
         missing = [port for port in ports.required if port.name not in given]
-        if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(entry, seen):
+        if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(view, entry, seen):
             continue  # a value may be what could not be read
         slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # told as unknown, with a fix
         missing = [port for port in missing if port.name not in slips]

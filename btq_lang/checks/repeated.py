@@ -52,9 +52,7 @@ def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _repeated(view, entry, named)
     elif isinstance(item, Tree):
         for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen(entry).demanding]):
-            if _names_several(clauses) and not any(
-                clauses[0].start <= each.span.start <= clauses[-1].end for each in entry.diagnostics
-            ):
+            if _names_several(clauses) and not view.is_torn(entry, clauses[0].start, clauses[-1].end):
                 yield from _repeated(view, entry, [named for clause in clauses for named in _of_clause(view, clause)])
 
 

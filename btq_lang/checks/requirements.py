@@ -94,7 +94,7 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
         action = _idle_action(view, requirement)
         if action is None and not _is_empty(requirement):
             continue
-        if any(requirement.start <= problem.span.start <= requirement.end for problem in entry.diagnostics):
+        if view.is_torn(entry, requirement.start, requirement.end):
             continue  # what it says may be what could not be read
         message = f"the requirement `{symbol.name}` demands nothing"
         if action is not None:

@@ -33,7 +33,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen(entry).subtrees:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
-        if word is not None and is_nameless and not is_torn(entry, seen):
+        if word is not None and is_nameless and not is_torn(view, entry, seen):
             yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
     for use in view.uses(entry, Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name):

@@ -53,4 +53,11 @@ def _is_meant(view: View, name: str) -> bool:
 
 
 def _is_near(view: View, name: str) -> bool:
-    return bool(near(name, view.look_up(lookups.asked_for_in_vain), limit=1))
+    asked = view.look_up(lookups.asked_for_in_vain)
+    declared = len(view.scope.names(Kind.SIGNAL)) + len(view.scope.names(Kind.CONTEXT))
+    if len(asked) * declared > _MOST_COMPARED:
+        return True  # among so much that nobody knows there is something like any name
+    return bool(near(name, asked, limit=1))
+
+
+_MOST_COMPARED = 200_000  # pairs of names: some tenths of a second

@@ -82,6 +82,7 @@ class View:
         self.scope: Scope = self._scope if answers is None else NotingScope(self._scope, answers)
         self._nodes: dict[int, SeenNodes] = {}
         self._scripts: dict[str, Script] = {}
+        self._torn: dict[int, list[int]] = {}  # where mistakes begin, by the `id` of the entry
         self.model_ports: dict[int, KnownPorts] = {}
         self._in_order: set[Callable[[View, str], object]] = set()
 
@@ -185,6 +186,18 @@ class View:
         return self.look_up(lookups.elsewhere, kind, name)
 
     # ---- one entry ----
+
+    def is_torn(self, entry: Entry, start: int, end: int) -> bool:
+        """Whether something could not be read that begins between two offsets of an entry, both included."""
+        if not entry.diagnostics:
+            return False
+        from bisect import bisect_left  # most entries have no mistake in them
+
+        starts = self._torn.get(id(entry))
+        if starts is None:
+            starts = self._torn[id(entry)] = sorted([problem.span.start for problem in entry.diagnostics])
+        at = bisect_left(starts, start)
+        return at < len(starts) and starts[at] <= end
 
     def nodes(self, entry: Entry) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""

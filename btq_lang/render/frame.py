@@ -6,6 +6,7 @@ Invariant: a mark stands below what it marks, whatever tabs and wide characters 
 
 from __future__ import annotations
 
+from btq_lang.caches import cache_of
 from btq_lang.record import Record
 from btq_lang.render.cells import cut, laid_out
 from btq_lang.render.location import clamped, line_index
@@ -45,7 +46,7 @@ def frame(text: str, span: Span, *, mark: str, room: int, paint: Callable[[str],
     span = clamped(span, text)
     start, end = lines.position(span.start), lines.position(span.end)
     if span.end > span.start and end.column == 0:  # it ends with a line end: that belongs to the line before
-        end = Position(end.line - 1, len(lines.line(end.line - 1)) + 1)
+        end = Position(end.line - 1, len(_line(lines, end.line - 1)) + 1)
     several = end.line > start.line
     margin = _MARGIN if several else ""
     view = _view(lines, start, 1 if several else end.column - start.column, room - len(margin))
@@ -63,16 +64,16 @@ class _View(Record):
     room: int
 
     def line(self, number: int) -> str:
-        return cut(self.lines.line(number), self.left, self.room)
+        return cut(_line(self.lines, number), self.left, self.room)
 
     def cell(self, at: Position) -> int:
         """The shown cell where a position is, one to the right of the sign for a cut on the left."""
-        return _cell(self.lines.line(at.line), at.column) - self.left + (1 if self.left else 0)
+        return _cell(_line(self.lines, at.line), at.column) - self.left + (1 if self.left else 0)
 
 
 def _view(lines: LineIndex, start: Position, columns: int, room: int) -> _View:
     """What to show so that the span, or its beginning, stands in the middle of a line that is too long."""
-    line = lines.line(start.line)
+    line = _line(lines, start.line)
     first, last = _cell(line, start.column), _cell(line, start.column + columns)
     total = max(_cell(line, len(line)), last)
     if total <= room:
@@ -90,7 +91,7 @@ def _single(view: _View, start: Position, end: Position, mark: str, paint: Calla
 
 def _several(view: _View, start: Position, end: Position, mark: str, paint: Callable[[str], str]) -> list[Row]:
     """A span over lines, as rustc draws it: `/` or `____^` where it begins, `|____^` where it ends."""
-    if view.lines.line(start.line)[: start.column].strip():
+    if _line(view.lines, start.line)[: start.column].strip():
         rows = [
             Row(start.line + 1, _MARGIN + view.line(start.line)),
             Row(None, " " + paint("_" * (1 + view.cell(start)) + mark)),
@@ -110,7 +111,12 @@ def _several(view: _View, start: Position, end: Position, mark: str, paint: Call
 
 
 def _context(view: _View, numbers: range, margin: str) -> list[Row]:
-    return [Row(number + 1, margin + view.line(number)) for number in numbers if view.lines.line(number).strip()]
+    return [Row(number + 1, margin + view.line(number)) for number in numbers if _line(view.lines, number).strip()]
+
+
+@cache_of(16)  # as for what is laid out: whoever has the same line again has its hash, too
+def _line(lines: LineIndex, number: int) -> str:
+    return lines.line(number)
 
 
 def _cell(line: str, column: int) -> int:

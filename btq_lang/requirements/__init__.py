@@ -276,7 +276,7 @@ def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[F
     told of it."""
     written = {symbol.name: (file, symbol) for file, symbol in _counting(files, Kind.CONTEXT)}
     depth: dict[str, int] = {}
-    open_: list[str] = []
+    open_: set[str] = set()
     waiting = list(reversed(written))
     reader.contexts.update(dict.fromkeys(written))
     while waiting:
@@ -288,12 +288,11 @@ def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[F
         needed = [word for word in _names_in(symbol.target) if word in written]
         missing = [word for word in needed if word not in depth and word not in open_]
         if missing and name not in open_:
-            open_.append(name)
+            open_.add(name)
             waiting += reversed(missing)
             continue
         waiting.pop()
-        if name in open_:
-            open_.remove(name)
+        open_.discard(name)
         depth[name] = 1 + max((depth[word] for word in needed if word in depth), default=0)
         mistake = None
         if any(word not in depth or word == name for word in needed):

@@ -258,13 +258,19 @@ class Nodes:
 
     def tagged(self, tag: str) -> tuple[SourceNode, ...]:
         """The nodes with a tag; a tag of a tree is one of its root."""
-        trees = [tree for tree in self.trees if tag in tree.by_tag]
-        return tuple([node for tree in trees for node in tree.all if node in tree.by_tag[tag]])
+        found: list[SourceNode] = []
+        for tree in self.trees:
+            if tag in tree.by_tag:
+                tagged = set(map(id, tree.by_tag[tag]))
+                found += [node for node in tree.all if id(node) in tagged]
+        return tuple(found)
 
+    @cached_property
     def tags(self) -> frozenset[str]:
         """Every tag that a node has."""
         return frozenset().union(*(tree.by_tag for tree in self.trees))
 
+    @cached_property
     def kinds(self) -> frozenset[str]:
         """Every ID and kind that a node has."""
         return frozenset().union(*map(_kinds, self.all))
@@ -273,6 +279,10 @@ class Nodes:
         """Those of the nodes that stand below a node, or in a tree that runs below it."""
         below = self._below(top.node)
         return tuple(node for node in nodes if id(node) in below)
+
+    def has_name(self, name: str) -> bool:
+        """Whether a path can have a name in it."""
+        return name in self._by_name or name in self._roots
 
     @cached_property
     def names(self) -> tuple[str, ...]:

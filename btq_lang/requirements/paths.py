@@ -6,15 +6,17 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 
 from __future__ import annotations
 
+from btq_lang.caches import cache
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record
 from btq_lang.requirements.memory import Asker
-from btq_lang.syntax import Entry, Item, Path, Tree, Word, is_name, quote
+from btq_lang.syntax import Apply, Entry, Item, Path, Tree, Word, is_name, quote
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Iterator
+    from collections.abc import Callable, Hashable, Iterator
     from typing import Any, Final
 
     from btq_lang.requirements.memory import Question
@@ -65,6 +67,7 @@ class PathReader(Asker):
         # None of these knows the reader: one that knows what knows it would stay, with all that it has read, until
         # Python looks for garbage, and an editor makes one at every key.
         requirements, signals, contexts = self.requirements, self.signals, self.contexts
+        is_crowded = cache(lambda: _is_crowded(workspace, scope, nodes))
         self._answers: dict[str, Callable[[Any], object]] = {
             "find": nodes.find,
             "every": nodes.every,
@@ -72,8 +75,10 @@ class PathReader(Asker):
             "tagged": nodes.tagged,
             "under": lambda about: nodes.under(nodes.every(about[0]), about[1]),
             "nodes": lambda _: nodes.names,
-            "kinds": lambda _: nodes.kinds(),
-            "tags": lambda _: nodes.tags(),
+            "has name": nodes.has_name,
+            "is crowded": lambda _: is_crowded(),
+            "kinds": lambda _: nodes.kinds,
+            "tags": lambda _: nodes.tags,
             "mission": lambda _: mission,
             "knows all nodes": lambda _: knows_all_nodes,
             "knows all names": lambda _: scope.complete,
@@ -124,6 +129,11 @@ class PathReader(Asker):
         """The names of these kinds: parameters, signals, contexts, nodes."""
         for kind in kinds:
             yield from self.parameters if kind == "parameters" else self.ask(kind)
+
+    def near(self, word: str, *kinds: str) -> tuple[str, ...]:
+        """The names of these kinds that look like one that is unknown; none where so many are unknown that nobody reads
+        what each of them may mean."""
+        return near(word, self.names(*kinds)) if not self.ask("is crowded") else ()
 
     @property
     def mission(self) -> SourceNode | None:
@@ -210,26 +220,26 @@ class PathReader(Asker):
         """Complain of `every X` where nothing is an X."""
         if not self.knows_all_nodes:
             return
-        known = self.ask("kinds")
         notes: tuple[str, ...] = ()
         if self.find((name.text,)):
             notes = (f"`{name.text}` is the name of one node, not of a kind: write it without `every`",)
-        self._no_match(name, f"no node matches `every {name.raw}`", known, notes)
+        self._no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
 
     def no_tag(self, tag: Word) -> None:
         """Complain of `tagged x` where nothing has that tag."""
         if self.knows_all_nodes:
-            self._no_match(tag, f"no node has the tag `{tag.text}`", self.ask("tags"))
+            self._no_match(tag, f"no node has the tag `{tag.text}`", "tags")
 
-    def _no_match(self, word: Word, message: str, known: Iterable[str], notes: tuple[str, ...] = ()) -> None:
-        likely = near(word.text, known)
+    def _no_match(self, word: Word, message: str, kind: str, notes: tuple[str, ...] = ()) -> None:
+        likely = self.near(word.text, kind)
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for name in likely)
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
         """Complain of a path that names several nodes."""
         related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
-        paths = dict.fromkeys(path for target in found if (path := self._path_to(target)) is not None)
+        some = found[:_LOOKED_AT]
+        paths = dict.fromkeys(path for target in some if (path := self._path_to(target)) is not None)
         self.complain(
             "ambiguous-path",
             span,
@@ -246,10 +256,9 @@ class PathReader(Asker):
 
     def _meant(self, path: Path) -> list[tuple[Word, str]]:
         """Words of a path that names no node, each with a near name that makes it match one."""
-        known = self.ask("nodes")
         found = []
         for index, word in enumerate(path.names):
-            for name in near(word.text, known) if word.text not in known else ():
+            for name in self.near(word.text, "nodes") if not self.ask("has name", word.text) else ():
                 names = [other.text for other in path.names]
                 names[index] = name
                 if len(self.find(tuple(names))) == 1:
@@ -270,9 +279,28 @@ class PathReader(Asker):
         return None
 
 
+def _is_crowded(workspace: Workspace, scope: Scope, nodes: Nodes) -> bool:
+    """Whether clauses name so much that nobody knows, and there is so much that it may mean, that to compare all of it
+    would take seconds."""
+    known = {*scope.names(Kind.SIGNAL), *scope.names(Kind.CONTEXT)}
+    known |= {*nodes.names, *nodes.tags}
+    asked = {name for path in scope.paths for name in (*workspace.files[path].asked_for, *_selecting(workspace, path))}
+    return len(asked - known) * len(known) > _MOST_COMPARED
+
+
+def _selecting(workspace: Workspace, path: str) -> Iterator[str]:
+    """The names by which `apply` says what it applies to."""
+    for apply in workspace.files[path].of_type(Apply):
+        for selector in (*apply.targets, *apply.exceptions):
+            words = selector.path.names if selector.path is not None else ()
+            yield from [word.text for word in (selector.every, selector.tag, *words) if word is not None]
+
+
 def _written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
 _SHOWN: Final = 5  # places and fixes of one diagnostic
+_LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that mean one of them alone
+_MOST_COMPARED: Final = 200_000  # pairs of names: some tenths of a second
 _NOTHING: Final = object()

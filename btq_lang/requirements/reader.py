@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import isfinite
 
 from btq_lang.diagnostics import Fix, replace_fix
-from btq_lang.near import did_you_mean, near
+from btq_lang.near import did_you_mean
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
 from btq_lang.requirements.model import (
@@ -60,6 +60,8 @@ if TYPE_CHECKING:
     from typing import Final, Literal, TypeAlias
 
     from btq_lang.requirements.model import Sort
+    from btq_lang.requirements.nodes import Nodes
+    from btq_lang.workspace import Scope, Workspace
 
     # Of a temperature: 25 degC is a level, the difference of two levels is none, and K may be either.
     Level: TypeAlias = Literal["level", "difference", "either"]
@@ -107,6 +109,10 @@ class Term(Record):
 
 class Reader(PathReader):
     """Reads values and conditions, too."""
+
+    def __init__(self, workspace: Workspace, path: str, scope: Scope, nodes: Nodes) -> None:
+        super().__init__(workspace, path, scope, nodes)
+        self._unknown_units: dict[int, list[int]] = {}  # where they begin, by the `id` of the entry
 
     # ---- values ----
 
@@ -211,7 +217,7 @@ class Reader(PathReader):
             return
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
             return  # told as a subtraction without blanks
-        meant = near(word.text, self.names(*kinds)) if word.text not in _OF_PYTHON else (word.text.lower(),)
+        meant = self.near(word.text, *kinds) if word.text not in _OF_PYTHON else (word.text.lower(),)
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
@@ -226,8 +232,12 @@ class Reader(PathReader):
         self.complain("unknown-signal", word.span, message, notes=(note,), fixes=fixes)
 
     def _is_subtraction(self, name: str) -> bool:
-        known = frozenset(self.names("parameters", "signals", "contexts"))
-        return any(c == "-" and name[:at] in known and name[at + 1 :] in known for at, c in enumerate(name))
+        return any(
+            c == "-" and self._is_declared(name[:at]) and self._is_declared(name[at + 1 :]) for at, c in enumerate(name)
+        )
+
+    def _is_declared(self, name: str) -> bool:
+        return name in self.parameters or self.signal(name) is not None or self.is_context(name)
 
     def _fits(self, term: Term, wanted: Wanted) -> bool:
         """Whether a value is of what is wanted; else it is told."""
@@ -269,12 +279,16 @@ class Reader(PathReader):
 
     def _has_unknown_unit(self, term: Term) -> bool:
         """Whether the word behind a number is told to be no unit: `45 sek`."""
-        return any(
-            problem.rule == "unknown-unit"
-            and problem.span.start >= term.span.end
-            and not self.text(term.span.end, problem.span.start).strip()
-            for problem in self.entry.diagnostics
-        )
+        if not self.entry.diagnostics:
+            return False
+        from bisect import bisect_left  # most entries have no mistake in them
+
+        starts = self._unknown_units.get(id(self.entry))
+        if starts is None:
+            found = [problem.span.start for problem in self.entry.diagnostics if problem.rule == "unknown-unit"]
+            starts = self._unknown_units[id(self.entry)] = sorted(found)
+        at = bisect_left(starts, term.span.end)
+        return at < len(starts) and not self.text(term.span.end, starts[at]).strip()
 
     # ---- conditions ----
 
