@@ -71,11 +71,16 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
         return Refusal(f"cannot rename `{wanted.name}`: {shown}, which is not a .btq file, also uses it")
     if not (name.isascii() and name.isidentifier()) and any(_is_in_script(place.mention) for place in places):
         return Refusal("a name in a script may contain only the letters A to Z, digits and `_`")
+    # In a tree that runs itself, an entry may be a port as well: `{=}` then stays what it is.
+    pairs = [
+        {id(place.mention.pair) for place in places if place.mention.what is what} for what in (What.PORT, What.KEY)
+    ]
+    both = pairs[0] & pairs[1]
     reasons: list[str] = []
     for in_quotes in (False, True):  # a word that the language knows is a name where it is quoted
         edits: dict[str, tuple[Edit, ...]] = {}
         for place in places:
-            edits[place.path] = (*edits.get(place.path, ()), *_edits(place, wanted, name, in_quotes))
+            edits[place.path] = (*edits.get(place.path, ()), *_edits(place, wanted, name, in_quotes, both))
         reasons.append(_changes_meaning(workspace, path, found, places, edits, name))
         if not reasons[-1]:
             return Renaming(edits)
@@ -138,19 +143,20 @@ def _is_in_script(mention: Mention) -> bool:
     return mention.what is What.KEY and text != mention.name and not text.startswith("{")
 
 
-def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool) -> Iterator[Edit]:
+def _edits(place: Found, wanted: Subject, name: str, in_quotes: bool, both: set[int]) -> Iterator[Edit]:
     mention = place.mention
     start = place.entry.start if place.entry else 0
     if mention.what is What.KEY and not (mention.defines or mention.word.raw == wanted.name):
         is_same = mention.pair is not None and mention.word.raw[mention.span.start - mention.word.start :][:1] == "="
-        if not (is_same and mention.pair is not None and mention.pair.key.text == name):
+        if not (is_same and mention.pair is not None and (mention.pair.key.text == name or id(mention.pair) in both)):
             yield Edit(place.span, name)
         return
     quoted = in_quotes or mention.word.quoted or not is_name(name)
     yield Edit(mention.word.span.shifted(start), quote(name) if quoted else name)
     pair = mention.pair
     value = pair.value if pair is not None else None
-    if mention.what is What.PORT and value is not None and value.text.strip("{} ") == "=":
+    is_same = value is not None and value.text.strip("{} ") == "="
+    if mention.what is What.PORT and value is not None and is_same and id(pair) not in both:
         # `{=}` is the entry called as the port was: the entry has not changed its name.
         yield Edit(value.span.shifted(start), f"{{{wanted.name}}}")
 

@@ -41,6 +41,11 @@ from feature_asserts import check_no_rename, check_rename
             "shelf",
             "BehaviorTree Main\n    ->\n        Pick (from = {shelf})\n        Place (at = {shelf})\n",
         ),
+        (  # both in a tree that runs itself
+            "BehaviorTree Main\n    input fr$0om : string\n    SubTree Main (from = {=})\n",
+            "shelf",
+            "BehaviorTree Main\n    input shelf : string\n    SubTree Main (shelf = {=})\n",
+        ),
         (
             'BehaviorTree Main\n    ->\n        Script (code = "n := n + 1")\n        Pick (a = "{n$0}")\n',
             "count",
