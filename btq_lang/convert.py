@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # all these import the checks, and an editor waits for the se
     from btq_lang.features.signature import Signature
     from btq_lang.features.structure import Fold
     from btq_lang.findings import Findings
+    from btq_lang.loader import LoadProblem
     from btq_lang.workspace import Workspace
 
 
@@ -157,6 +158,18 @@ class Converter:
             written.append(self._diagnostics(workspace, path, told.placed(starts)))
             if told.items:  # of a file that nobody edits it would only take room
                 told.written = where, written[-1]
+        return Json(f"[{', '.join(written)}]")
+
+    def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:
+        """What is wrong with a project file, as JSON has a list of diagnostics."""
+        from btq_lang.toml_places import word_end  # few are wrong
+
+        lines = LineIndex(text)
+        written: list[str] = []
+        for one in found:
+            start = lines.offset(one.position or Position(0, 0))
+            range_ = self._range_as_json(lines, Span(start, word_end(text, start)))
+            written.append(f'{{"range": {range_}, "severity": 1, "source": "btq", "message": {as_json(one.message)}}}')
         return Json(f"[{', '.join(written)}]")
 
     def _diagnostics(self, workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> str:

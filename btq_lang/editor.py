@@ -43,6 +43,7 @@ class Refused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+NO_ITEMS = Json("[]")
 NOTHING = Json('{"kind": "full", "items": []}')
 TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
@@ -268,6 +269,13 @@ class Server(LanguageServer):
         is_strange = any(one.rule == "xml-root" for one in found.diagnostics)
         return Findings([]) if is_strange else found
 
+    def told(self, path: str) -> Json | None:
+        """All that is wrong with a file, a mission or a project's, as JSON; None: the file is not known."""
+        if path in self.session.projects:
+            return self.convert.problems(*self.session.projects[path])
+        workspace = self.session.workspace_of(path)
+        return None if workspace is None else self.convert.findings(workspace, path, self.findings(path))
+
     def check_soon(self, paths: Iterable[str]) -> None:
         """Tell the diagnostics of files, those first that come first; what waits already waits on behind them."""
         self.waiting = dict.fromkeys((*paths, *self.waiting))
@@ -310,7 +318,7 @@ class Server(LanguageServer):
             self.session.let_go()
             told = loop.time() if is_open else told
             await asyncio.sleep(0)
-        for path in [path for path in self.published if self.session.workspace_of(path) is None]:
+        for path in [path for path in self.published if not self.session.knows(path)]:
             self.publish(path)
         self._await_pause()
 
@@ -344,17 +352,15 @@ class Server(LanguageServer):
 
     def publish(self, path: str) -> None:
         """Tell the diagnostics of a file, unless the editor knows them."""
-        workspace = self.session.workspace_of(path)
         version = self.versions.get(path)
-        if workspace is None or not (path in self.session.open or self.session.setting("checkClosedFiles", True)):
+        told = self.told(path) if path in self.session.open or self.session.setting("checkClosedFiles", True) else None
+        if told is None:
             self.withdraw(path)
             self.session.forget(path)
             return
-        found = self.findings(path)
-        told = self.convert.findings(workspace, path, found)
         known = self.published.get(path)
-        now = self.published[path] = hash(told) if found.of_items else None, version
-        if now != known and (found.of_items or known is not None or path in self.session.open):
+        now = self.published[path] = hash(told) if told != NO_ITEMS else None, version
+        if now != known and (told != NO_ITEMS or known is not None or path in self.session.open):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
             params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
@@ -367,13 +373,11 @@ class Server(LanguageServer):
 
     def report(self, path: str, previous: str | None) -> Json:
         """The diagnostics of a file for an editor that asks: all, or that nothing has changed."""
-        workspace = self.session.workspace_of(path)
-        if workspace is None:
+        items = self.told(path)
+        if items is None:
             return NOTHING
-        found = self.findings(path)
-        if found.of_items:
+        if items != NO_ITEMS:
             self.shown.add(path)
-        items = self.convert.findings(workspace, path, found)
         result = f"{path in self.session.open}:{hash(items):x}"
         if previous == result:
             return Json(f'{{"kind": "unchanged", "resultId": "{result}"}}')

@@ -13,7 +13,7 @@ import os
 import stat
 
 from btq_lang.file import SUFFIXES, File, Origin
-from btq_lang.project import Project, has_btq_table, include_candidates, parse_project
+from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import Workspace
@@ -103,19 +103,23 @@ def file_of(path: str, text: str) -> File:
     return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))
 
 
-def find_project(start: str) -> Found:
+def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
     """The project of a file or folder: the nearest folder above with a btq.toml, or a pyproject.toml with `[tool.btq]`.
 
     Where both stand in one folder, btq.toml is the one.
+
+    Args:
+        known: texts that count instead of those on the disk, by path.
     """
+    known = known or {}
     start = absolute(start)
     folder = start if os.path.isdir(start) else os.path.dirname(start)
     for root in _upwards(folder):
-        for kind in ("btq.toml", "pyproject.toml"):
+        for kind in PROJECT_FILES:
             path = absolute(os.path.join(root, kind))
-            if not os.path.isfile(path):
+            if path not in known and not os.path.isfile(path):
                 continue
-            text, problem = read(path)
+            text, problem = (known[path], None) if path in known else read(path)
             if kind == "pyproject.toml" and not has_btq_table(text or ""):
                 continue
             project, problems = parse_project(text or "", kind, root)
@@ -123,6 +127,11 @@ def find_project(start: str) -> Found:
             lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
             return Found(replace(project, lost_paths=lost), path, (problem, *told) if problem else told)
     return Found(Project(folder), None)
+
+
+def is_project_file(path: str) -> bool:
+    """Whether a file has the name of those that describe projects."""
+    return path.rpartition("/")[2] in PROJECT_FILES
 
 
 def load(

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
+PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of those in a folder counts
 
 
 class Project(Record):
@@ -172,8 +173,9 @@ def _engines(key: str, value: object) -> _Read:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
     known = tuple(filter(_is_engine, wanted))
+    supported = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
     complaints = [
-        _Complaint(f"unknown engine version `{version}`; btq supports {VERSIONS[0]} to {VERSIONS[-1]}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_meant(version, VERSIONS) or ';'} {supported}", value=version)
         for version in wanted
         if version not in known
     ]
@@ -191,7 +193,8 @@ def _qualities(key: str, value: object) -> _Read:
 
     if value in (*EDITIONS,):
         return value, []
-    return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, EDITIONS))}")]
+    meant = _meant(value, EDITIONS) if isinstance(value, str) else ""
+    return None, [_Complaint(f"`{key}` must be {' or '.join(map(_quoted, EDITIONS))}{meant}")]
 
 
 def _strings(key: str, value: object) -> _Read:
@@ -216,7 +219,8 @@ def _severities(key: str, value: object) -> _Read:
             complaints.append(_Complaint(message, (name,)))
         elif not isinstance(word, str) or word not in _SEVERITIES:
             words = ", ".join(map(_quoted, _SEVERITIES))
-            complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}", (name,)))
+            meant = _meant(word, _SEVERITIES) if isinstance(word, str) else ""
+            complaints.append(_Complaint(f"`{key}.{name}` must be one of {words}{meant}", (name,)))
         else:
             severities.append((name, _SEVERITIES[word]))
     return tuple(severities), complaints

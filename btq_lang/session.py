@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the 
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.facts import Name
+    from btq_lang.loader import LoadProblem
     from btq_lang.workspace import Workspace
 
 
@@ -33,6 +34,7 @@ class Session:
         folders: the editor's folders; empty where single files are open.
         open: the texts of open files, by path.
         settings: what the editor's user has set.
+        projects: the project files of which anything is to be said: their texts, and what is wrong with them.
         took: how many seconds the last check of an open file has taken, by path.
     """
 
@@ -40,6 +42,7 @@ class Session:
         self.folders: tuple[str, ...] = ()
         self.settings: dict[str, object] = {}
         self.open: dict[str, str] = {}
+        self.projects: dict[str, tuple[str, tuple[LoadProblem, ...]]] = {}
         self.took: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
@@ -88,6 +91,7 @@ class Session:
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; all files that there are."""
         from btq_lang.commands.files import Files
+        from btq_lang.loader import is_project_file
 
         self._read_for = self.folders, {**self.settings}
         if self._files is None:
@@ -96,7 +100,9 @@ class Session:
         self._files.folders = self.folders
         self._files.know(workspace.files[path] for path in self.open if (workspace := self.workspace_of(path)))
         severities = self._severities()
-        groups, _ = self._files.groups((*self.folders, *self.open))
+        missions = (path for path in self.open if not is_project_file(path))
+        groups, problems = self._files.groups((*self.folders, *missions))
+        self._read_projects(problems)
         self._workspaces = []
         self._home = {}
         for index, group in enumerate(groups):
@@ -108,7 +114,20 @@ class Session:
             for path in workspace.files:
                 if path in group.given or path not in self._home:
                     self._home[path] = index
-        return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
+        return self.paths()
+
+    def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
+        """Keep what is wrong with project files: those of missions, and those that are open."""
+        from btq_lang.loader import find_project, is_project_file, read
+
+        found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
+        of_open = [each for one in found.values() for each in one.problems]
+        by_path: dict[str, dict[LoadProblem, None]] = {path: {} for path in found}
+        for problem in (*problems, *of_open):
+            if is_project_file(problem.path):
+                by_path.setdefault(problem.path, {})[problem] = None
+        texts = {path: self.open[path] if path in self.open else read(path)[0] or "" for path in by_path}
+        self.projects = {path: (texts[path], tuple(told)) for path, told in by_path.items()}
 
     @property
     def has_read(self) -> bool:
@@ -167,17 +186,21 @@ class Session:
         home = self._home.get(path)
         return None if home is None else self._workspaces[home]
 
+    def knows(self, path: str) -> bool:
+        """Whether a path is a mission's, or a project file's of which something is to be said."""
+        return path in self._home or path in self.projects
+
     def workspaces(self) -> tuple[Workspace, ...]:
         return tuple(self._workspaces)
 
     def paths(self) -> tuple[str, ...]:
         """Every file that is known, those that are open first."""
-        return tuple(sorted(self._home, key=lambda path: (path not in self.open, path)))
+        return tuple(sorted((*self._home, *self.projects), key=lambda path: (path not in self.open, path)))
 
     def places(self) -> set[str]:
         """Every file that is known, and every folder above one."""
         found: set[str] = set()
-        for place in self._home:
+        for place in self.paths():
             while place not in found:
                 found.add(place)
                 place = place.rpartition("/")[0]

@@ -13,6 +13,7 @@ from btq_lang.text import LineIndex, Position
 
 _LONG_STRING = re.compile(r""""{3}.*?"{3}|'{3}.*?'{3}""", re.DOTALL)
 _KEY_LINE = re.compile(r"""^[ \t]*(?:\[{1,2}([^\[\]\n]+)\]|([\w.\-"' \t]+?)[ \t]*=)""", re.MULTILINE)
+_WORD = re.compile(r"""[\w\-]+|"[^"\n]*"|'[^'\n]*'|[^\r\n]*""")
 _NAME = re.compile(r"""[\w\-]+|"[^"]*"|'[^']*'""")
 
 
@@ -31,6 +32,12 @@ def find_key(text: str, keys: tuple[str, ...], value: str | None = None) -> Posi
         match = re.compile(word).search(text, found + 1, end)
         found = match.start() if match else found
     return LineIndex(text).position(found)
+
+
+def word_end(text: str, start: int) -> int:
+    """Where the key or value ends that begins at a place; where none does, the end of the line."""
+    word = _WORD.match(text, start)
+    return word.end() if word else start
 
 
 def _key_lines(text: str) -> Iterator[tuple[tuple[str, ...], int, int]]:

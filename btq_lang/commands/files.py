@@ -85,7 +85,7 @@ class Files:
         def project_of(path: str) -> Found:
             folder = path if os.path.isdir(path) else os.path.dirname(path)
             if folder not in projects:
-                projects[folder] = find_project(folder)
+                projects[folder] = find_project(folder, self.overlay)
                 known = [found for found in projects.values() if found.path == projects[folder].path]
                 if projects[folder].path is None or len(known) == 1:
                     problems.extend(projects[folder].problems)
