@@ -78,6 +78,7 @@ class Server(LanguageServer):
         self.convert = Converter()
         self.versions: dict[str, int] = {}
         self.published: dict[str, tuple[int | None, int | None]] = {}  # hashes of what was told, if any, and versions
+        self.asks_for_all = False  # the editor asks for the diagnostics of all files, and not only of what is open
         self.shown: set[str] = set()  # the files of which an editor that asks may still show something
         self.tokens: dict[str, tuple[str, Colours]] = {}
         self.count = 0
@@ -297,6 +298,7 @@ class Server(LanguageServer):
         await asyncio.sleep(0)
         if self.pulls:
             self.waiting.clear()
+            self.publish_projects()
             if self.can_refresh("diagnostics"):
                 self.workspace_diagnostic_refresh(None)
         loop = asyncio.get_running_loop()
@@ -364,6 +366,14 @@ class Server(LanguageServer):
             name = json.dumps({"uri": self.convert.uri(path), **({"version": version} if version is not None else {})})
             params = Json(f'{name[:-1]}, "diagnostics": {told}}}')
             self.protocol.tell(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS, params)
+
+    def publish_projects(self) -> None:
+        """Tell what is wrong with project files to an editor that asks for the diagnostics of open files alone."""
+        for path in {*self.session.projects, *self.published}:
+            if self.asks_for_all or path in self.session.open:
+                self.withdraw(path)
+            else:
+                self.publish(path)
 
     def withdraw(self, path: str) -> None:
         """Tell that nothing is wrong with a file, if something was told by the URI that it has."""

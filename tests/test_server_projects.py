@@ -170,6 +170,22 @@ def test_the_diagnostics_of_a_project_file_are_pulled(folder: Path) -> None:
     assert editor.close() == ""
 
 
+def test_an_editor_that_asks_only_about_what_is_open_is_told_of_project_files(folder: Path) -> None:
+    (folder / "robot" / "btq.toml").write_text("engin = 1\n", encoding="utf-8")
+    editor = Editor(folder, capabilities=PULLS)
+    assert len(editor.published("robot/btq.toml")["diagnostics"]) == 1
+    editor.open("robot/btq.toml", "engin = 1\n")  # from now on it asks
+    assert editor.published("robot/btq.toml")["diagnostics"] == []
+    editor.shut("robot/btq.toml")
+    assert len(editor.published("robot/btq.toml")["diagnostics"]) == 1
+    assert len(editor.request("workspace/diagnostic", previousResultIds=[])["items"]) == 2
+    assert editor.published("robot/btq.toml")["diagnostics"] == []  # what is told twice would be shown twice
+    editor.write("robot/btq.toml", "engines = 1\n")
+    editor.request("workspace/diagnostic", previousResultIds=[])
+    assert [one for one in editor.kept if one["method"] == "textDocument/publishDiagnostics"] == []
+    assert editor.close() == ""
+
+
 def test_a_project_file_is_not_told_of_where_only_open_files_are_wanted(folder: Path) -> None:
     (folder / "robot" / "btq.toml").write_text("engin = 1\n", encoding="utf-8")
     editor = Editor(folder, initializationOptions={"checkClosedFiles": False})

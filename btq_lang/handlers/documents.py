@@ -55,6 +55,9 @@ def _diagnostics(server: Server) -> None:
     @server.feature(types.WORKSPACE_DIAGNOSTIC)
     async def workspace_diagnostic(params: types.WorkspaceDiagnosticParams) -> Json:
         known = {convert.path(one.uri): one.value for one in params.previous_result_ids}
+        if not server.asks_for_all:
+            server.asks_for_all = True
+            server.publish_projects()
         await server.scanned.wait()
         paths = session.paths() if session.setting("checkClosedFiles", True) else ()
         # What the editor still shows of files that are gone, or no longer wanted, goes only if it is told so: also of

@@ -534,3 +534,29 @@ def test_how_a_mission_looks(neovim: Neovim, request: pytest.FixtureRequest, art
             timeout=120,
         )
         assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_wrong_project_file_is_told_in_that_file_and_goes_when_it_is_mended(neovim: Neovim) -> None:
+    script = """
+    btq.wait(btq.client, 'the server')
+    vim.cmd('edit btq.toml')
+    local buffer = vim.api.nvim_get_current_buf()
+    local function message()
+      btq.wait(function() return #vim.diagnostic.get(buffer) == 1 end, 'a diagnostic')
+      return vim.diagnostic.get(buffer)[1].message
+    end
+    vim.api.nvim_buf_set_lines(0, 0, -1, true, { '[rules]', 'unknwn-node = "off"' })
+    vim.cmd('write')
+    local first = message()
+    vim.api.nvim_buf_set_lines(0, 1, 2, true, { 'unknown-node = "eror"' })
+    vim.cmd('write')
+    btq.wait(function() return message() ~= first end, 'another diagnostic')
+    local second = message()
+    vim.api.nvim_buf_set_lines(0, 1, 2, true, { 'unknown-node = "error"' })
+    vim.cmd('write')
+    btq.diagnostics(0, buffer)
+    return { first, second }
+    """
+    first, second = neovim.run({"main.btq": "BehaviorTree Main\n    Dock\n"}, script)
+    assert first == "unknown rule `unknwn-node`; did you mean `unknown-node`?"
+    assert second.endswith("; did you mean `error`?")

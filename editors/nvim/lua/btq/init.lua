@@ -58,8 +58,22 @@ function M.setup()
     })
     vim.lsp.enable('btq')
   end
+  local group = vim.api.nvim_create_augroup('btq', { clear = true })
+  vim.api.nvim_create_autocmd('BufWritePost', {
+    group = group,
+    pattern = { 'btq.toml', 'pyproject.toml' },
+    desc = 'tell the server of btq that a project file has changed: on Linux Neovim watches no files',
+    callback = function(event)
+      local changes = { { uri = vim.uri_from_fname(vim.fn.fnamemodify(event.match, ':p')), type = 2 } }
+      for _, client in pairs((vim.lsp.get_clients or vim.lsp.get_active_clients)()) do
+        if client.name == 'btq' then
+          M.notify(client, 'workspace/didChangeWatchedFiles', { changes = changes })
+        end
+      end
+    end,
+  })
   vim.api.nvim_create_autocmd('FileType', {
-    group = vim.api.nvim_create_augroup('btq', { clear = true }),
+    group = group,
     pattern = 'btq',
     desc = 'start the language server of btq',
     callback = function(event)
@@ -68,6 +82,15 @@ function M.setup()
       end
     end,
   })
+end
+
+--- Tell a server something: from 0.11 on it is the client's own function.
+function M.notify(client, method, params)
+  if vim.fn.has('nvim-0.11') == 1 then
+    client:notify(method, params)
+  else
+    client.notify(method, params)
+  end
 end
 
 --- Whether the server's program is there; reports it the first time that it is not, because no version of Neovim does.
