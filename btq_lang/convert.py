@@ -254,7 +254,7 @@ class Converter:
         contents = f'{{"kind": "markdown", "value": {as_json(found.markdown)}}}'
         return Json(f'{{"contents": {contents}, "range": {self._range_as_json(file.source_lines, span)}}}')
 
-    def completion(self, workspace: Workspace, path: str, found: Completion, *, snippets: bool) -> Json:
+    def completion(self, workspace: Workspace, path: str, found: Completion) -> Json:
         """Proposals, written at once: of a large file they are hundreds, for an editor that waits."""
         file = workspace.files[path]
         assert file.origin is None, "XML has no completion"
@@ -262,14 +262,13 @@ class Converter:
         items = []
         for number, one in enumerate(found.proposals):
             label = as_json(one.label)
-            snippet = one.snippet if snippets else None
-            text = one.insert if snippet is None else snippet
+            text = one.insert if one.snippet is None else one.snippet
             written = label if text == one.label else as_json(text)
             name = label if one.name == one.label else as_json(one.name)
             more = f', "detail": {as_json(one.detail)}' if one.detail else ""
             if one.filter:
                 more += f', "filterText": {as_json(one.filter)}'
-            if snippet is not None:
+            if one.snippet is not None:
                 more += f', "insertTextFormat": {_SNIPPET}'
             if one.old:
                 more += f', "tags": [{_DEPRECATED}]'
@@ -403,4 +402,5 @@ _COMPLETION_KINDS = {
     "tag": types.CompletionItemKind.Color.value,
     "instance": types.CompletionItemKind.Module.value,
     "enum": types.CompletionItemKind.Value.value,
+    "snippet": types.CompletionItemKind.Snippet.value,
 }

@@ -455,6 +455,42 @@ def test_completion_is_documented_when_it_is_looked_at(tmp_path: Path) -> None:
         assert editor.close() == ""
 
 
+@pytest.mark.parametrize(
+    ("line", "context", "labels"),
+    [
+        ('    Say (text = "a"', {"triggerKind": 2, "triggerCharacter": '"'}, []),
+        ("    Pick", {"triggerKind": 3}, []),
+        ("    Pick", {"triggerKind": 1}, ["Pick", "Pick …"]),
+        ("    Pick", None, ["Pick", "Pick …"]),
+    ],
+)
+def test_a_list_opens_over_a_complete_word_only_where_somebody_asks(
+    tmp_path: Path, line: str, context: object, labels: list[str]
+) -> None:
+    snippets = {"textDocument": {"completion": {"completionItem": {"snippetSupport": True}}}}
+    editor = Editor(tmp_path, capabilities=snippets)
+    editor.open("main.btq", f"{SKILLS}BehaviorTree Main\n{line}")
+    place = editor.at("main.btq", 3, len(line))
+    found = editor.request("textDocument/completion", **place, **({"context": context} if context else {}))
+    assert [item["label"] for item in found["items"]][:2] == labels
+    assert editor.close() == ""
+
+
+def test_snippets_are_for_editors_that_have_places_to_fill_in(tmp_path: Path) -> None:
+    for takes, expected in (
+        (True, [(15, 2, "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}\n        $0")]),
+        (False, []),
+    ):
+        editor = Editor(
+            tmp_path, capabilities={"textDocument": {"completion": {"completionItem": {"snippetSupport": takes}}}}
+        )
+        editor.open("main.btq", "t")
+        items = editor.request("textDocument/completion", **editor.at("main.btq", 0, 1))["items"]
+        trees = [item for item in items if item["label"] == "tree"]
+        assert [(item["kind"], item["insertTextFormat"], item["textEdit"]["newText"]) for item in trees] == expected
+        assert editor.close() == ""
+
+
 def test_hover_and_signature(editor: Editor) -> None:
     editor.open("main.btq", SKILLS + "BehaviorTree Main\n    Pick (")
     shown = editor.request("textDocument/hover", **editor.at("main.btq", 3, 5))

@@ -1,7 +1,7 @@
 """Completion: what may stand where somebody types, best first; its documentation is made when it is asked for.
 
 One invariant: what is proposed depends on the place alone, never on the letters typed so far: an editor filters them,
-each in its own way.
+each in its own way.  What the letters leave of it is for `completion_list` to say.
 """
 
 from __future__ import annotations
@@ -15,16 +15,20 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.features import proposals as offer
 from btq_lang.features.clause_words import Expected, expected, is_count, is_window
+from btq_lang.features.completion_list import listed
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.measures import Measured, measured_at
 from btq_lang.features.place import Place, item_tokens, place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
+from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
 from btq_lang.file import File
+from btq_lang.mentions import What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, replace
 from btq_lang.syntax import is_name
 from btq_lang.text import Span
-from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING, Token
 from btq_lang.workspace import Workspace
 
 
@@ -35,11 +39,31 @@ class Completion(Record):
     proposals: tuple[Proposal, ...]
 
 
-def complete(workspace: Workspace, path: str, offset: int) -> Completion:
-    """What may stand where an offset is."""
-    found = _complete(workspace, path, offset)
-    proposals = tuple(one for one in found.proposals if not _is_typed_here(workspace, path, found.span, one))
-    return Completion(found.span, proposals)
+def complete(
+    workspace: Workspace, path: str, offset: int, *, asked: bool = True, trigger: str = "", snippets: bool = True
+) -> Completion:
+    """What may stand where an offset is.
+
+    Args:
+        asked: somebody asks for it; otherwise the editor does, because of what was typed.
+        trigger: the character that the editor asks because of.
+        snippets: the editor has places to fill in.
+    """
+    place = place_at(workspace, path, offset)
+    text = workspace.files[path].text
+    if not asked and _ends_something(place, text[:offset], trigger):
+        return Completion(Span(offset, offset), ())
+    found = _complete(workspace, path, place, offset)
+    known = (one for one in found.proposals if one.label)
+    proposals = [one for one in known if not _is_typed_here(workspace, path, found.span, one)]
+    if not snippets:
+        proposals = [replace(one, snippet=None) for one in proposals if one.kind != "snippet"]
+    return Completion(found.span, listed(proposals, text[found.span.start : offset], asked))
+
+
+def _ends_something(place: Place, before: str, trigger: str) -> bool:
+    """Whether a typed character closes a string or belongs to a number, so that nothing begins with it."""
+    return (trigger == '"' and place.inside != "string") or (trigger == "." and before[-2:-1].isdecimal())
 
 
 def _is_typed_here(workspace: Workspace, path: str, span: Span, one: Proposal) -> bool:
@@ -72,8 +96,7 @@ def _is_elsewhere(file: File, span: Span, name: str) -> bool:
     return any(place.start < span.start or place.end > span.end for place in places)
 
 
-def _complete(workspace: Workspace, path: str, offset: int) -> Completion:
-    place = place_at(workspace, path, offset)
+def _complete(workspace: Workspace, path: str, place: Place, offset: int) -> Completion:
     text = workspace.files[path].text
     special = _in_comment(place, offset) or _in_braces(workspace, path, place, text, offset)
     special = special or _in_string(workspace, path, place, text, offset) or _unit(workspace, path, place, text, offset)
@@ -144,7 +167,9 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     """Behind a number: units; those that a port, a signal or a verb asks for first.  Behind a count none, and behind
     the number of a window first what may be counted."""
     line = text[_line_start(text, offset) : offset]
-    begun = re.search(r"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)([^\W\d_]*|%)$", line)
+    begun = re.search(rf"(?:^|[^\w.])\d+(?:\.\d+)?(?:[eE][+-]?\d+)?([ \t]*)({_BEGUN_UNIT}|)$", line)
+    if begun is not None:
+        place = _before_unit(place_at(workspace, path, offset - len(begun[2])))  # `/` in a unit divides nothing
     if begun is None or place.inside != "code" or not place.words or place.block in ("items", "none", "ports"):
         if begun is None or place.inside != "code" or not place.words:
             return None
@@ -174,6 +199,20 @@ def _unit(workspace: Workspace, path: str, place: Place, text: str, offset: int)
     behind = () if not begun[1] else _unique(_in_code(workspace, path, place, offset))
     proposals = (*behind, *found) if not in_brackets and is_window(clause) else (*found, *behind)
     return Completion(Span(offset - len(begun[2]), offset), proposals)
+
+
+def _before_unit(place: Place) -> Place:
+    """The place as it is while the unit of its last number is not there yet."""
+    if not place.words or place.words[-1].kind != QUANTITY:
+        return place
+    whole = place.words[-1]
+    found = re.match(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?", whole.text)
+    number = Token(NUMBER, whole.start, found[0] if found else "")
+    group = (*place.group[:-1], number) if place.group[-1:] == (whole,) else place.group
+    return replace(place, words=(*place.words[:-1], number), group=group)
+
+
+_BEGUN_UNIT = r"(?:[^\W\d_]+|%|1(?=/))(?:[*/^][^\W_]*)*"
 
 
 def _line_start(text: str, offset: int) -> int:
@@ -207,8 +246,10 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
     """What a line may begin with."""
     if place.block == "items":
         yield from offer.item_words(workspace, path)
+        yield from item_snippets()
     elif place.block == "models":
         yield from offer.category_words()
+        yield from model_snippets()
     elif place.block == "ports":
         yield from offer.port_heads()
     elif place.block == "clauses":
@@ -218,11 +259,14 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
         yield from offer.node_clause_words()
         if place.block == "tree":
             yield from offer.port_heads()
+        yield from node_snippets()
 
 
 def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
     last = place.last
-    if first == "include":
+    if len(place.words) == 1 and first in _DECLARED:
+        yield from offer.undeclared(workspace, *_DECLARED[first])
+    elif first == "include":
         yield from offer.includes(workspace, path, quoted=True) if len(place.words) == 1 else ()
     elif first == "qualities":
         yield from offer.words(EDITIONS, "enum")
@@ -231,8 +275,8 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
     elif first == "signal":
         yield from _in_signal(place, last)
     elif first == "context":
-        colon = last == ":"
-        yield from _clause_words(workspace, path, Expected(condition=True) if colon else expected(place.group), place)
+        wanted = Expected(condition=True) if last == ":" else replace(expected(place.group), clause=False)
+        yield from _clause_words(workspace, path, wanted, place)
     elif first == "Root":
         yield from offer.trees(workspace, path)
     elif first == "QualityReq":
@@ -246,7 +290,7 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
 def _in_signal(place: Place, last: str) -> Iterator[Proposal]:
     if last == ":":
         yield from offer.units_of_names()
-    elif len(place.words) >= 4:
+    elif len(place.words) >= 4 and last not in ("/", "*", "^"):
         given = {word.text for word in place.words}
         wanted = (word for word in ("from {}", "level", "counter", "gauge", "fresh within", "initially"))
         yield from offer.words((word for word in wanted if word.split()[0] not in given), "keyword")
@@ -280,6 +324,7 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
         behind = [word.text for word in words[at + 1 :]]
         if not behind:
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
+            yield from offer.undeclared(workspace, *_DECLARED["QualityReq"])
             return
         if behind[-1] in (":", ".") and "takes" not in behind:
             yield from offer.qualities(workspace, path, place)
@@ -308,9 +353,16 @@ def _clause_words(workspace: Workspace, path: str, wanted: Expected, place: Plac
         yield from offer.kinds(workspace, path)
     elif wanted.node:
         yield from offer.node_names(workspace, path)
-    if wanted.clause:
+    if wanted.clause and not _lacks_unit(workspace, path, place):
         yield from offer.clauses(tuple(word.text for word in place.words))
         yield from offer.node_names(workspace, path)
+
+
+def _lacks_unit(workspace: Workspace, path: str, place: Place) -> bool:
+    """Whether the number before the cursor needs a unit, without which no clause can follow."""
+    if not place.group or place.group[-1].kind != NUMBER or is_count([word.text for word in place.group]):
+        return False
+    return measured_at(workspace, path, place).unit != "1"
 
 
 def _attached_requirement(place: Place) -> bool:
@@ -374,3 +426,11 @@ def _in_list(workspace: Workspace, path: str, place: Place, word: str) -> Iterat
 
 
 _FUNCTIONS = ("max()", "min()", "mean()", "p95()")
+_DECLARED = {
+    "BehaviorTree": (Kind.TREE, What.TREE),
+    "SubTree": (Kind.TREE, What.TREE),
+    "QualityReq": (Kind.REQUIREMENT, What.REQUIREMENT),
+    "signal": (Kind.SIGNAL, What.VALUE),
+    "context": (Kind.CONTEXT, What.VALUE),
+    "quality": (Kind.QUALITY, What.QUALITY),
+}  # the words that a name is declared after, and the mentions that may name it

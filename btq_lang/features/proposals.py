@@ -14,7 +14,7 @@ from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
-from btq_lang.features.meaning import edition, is_main
+from btq_lang.features.meaning import Found, edition, is_main, match_of, subject
 from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place, word_text
@@ -36,7 +36,7 @@ class Proposal(Record):
 
     Attributes:
         kind: keyword, node, tree, requirement, quality, signal, context, parameter, port, attribute, key, unit, file,
-            rule, tag, instance or enum.
+            rule, tag, instance, enum or snippet.
         detail: what stands beside it in the list.
         insert: what is written for it; `snippet`: the same with places to fill in, as LSP writes them.
         filter: what the typed letters are compared with, where that is not the label.
@@ -147,6 +147,18 @@ def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
         head = written(name)
         snippet = _with_ports(head, [port for port in ports if port.required]) if ports else None
         yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
+
+
+def undeclared(workspace: Workspace, kind: Kind, what: What) -> Iterator[Proposal]:
+    """The names that something in the project refers to and that no file declares yet."""
+    found: set[str] = set()
+    for path, file in workspace.files.items():
+        for entry in file.parsed.entries:
+            named = (one for one in file.mentions_of(entry) if one.what is what and not one.defines)
+            found.update(one.name for one in named if not subject(workspace, Found(path, entry, one)).home)
+    for name in sorted(found):
+        if is_name(name) and not workspace.defined_anywhere(kind, name):
+            yield Proposal(name, _KIND_NAMES[kind], "not declared yet", name)
 
 
 def signals(workspace: Workspace, path: str) -> Iterator[Proposal]:
@@ -407,6 +419,16 @@ def qualities(workspace: Workspace, path: str, place: Place) -> Iterator[Proposa
         typed = place.prefix.lower()
         both = " ".join(sorted(names, key=lambda name: not name.lower().startswith(typed)))
         yield Proposal(one.id, "quality", one.name, one.id, None, both, one.id)
+        yield from _short_names(part, edition(workspace, path))
+
+
+def _short_names(part: str, chosen: str) -> Iterator[Proposal]:
+    """The names of qualities that another name begins with: `performance`, `time`."""
+    words = part.split("-")
+    for count in range(1, len(words)):
+        name = "-".join(words[:count])
+        if (known := match_of(name, chosen).quality) is not None:
+            yield Proposal(name, "quality", known.name, name, None, "", known.id)
 
 
 def units(wanted: Measured) -> Iterator[Proposal]:
@@ -517,7 +539,7 @@ def _builtin(kind: NodeKind) -> Iterator[Proposal]:
     below = "\n    $0" if kind.category in ("Control", "Decorator") else ""
     for word in dict.fromkeys((*kind.symbols[:1], min((kind.tag, *kind.aliases), key=len), kind.tag)):
         snippet = _with_ports(word, needed) or (escaped(word) if below else None)
-        named = f"{kind.tag} {word}"
+        named = f"{kind.tag} {word}" if word in kind.symbols else ""
         yield Proposal(word, "node", kind.doc, word, f"{snippet}{below}" if snippet else None, named, kind.tag)
 
 
@@ -539,6 +561,13 @@ def _hole(index: int, port: NodePort) -> str:
     return f"${{{index}:{{=\\}}}}"
 
 
+_KIND_NAMES = {
+    Kind.TREE: "tree",
+    Kind.REQUIREMENT: "requirement",
+    Kind.SIGNAL: "signal",
+    Kind.CONTEXT: "context",
+    Kind.QUALITY: "quality",
+}
 _STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
 _NUMBERS = ("int", "unsigned int", "double", "float", "int64_t", "uint64_t")
 _TYPES = (

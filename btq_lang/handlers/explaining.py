@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from lsprotocol import types
 
 from btq_lang import features
@@ -31,8 +33,15 @@ def register(server: Server) -> None:
         types.CompletionOptions(trigger_characters=list('({=.<"@:/,['), resolve_provider=True),
     )
     def completion(params: types.CompletionParams) -> Json | None:
-        asked = server.ask(params.text_document, params.position, features.complete)
-        return convert.completion(*asked, snippets=server.takes_snippets) if asked else None
+        context = params.context or types.CompletionContext(types.CompletionTriggerKind.Invoked)
+        feature = partial(
+            features.complete,
+            asked=context.trigger_kind == types.CompletionTriggerKind.Invoked,
+            trigger=context.trigger_character or "",
+            snippets=server.takes_snippets,
+        )
+        found = server.ask(params.text_document, params.position, feature)
+        return convert.completion(*found) if found else None
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     def resolve(item: types.CompletionItem) -> types.CompletionItem:

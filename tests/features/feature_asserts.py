@@ -289,6 +289,31 @@ def check_completion(text: str, *labels: str) -> None:
     assert [one.label for one in _complete(Fixture(text)).proposals] == list(labels)
 
 
+def check_list(text: str, *labels: str, trigger: str = "", absent: Iterable[str] = ()) -> None:
+    """The list that opens by itself at the cursor begins with these; without any, none opens.
+
+    Args:
+        trigger: the character that was typed last, where an editor asks because of it.
+    """
+    found = [one.label for one in complete(*Fixture(text).at, asked=False, trigger=trigger).proposals]
+    assert found[: len(labels)] == list(labels)
+    assert labels or not found
+    assert not set(found) & set(absent)
+
+
+def check_left(text: str, *labels: str) -> None:
+    """What an editor leaves of the list that was asked for before the word at the cursor was typed, best first."""
+    fixture = Fixture(text)
+    workspace, path, offset = fixture.at
+    content = fixture.files[path]
+    start = complete(workspace, path, offset).span.start
+    before = workspace.with_file(path, content[:start] + content[offset:])
+    typed = content[start:offset].lower()
+    found = complete(before, path, start).proposals
+    words = [(one.label, (one.filter or one.label).lower()) for one in found]
+    assert [label for label, word in words if word.startswith(typed)] == list(labels)
+
+
 def check_offers(text: str, *labels: str, absent: Iterable[str] = ()) -> None:
     """These are proposed at the cursor, in this order, perhaps among others; those that are absent are not."""
     found = [one.label for one in _complete(Fixture(text)).proposals]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from feature_asserts import (
     check_accept,
@@ -9,8 +11,13 @@ from feature_asserts import (
     check_documentation,
     check_filter,
     check_include,
+    check_left,
+    check_list,
     check_offers,
 )
+
+from btq_lang.features.snippets import item_snippets, node_snippets
+from btq_lang.parser import parse
 
 FILES = """//- main.btq
 signal battery : % from {battery_level}
@@ -45,7 +52,7 @@ FUNCTIONS = ("max()", "min()", "mean()", "p95()")
 CONDITION = ("low", "battery", "not", "node", *FUNCTIONS)
 SPEEDS = ("m/s", "kmh", "mph")
 DURATIONS = ("s", "ns", "us", "ms", "min", "h", "d", "week")
-BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
+BEHIND_OPERAND = ("and", "or", "<", "<=", ">", ">=", "==", "!=")
 TIMES = "signal far : km\nsignal spent : s\nQualityReq a(limit : min = 2 min, near : m)\n"
 NODES = ("MoveBase", "Near", "Wait", "Script", "Sequence", "Main", "Dock")
 
@@ -157,7 +164,8 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("line", "labels", "absent"),
     [
-        ("Beh$0", ("BehaviorTree", "QualityReq", "include", "Root", "signal", "apply"), ("satisfies",)),
+        ("Beh$0", ("BehaviorTree", "QualityReq", "Root"), ("satisfies",)),
+        ("$0", ("BehaviorTree", "QualityReq", "include", "Root", "signal", "apply"), ("satisfies",)),
         (
             "BehaviorTree X\n    $0",
             ("MoveBase", "Near", "Wait", "->", "Sequence", "Retry", "RetryUntilSuccessful", "SubTree", "satisfies"),
@@ -179,7 +187,7 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ),
         ("BehaviorTree X\n    Pick (satisfices Quality = $0", ("gentleness", "safety"), ("satisfies",)),
         ('QualityReq a : $0 "t"', ("gentleness", "safety"), ("takes at most",)),
-        ('QualityReq a "t" takes at most 30 $0', ("s", "min", "if", "takes at most", "on violation"), ("m", "%")),
+        ('QualityReq a "t" takes at most 30 $0', ("s", "min", "if"), ("m", "%", "takes at most", "on violation")),
         ('QualityReq a "t"\n    keeps battery >= 30$0', ("%", "m", "s"), ()),
         ('signal far : km\nQualityReq a "t"\n    keeps far < 3 $0', ("km", "m", "s", "%"), ()),
         ('signal far : km\nQualityReq a "t"\n    takes at most 3 s while far < 3 $0', ("km", "m", "s", "%"), ()),
@@ -197,7 +205,7 @@ def test_all_that_may_stand_here(line: str, labels: tuple[str, ...]) -> None:
         ('QualityReq a "t"\n    runs between 3 and 9 $0', ("per", "if"), ("m", "s", "%")),
         ('QualityReq a "t"\n    tries at most 3 if low else 5 $0', ("per",), ("m", "s", "%")),
         ('QualityReq a "t"\n    tries at most 3 if battery < 5 $0', ("%", "m", "s"), ()),
-        ('QualityReq a "t"\n    runs at least 3 per 9 $0', ("s", "ms", "takes at most"), ("m", "per", "%")),
+        ('QualityReq a "t"\n    runs at least 3 per 9 $0', ("s", "ms"), ("m", "per", "%", "takes at most")),
         ('QualityReq a "t"\n    over last 7 d $0', ("takes at most",), ("activations", "runs", "s")),
         ("BehaviorTree X\n    Pick satisfies slow(limit = 1 m/s if battery < 3 $0)", ("%", "m", "s"), ()),
         (f"{TIMES}    in at least 95 $0", ("%", "of runs"), ("s", "m")),
@@ -221,19 +229,20 @@ def test_among_what_may_stand_here(line: str, labels: tuple[str, ...], absent: t
     [
         (
             "",
-            "performance-efficiency.time-behaviour time-behaviour performance-efficiency.time-behavior Time behaviour",
+            "performance-efficiency.time-behaviou time-behaviou performance-efficiency.time-behavio Tim behaviou",
         ),
         (
             "Perf",
-            "performance-efficiency.time-behaviour performance-efficiency.time-behavior time-behaviour Time behaviour",
+            "performance-efficiency.time-behaviou performance-efficiency.time-behavio time-behaviou Tim behaviou",
         ),
         (
             "time",
-            "time-behaviour Time behaviour performance-efficiency.time-behaviour performance-efficiency.time-behavior",
+            "time-behaviou Tim behaviou performance-efficiency.time-behaviou performance-efficiency.time-behavio",
         ),
     ],
 )
 def test_the_name_that_is_typed_comes_first_for_editors_that_compare_beginnings(typed_before: str, names: str) -> None:
+    """Each word lacks its last letter: complete, it leaves the list."""
     line = f"BehaviorTree X\n    Pick satisfices {typed_before}$0"
     check_filter(typed(line), "performance-efficiency.time-behaviour", names)
 
@@ -243,7 +252,7 @@ def test_the_name_that_is_typed_comes_first_for_editors_that_compare_beginnings(
     [
         ("    Move$0", "MoveBase", "    MoveBase (station = ${1:{=\\}})", "    MoveBase"),
         ("    Move$0 (station = x)", "MoveBase", "    MoveBase (station = x)", "    MoveBase (station = x)"),
-        ("    Ret$0", "Retry", "    Retry (num_attempts = ${1:1})\n    $0", "    Retry"),
+        ("    Ret$0", "Retry …", "    Retry (num_attempts = ${1:1})\n    $0", "    Retry"),
         ("    Pick (from = {w$0", "=", "    Pick (from = {=}", None),
         ("    Pick (from = {w$0})", "=", "    Pick (from = {=})", None),
         ("    MoveBase (st$0)", "station", "    MoveBase (station = ${0:{=\\}})", "    MoveBase (station = )"),
@@ -349,3 +358,150 @@ def test_no_include_that_would_define_something_twice() -> None:
         "c",
         "QualityReq",
     )
+
+
+# ---- the list that opens by itself, and what Enter takes of it ----
+
+SOON = 'QualityReq soon "Soon"\n    '
+
+
+@pytest.mark.parametrize(
+    ("line", "trigger", "labels"),
+    [
+        # A quote that closes a string opens nothing; one that opens a string shows what belongs there.
+        (f'{SOON}because "why"$0', '"', ()),
+        ('QualityReq a : safety "Safe"$0', '"', ()),
+        ('BehaviorTree X\n    Pick (at = "a"$0)', '"', ()),
+        ('include "$0', '"', ("lib.btq",)),
+        ('include "$0"', '"', ("lib.btq",)),
+        ('BehaviorTree X\n    Pick satisfies "$0"', '"', ("slow", "far", "QualityReq")),
+        # Over a complete word none opens, but over one that begins others.
+        ("BehaviorTree X\n    MoveBase$0", "", ()),
+        ("BehaviorTree X\n    Near$0", "", ()),
+        ("BehaviorTree X\n    Pick satisfies slow$0", "", ()),
+        ("BehaviorTree X\n    Pick satisfices gentleness$0", "", ()),
+        (f"{SOON}takes at most 30 s$0", "", ()),
+        (f"{SOON}on violation fail$0", "", ()),
+        (f"{SOON}keeps low$0", "", ()),
+        ("signal$0", "", ()),
+        ("BehaviorTree X\n    Retry$0", "", ("MoveBase",)),
+        ("BehaviorTree X\n    Pick satisfices safety$0", "", ("gentleness",)),
+        # A number is complete, with its decimal point, too; behind it units are begun.
+        (f"{SOON}takes at most 0.$0", ".", ()),
+        (f"{SOON}takes at most 30 $0", "", ("s", "ns")),
+        (f"{SOON}keeps spare < 0.8 m/$0", "/", ("m", "N", "nm")),
+        ("signal a : m/$0", "/", ()),
+        # A name that begins with a capital is no keyword.
+        ("BehaviorTree X\n    -> S$0", "", ()),
+        ("BehaviorTree X\n    -> s$0", "", ("satisfies", "satisfices")),
+        ("context a : low $0", "", ("and", "or")),
+    ],
+)
+def test_the_list_that_opens_by_itself(line: str, trigger: str, labels: tuple[str, ...]) -> None:
+    check_list(typed(line), *labels, trigger=trigger)
+
+
+@pytest.mark.parametrize(
+    ("line", "labels"),
+    [
+        # Typed to its end a word is left alone, though it may be written with ports: then Enter is a line break.
+        ("BehaviorTree X\n    MoveBas$0", ("MoveBase",)),
+        ("BehaviorTree X\n    MoveBase$0", ()),
+        ("BehaviorTree X\n    MoveBase (stat$0", ("station",)),
+        ("BehaviorTree X\n    MoveBase (station$0", ()),
+        ("BehaviorTree X\n    Pick satisfies slow$0", ()),
+        ("BehaviorTree$0", ()),
+        # One that begins others stays, first and as it is.
+        ("BehaviorTree X\n    Retr$0", ("Retry …", "Retry", "retry", "RetryUntilSuccessful")),
+        ("BehaviorTree X\n    Retry$0", ("Retry", "retry", "RetryUntilSuccessful")),
+        ("BehaviorTree X\n    Timeout$0", ("Timeout", "timeout")),
+        (f"{SOON}succeeds$0", ("succeeds", "succeeds within")),
+        ("BehaviorTree X\n    Pick satisfices perf$0", PERFORMANCE := (
+            "performance", "performance-efficiency", "performance-efficiency.time-behaviour",
+            "performance-efficiency.resource-utilization", "performance-efficiency.capacity",
+        )),
+        ("BehaviorTree X\n    Pick satisfices performance$0", PERFORMANCE),
+        ("BehaviorTree X\n    Pick satisfices performance-efficiency$0", PERFORMANCE[1:]),
+    ],
+)  # fmt: skip
+def test_what_is_left_of_the_list_behind_a_word(line: str, labels: tuple[str, ...]) -> None:
+    check_left(typed(line), *labels)
+
+
+def test_a_list_that_is_asked_for_opens_over_a_complete_word() -> None:
+    check_offers(typed("BehaviorTree X\n    MoveBase$0"), "MoveBase", "MoveBase …")
+    check_accept(
+        typed("BehaviorTree X\n    MoveBase$0").partition("//- lib")[0].removeprefix("//- main.btq\n"),
+        "MoveBase …",
+        MAIN.removeprefix("//- main.btq\n") + "BehaviorTree X\n    MoveBase (station = ${1:{=\\}})\n",
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "labels"),
+    [
+        ("BehaviorTree $0", ("Gone",)),
+        ("SubTree $0", ("Gone",)),
+        ("QualityReq $0", ("quick",)),
+        ("BehaviorTree X\n    Pick satisfies QualityReq $0", ("quick",)),
+        ("signal $0", ("depth",)),
+        ("context $0", ("depth",)),
+        ("quality $0", ("neatness",)),
+        ("Action $0", ("Pick",)),
+        ("BehaviorTree Go$0", ("Gone",)),
+        ("BehaviorTree Gone$0", ()),
+    ],
+)
+def test_where_a_name_is_declared_those_are_offered_that_are_referred_to(line: str, labels: tuple[str, ...]) -> None:
+    files = """//- main.btq
+BehaviorTree Main
+    ->
+        SubTree Gone
+        Pick satisfies quick satisfices safety, neatness
+QualityReq slow(limit : m) "Slow"
+    keeps depth <= limit
+//- lib.btq
+signal far : m
+"""
+    main, lib = files.split("//- lib.btq\n")
+    check_completion(f"{main}{line}\n//- lib.btq\n{lib}", *labels)
+
+
+ITEMS = ("tree", "mission", "req-time", "req-resource", "req-keeps", "req-odds", "skill")
+NODE_SNIPPETS = ("reactive", "retry", "guard", "timeout", "classic-action")
+
+
+@pytest.mark.parametrize(
+    ("line", "labels", "absent"),
+    [
+        ("$0", ITEMS, NODE_SNIPPETS),
+        ("TreeNodesModel\n    $0", ("skill",), (*ITEMS[:-1], *NODE_SNIPPETS)),
+        ("BehaviorTree X\n    $0", NODE_SNIPPETS, ITEMS),
+        ("BehaviorTree X\n    ->\n        $0", NODE_SNIPPETS, ITEMS),
+        ("BehaviorTree X\n    -> $0", (), (*ITEMS, *NODE_SNIPPETS)),
+        ("BehaviorTree $0", (), (*ITEMS, *NODE_SNIPPETS)),
+        ("Action $0", (), (*ITEMS, *NODE_SNIPPETS)),
+        (f"{SOON}$0", (), ("tree", "skill", *NODE_SNIPPETS)),
+    ],
+)
+def test_snippets_are_offered_where_their_construct_may_begin(
+    line: str, labels: tuple[str, ...], absent: tuple[str, ...]
+) -> None:
+    check_offers(typed(line), *labels, absent=absent)
+
+
+@pytest.mark.parametrize("is_node", [False, True])
+def test_every_snippet_is_without_a_mistake_as_it_comes(is_node: bool) -> None:
+    for one in node_snippets() if is_node else item_snippets():
+        text = filled(one.snippet or "")
+        if is_node:
+            text = "BehaviorTree X\n    " + text.replace("\n", "\n    ")
+        assert [found for entry in parse(text).entries for found in entry.diagnostics] == [], text
+
+
+def filled(snippet: str) -> str:
+    """A snippet with what it proposes for its places, of choices the first."""
+    hole = re.compile(r"\$\{(\d+)(?:\|([^,|]*)[^}]*|:((?:[^}\\]|\\.)*))\}")
+    values = {number: chosen or text for number, chosen, text in hole.findall(snippet)}
+    without_holes = hole.sub(lambda found: values[found[1]], snippet)
+    return re.sub(r"\$(\d)", lambda found: values.get(found[1], ""), without_holes).replace("\\}", "}")

@@ -1,0 +1,85 @@
+"""The list of a completion, as an editor narrows it with every letter and takes its first entry at Enter.
+
+One invariant: Enter after a complete word is a line break.  A word leaves the list with its last letter, and the list
+closes where it was the last one; a word that begins another one stays, first and as it is typed, so that accepting it
+changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from btq_lang.features.proposals import Proposal
+from btq_lang.record import replace
+
+
+def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Proposal, ...]:
+    """The entries of the list, best first.
+
+    Args:
+        typed: the part of the word before the cursor.
+        asked: somebody asks for the list; otherwise it opens by itself, and never over a complete word.
+    """
+    begun = _begun(proposals)
+    is_word = any(one.label == typed and one.kind != "snippet" for one in proposals)
+    if is_word and not asked and typed.lower() not in begun:
+        return ()
+    order: list[tuple[int, int, int]] = []  # each goes before all that its word begins
+    for place, one in enumerate(proposals):
+        order.append((min(place, begun.get(one.label.lower(), place)), len(one.label), place))
+    ordered = [proposals[place] for _, _, place in sorted(order)]
+    return tuple([each for one in ordered for each in _entries(one, typed, asked, one.label.lower() in begun)])
+
+
+def _entries(one: Proposal, typed: str, asked: bool, is_beginning: bool) -> Iterator[Proposal]:
+    """The entries of one proposal: none, the proposal, or also its bare word."""
+    if one.kind in ("keyword", "snippet") and one.label[:1].islower() and typed[:1].isupper():
+        return  # an editor ignores case, and a name begins that is no keyword
+    if one.kind == "snippet":
+        yield one
+        return
+    is_typed = one.label == typed
+    if not is_typed and not is_beginning:
+        yield replace(one, filter=_shortened(one, typed))
+        return
+    if one.snippet is None and one.insert.strip() == one.label:
+        yield one
+        return
+    bare = replace(one, insert=one.label, snippet=None)
+    full = replace(one, label=f"{one.label} …", filter=one.filter or one.label)
+    if not is_typed:
+        yield replace(full, filter=_shortened(one, typed))
+    yield bare
+    if is_typed and asked:
+        yield full
+
+
+def _shortened(one: Proposal, typed: str) -> str:
+    """What the typed letters are compared with: the label, or each word of the filter, without its last letter, unless
+    that is there already."""
+    words = one.filter.split(" ") if one.filter else [one.label]
+    return " ".join([word if word == typed else word[:-1] or word for word in words])
+
+
+def _begun(proposals: Sequence[Proposal]) -> Mapping[str, int]:
+    """The labels that words of other proposals begin with, each with the first place of such a proposal; case does not
+    count."""
+    labels = {one.label.lower(): place for place, one in reversed([*enumerate(proposals)])}
+    found: dict[str, int] = {}
+    beginnings: list[str] = []  # of the word that is looked at, each one of the next
+    for word, place in sorted([(word, place) for place, one in enumerate(proposals) for word in _words(one)]):
+        while beginnings and not word.startswith(beginnings[-1]):
+            beginnings.pop()
+        for label in beginnings:
+            if labels[label] != place:
+                found[label] = min(found.get(label, place), place)
+        if word in labels and word not in beginnings[-1:]:
+            beginnings.append(word)
+            if labels[word] != place:
+                found[word] = min(found.get(word, place), place)
+    return found
+
+
+def _words(one: Proposal) -> list[str]:
+    """What an editor may compare the typed letters with; it ignores case."""
+    return [one.label.lower(), *(one.filter.lower().split(" ") if one.filter else ())]

@@ -1,0 +1,107 @@
+"""Snippets: whole constructs with places to fill in, proposed where such a construct may begin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btq_lang.features.proposals import Proposal
+
+
+def item_snippets() -> Iterator[Proposal]:
+    """Those that begin an item of a file."""
+    yield from _proposals(_ITEMS)
+
+
+def model_snippets() -> Iterator[Proposal]:
+    """Those that begin a model."""
+    yield from _proposals(_MODELS)
+
+
+def node_snippets() -> Iterator[Proposal]:
+    """Those that begin a node."""
+    yield from _proposals(_NODES)
+
+
+def _proposals(table: tuple[tuple[str, str, str], ...]) -> Iterator[Proposal]:
+    for label, detail, snippet in table:
+        yield Proposal(label, "snippet", detail, label, snippet)
+
+
+_MODELS = (
+    (
+        "skill",
+        "the interface of a skill",
+        '${1|Action,Condition|} ${2:MoveBase} "${3:Drives the base to a named station}"\n'
+        "    ${4|input,output,inout|} ${5:station} : ${6:string}$0",
+    ),
+)
+_ITEMS = (
+    (
+        "mission",
+        "a tree with a guard and a skill, and a requirement on it",
+        'QualityReq ${1:in_time} : performance-efficiency.time-behaviour "${2:Reach the station in time}"\n'
+        "    takes at most ${3:30 s}\n"
+        "\n"
+        "BehaviorTree ${4:Mission}\n"
+        "    ->\n"
+        "        Condition ${5:BatteryGood}\n"
+        '        Action ${6:MoveBase} (${7:station} = "${8:charger}") satisfies $1\n'
+        "        $0",
+    ),
+    ("tree", "a behavior tree", "BehaviorTree ${1:Name}\n    ${2|->,?,R->,R?|}\n        $0"),
+    (
+        "req-time",
+        "a requirement: a node takes no longer than this",
+        'QualityReq ${1:in_time} : performance-efficiency.time-behaviour "${2:Done in time}"\n'
+        "    takes at most ${3:30 s}\n"
+        "    on violation ${4|warn,fail,halt,log|}$0",
+    ),
+    (
+        "req-resource",
+        "a requirement: a node leaves enough of what a signal measures",
+        "signal ${1:battery} : ${2:%} from {${3:battery_level}\\}\n"
+        "\n"
+        'QualityReq ${4:way_home} : performance-efficiency.resource-utilization "${5:Arrive with some battery left}"\n'
+        "    leaves $1 >= ${6:20 %}$0",
+    ),
+    (
+        "req-keeps",
+        "a requirement: a condition holds as long as a node runs",
+        'QualityReq ${1:slow} : safety.operational-constraint "${2:Never faster than people walk}"\n'
+        "    keeps ${3:speed} <= ${4:0.5 m/s}\n"
+        "    on violation ${5|halt,fail,warn,log|}$0",
+    ),
+    (
+        "req-odds",
+        "a requirement: a node succeeds often enough",
+        'QualityReq ${1:dependable} : reliability.faultlessness "${2:Nearly always works}"\n'
+        "    succeeds within ${3:30 s}\n"
+        "    in at least ${4:98 %} of ${5|activations,runs|}\n"
+        "    over last ${6:200} $5$0",
+    ),
+    *_MODELS,
+)
+_NODES = (
+    (
+        "guard",
+        "do something only if a condition does not hold",
+        "?\n    Condition ${1:BatteryGood}\n    -> ${2:Recharge}\n        $0",
+    ),
+    (
+        "reactive",
+        "a condition is checked at every tick while an action runs",
+        "R->\n    Condition ${1:AreaFree}\n    ${2:MoveBase}$0",
+    ),
+    ("retry", "try again after a failure", "Retry (num_attempts = ${1:3})\n    $0"),
+    ("timeout", "halt what takes too long", "Timeout (msec = ${1:30 s})\n    $0"),
+    (
+        "classic-action",
+        "an action with a requirement in the published syntax",
+        "ScriptAction (\n"
+        '    name = "${1:MoveBase}"\n'
+        "    satisfices Quality = ${2:performance}\n"
+        '    (QualityReq ID = "${3:rq1}"\n'
+        '    description = "${4:SuccessIf it takes at most 30 s}")\n'
+        ")$0",
+    ),
+)
