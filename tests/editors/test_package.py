@@ -26,7 +26,6 @@ FILES_OF_THE_EXTENSION = {
     "python/requirements.txt",
     "python/run_btq.py",
     "readme.md",
-    "snippets/btq.json",
     "syntaxes/btq.tmLanguage.json",
     "walkthrough/check.md",
     "walkthrough/mistake.md",

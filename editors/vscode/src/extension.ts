@@ -12,6 +12,7 @@ import {
   TransportKind,
 } from "vscode-languageclient/node";
 
+import { completion, watchTyping } from "./completion";
 import { OverviewView } from "./overview";
 import { activeInterpreter, onInterpreterChange } from "./pythonExtension";
 import { findServer, NoPython, type Server } from "./server";
@@ -53,6 +54,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   context.subscriptions.push(
     log,
     status,
+    watchTyping(),
     vscode.commands.registerCommand("btq.restartServer", restart),
     vscode.commands.registerCommand("btq.showLog", () => log.show()),
     vscode.commands.registerCommand("btq.chooseInterpreter", chooseInterpreter),
@@ -141,6 +143,7 @@ async function start(
         // A setting that asks for another server is nothing to tell the one that is about to stop, nor is a file that is
         // opened meanwhile: the next one hears of all that are open.
         middleware: {
+          ...completion,
           didOpen: async (document, next) => (waiting ? undefined : next(document)),
           workspace: { didChangeConfiguration: async (sections, next) => (waiting ? undefined : next(sections)) },
         },
