@@ -18,6 +18,11 @@ setlocal iskeyword+=-
 setlocal suffixesadd=.btq,.xml
 setlocal include=^\\s*include\\s\\+[\"']
 
+" With the default 'completeopt' a list that opens by itself writes its first entry into the text.
+if has('nvim-0.11')
+  let &l:completeopt = &g:completeopt . ',noselect'
+endif
+
 let s:program = has('nvim') ? luaeval("require('btq').program()") : get(g:, 'btq_program', ['btq'])
 if executable(s:program[0])
   let s:words = map(copy(s:program), {_, word -> word =~# '^[[:alnum:]_./-]\+$' ? word : shellescape(word, 1)})
@@ -31,4 +36,5 @@ endif
 
 let b:undo_ftplugin = 'setlocal commentstring< comments< formatoptions< expandtab< shiftwidth< softtabstop<'
       \ . ' iskeyword< suffixesadd< include< makeprg< errorformat<'
+      \ . (has('nvim-0.11') ? ' completeopt<' : '')
       \ . (has('nvim') ? ' | delcommand -buffer BtqPreview' : '')
