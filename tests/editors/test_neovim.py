@@ -56,7 +56,7 @@ def neovim(nvim: Path, tmp_path: Path) -> Neovim:
 def test_installed_as_the_page_says(nvim: Path, tmp_path: Path) -> None:
     """A new user's home: the two lines of docs/editors.md, `btq-lsp` on the PATH, and the line that formats on save."""
     page = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8").partition("\n## Neovim\n")[2]
-    (install, *_), (format_on_save,) = (
+    (install, *_), (format_on_save, *_) = (
         re.findall(rf"^```{language}\n(.*?)^```$", page, re.DOTALL | re.MULTILINE) for language in ("sh", "lua")
     )
     server = tmp_path / "bin" / "btq-lsp"
@@ -197,11 +197,12 @@ def test_completion_proposes_qualities(neovim: Neovim) -> None:
 @pytest.mark.parametrize(
     ("typed", "words"),
     [
-        ("time", ["performance-efficiency.time-behaviour"]),
+        ("time", ["time", "performance-efficiency.time-behaviour"]),
         ("performance-efficiency.ti", ["time-behaviour"]),
         (
             "perf",
             [
+                "performance",
                 "performance-efficiency",
                 "performance-efficiency.time-behaviour",
                 "performance-efficiency.resource-utilization",

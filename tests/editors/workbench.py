@@ -259,6 +259,19 @@ class Workbench:
         ]
         return [text.replace("\xa0", " ").rstrip() for _, text in sorted(placed)]
 
+    def blanks(self) -> int:
+        """How many blanks the line of the cursor begins with, when the screen has followed the last key."""
+        text = self.page.evaluate(
+            """async () => {
+                await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+                const editor = document.querySelector('.editor-group-container.active .monaco-editor');
+                const top = editor.querySelector('.cursors-layer .cursor').style.top;
+                const lines = [...editor.querySelectorAll('.view-lines .view-line')];
+                return lines.find(line => line.style.top === top).textContent;
+            }"""
+        )
+        return len(text) - len(text.lstrip(" \xa0"))
+
     def seen(self) -> str:
         """What stands on the screen, for who reads why a test failed."""
         parts = (".tab", ".quick-input-widget", ".notification-toast", ".markers-panel", ".part.statusbar")
