@@ -183,18 +183,18 @@ def test_attempts() -> None:
         (
             "A takes at least 5 s",
             "A takes at most 4 s",
-            "`A` cannot satisfy both bounds: at least `5 s` and at most `4 s`",
+            "`A` cannot keep both bounds: at least `5 s` and at most `4 s`",
         ),
         (
             "A takes between 5 s and 3 s",
             "A succeeds",
-            "`A` cannot satisfy both bounds: at least `5 s` and at most `3 s`",
+            "`A` cannot keep both bounds: at least `5 s` and at most `3 s`",
         ),
-        ("A keeps n <= 3", "A keeps 5 < n", "`A` cannot satisfy both bounds: at least `5` and at most `3`"),
+        ("A keeps n <= 3", "A keeps 5 < n", "`A` cannot keep both bounds: at least `5` and at most `3`"),
         (
             "A uses at least 2 of n",
             "A uses at most 1 of n",
-            "`A` cannot satisfy both bounds: at least `2` and at most `1`",
+            "`A` cannot keep both bounds: at least `2` and at most `1`",
         ),
     ],
 )
@@ -231,7 +231,10 @@ def test_odds() -> None:
     )
     text = mission(tree, "q Work takes at most 9 s|in at least 96 % of activations", *steps)
     (found,) = problems(text, "odds-beyond-children")
-    assert found.message == "`-> Work` must do so in 96 %, but the requirements below it ensure only 95 %"
+    assert found.message == (
+        "`-> Work` must meet `Work takes at most 9 s` in 96 % of activations, but the requirements of the nodes below "
+        "it guarantee only 95 %"
+    )
     assert [related.message for related in found.related] == ["fails in up to 1 %", "fails in up to 4 %"]
     for clauses in (
         "takes at most 9 s|in at least 95 % of activations",
@@ -251,7 +254,10 @@ def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
 ) -> None:
     text = mission(f"{root}\n    Action A", f"q {subject} succeeds", "a A succeeds|in at least 99 % of activations")
     (found,) = problems(text, "odds-beyond-children")
-    assert found.message == f"{called} must do so in 100 %, but the requirements below it ensure only 99 %"
+    assert found.message == (
+        f"{called} must meet `{subject} succeeds` in 100 % of activations, but the requirements of the nodes below it "
+        "guarantee only 99 %"
+    )
 
 
 @pytest.mark.parametrize(
@@ -278,7 +284,8 @@ def test_success_without_odds_is_for_always_and_the_node_is_called_as_people_do(
 )
 def test_odds_of_a_child_that_are_lower_than_its_parents(tree: str, ensured: str | None) -> None:
     steps = ("a every A succeeds|in at least 90 % of activations", "b every B succeeds|in at least 95 % of activations")
-    told = [f"`Main` must do so in 95 %, but the requirements below it ensure only {ensured}"] if ensured else []
+    must = "`Main` must meet `Main succeeds` in 95 % of activations"
+    told = [f"{must}, but the requirements of the nodes below it guarantee only {ensured}"] if ensured else []
     text = mission(tree, "q Main succeeds|in at least 95 % of activations", *(s for s in steps if f"n {s[8]}" in tree))
     assert [found.message for found in problems(text, "odds-beyond-children")] == told
 

@@ -82,6 +82,13 @@ def test_clauses_and_qualities_are_part_of_what_is_said(first: str, second: str)
     assert_clean(f"QualityReq rq1 {second}\nQualityReq rq1 {second}\n")
 
 
+def test_only_a_definition_at_a_node_can_become_a_reference() -> None:
+    (found,) = problems('QualityReq rq1 "one"\nQualityReq rq1 "two"\n', "conflicting-requirement")
+    assert found.notes == ("keep one definition, or give this requirement another ID",)
+    (found,) = problems(classic("one", "two"), "conflicting-requirement")
+    assert found.notes == ("write `satisfies rq1` to refer to it, or use another ID",)
+
+
 def test_a_definition_that_says_nothing_is_told_for_that_only() -> None:
     assert_problems(
         'QualityReq rq1 "In time"\nQualityReq rq1\n',
@@ -125,6 +132,14 @@ RULE = 'QualityReq rq1 "In time"\n    takes at most 30 s\n'
 )
 def test_requirements_that_somebody_uses(text: str) -> None:
     assert_clean(text)
+
+
+def test_an_unused_requirement_names_the_ways_to_attach_it() -> None:
+    assert_problems(
+        RULE + "BehaviorTree Main\n    X\n",
+        "1:12 warning unused-requirement «rq1» "
+        "unused requirement `rq1`: no `satisfies` or `apply` attaches it to a node",
+    )
 
 
 def test_a_misspelt_use_is_one_mistake() -> None:

@@ -119,6 +119,13 @@ def test_clauses_that_need_odds(clauses: tuple[str, ...], told: list[str]) -> No
     assert ["«" + each.split("«")[1].split("»")[0] + "»" for each in found] == told
 
 
+def test_a_window_without_a_probability_has_no_effect() -> None:
+    assert findings(requirement("takes at most 3 s", "over last 20 runs"), "clause-without-odds") == [
+        "3 warning «over last 20 runs» the window has no effect here: "
+        "without a required probability a single violation counts"
+    ]
+
+
 @pytest.mark.parametrize(
     ("clauses", "told"),
     [

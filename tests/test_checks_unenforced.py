@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from check_asserts import findings
+from check_asserts import findings, problems
 from hypothesis import given
 from mission_strategies import missions
 
@@ -40,7 +40,7 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
             "whether an activation was within `while n > 3` is known only when it is over",
         ),
         ("A follows C halts", "the engine runs no script when that happens"),
-        ("A takes at most 5 s|in at least 98 % of runs", "odds are judged over many runs"),
+        ("A takes at most 5 s|in at least 98 % of runs", "a probability is judged over many runs"),
         ("A takes at most 5 s|verified by test", "verified by test"),
         (
             "from A fails to C succeeds takes at most 5 s",
@@ -83,6 +83,15 @@ def test_why_a_claim_is_not_enforced(clauses: str, why: str) -> None:
 def test_what_is_enforced_or_told_otherwise(clauses: str) -> None:
     signals = "signal n : 1 from {n} gauge initially 0\n"
     assert told(f"{clauses}|on violation halt", signals) == []
+
+
+def test_what_to_do_about_a_claim_that_is_not_enforced() -> None:
+    text = "QualityReq q\n    A takes at least 5 s\n    on violation halt\nBehaviorTree Main\n    Action A\n"
+    (found,) = problems(text, RULE)
+    assert found.notes == (
+        "nothing stops the robot, `btq verify` can only check it in the logs afterwards: "
+        "remove `on violation`, or write `on violation warn`",
+    )
 
 
 def test_a_classic_constraint_is_hard_without_being_asked() -> None:

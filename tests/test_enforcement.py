@@ -345,8 +345,8 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     )
     btq.write(mission=LIKELY)
     assert btq.build("mission.btq")[2] == (
-        "mission.btq:2:5: not enforced, monitored: quick, `Move takes at most 5 s` at `Move`: odds are judged over many"
-        f" runs\nclauses of requirements: 2 monitored\n{SEEN}"
+        "mission.btq:2:5: not enforced, monitored: quick, `Move takes at most 5 s` at `Move`: a probability "
+        f"is judged over many runs\nclauses of requirements: 2 monitored\n{SEEN}"
     )
 
 

@@ -84,7 +84,7 @@ class Judge:
         """
         requirement, subject = applied.requirement, applied.subject
         if requirement.odds is not None:
-            raise NotEnforced("odds are judged over many runs")
+            raise NotEnforced("a probability is judged over many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
         if isinstance(subject, Target) and subject.through:

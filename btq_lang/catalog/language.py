@@ -311,7 +311,7 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
             "counting period",
             "the period for counting: a node's activation, or a time",
         ),
-        ("of", "uses at most 20 Wh of energy", "of what", "the signal that is used, or the unit of odds"),
+        ("of", "uses at most 20 Wh of energy", "of what", "the signal that is used, or what a probability counts"),
         ("after", "starts within 2 s after Batch succeeds", "since when", "the event that starts a time"),
     ),
     "event": (
@@ -349,7 +349,12 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         ("with probability", "with probability >= 98 % of runs", "how often", "allows some violations"),
         ("activations", "in at least 98 % of activations", "from its start to its end", "each time that the node runs"),
         ("runs", "in at least 98 % of runs", "whole missions", "each time that the mission runs"),
-        ("confidence", "confidence 95 %", "how sure", "the required statistical confidence of a verdict on the odds"),
+        (
+            "confidence",
+            "confidence 95 %",
+            "how sure",
+            "the required statistical confidence of a verdict on the probability",
+        ),
         ("over last", "over last 200 activations", "window", "ignores older ones; also `over last 7 d`"),
         (
             "on violation",

@@ -51,7 +51,7 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A confidence, or a number of experiments, where nothing is said of how often the requirement is to hold."""
+    """A confidence, or a window of runs or activations, in a requirement without a required probability."""
     for symbol in view.summary(entry).symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
@@ -62,11 +62,11 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # the odds may be what could not be read
         for clause in requirement.clauses:
             if isinstance(clause, Confidence) or (isinstance(clause, Window) and clause.experiments is not None):
-                said = "a confidence" if isinstance(clause, Confidence) else "a number of experiments"
+                said = "a confidence" if isinstance(clause, Confidence) else "the window"
                 yield Diagnostic(
                     "clause-without-odds",
                     Span(clause.start, clause.end),
-                    f"{said} has no effect here: without odds a single violation violates the requirement",
+                    f"{said} has no effect here: without a required probability a single violation counts",
                     notes=("state how often it must hold: `in at least 95 % of activations`",),
                 )
 

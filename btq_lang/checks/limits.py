@@ -53,7 +53,9 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
                 place.span,
                 f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
                 related=(Related(node.place, "never returns RUNNING"),),
-                notes=("btq still monitors the requirement; remove `on violation`, or limit an action instead",),
+                notes=(
+                    "`btq verify` can only check it in the logs afterwards; remove `on violation`, or limit an action",
+                ),
             ),
         )
 
@@ -172,9 +174,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
                 continue  # told
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
-            message = (
-                f"{node.shown} cannot satisfy both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
-            )
+            message = f"{node.shown} cannot keep both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
             yield place, Diagnostic("contradicting-bounds", place.span, message, related=related)
 
 

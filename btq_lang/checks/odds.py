@@ -32,8 +32,8 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
             continue
         likely, parts, rest = ensured
         message = (
-            f"{_called(applied, node)} must do so in {_percent(wanted)}, but "
-            f"the requirements below it ensure only {_percent(likely)}{rest}"
+            f"{_called(applied, node)} must meet `{claim.text}` in {_percent(wanted)} of activations, but "
+            f"the requirements of the nodes below it guarantee only {_percent(likely)}{rest}"
         )
         related = tuple(Related(part.place, f"fails in up to {_percent(share)}") for part, share in parts if share)
         notes = ("the failures of several steps add up (the union bound)",) if len(related) > 1 else ()
@@ -57,7 +57,7 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
         f"{window.count} {window.experiments} cannot show {_percent(odds.probability)} with a confidence of "
         f"{_percent(confidence)}: {reason}"
     )
-    related = (Related(odds.place, "odds to show"),)
+    related = (Related(odds.place, "required probability"),)
     yield window.place, Diagnostic("window-too-small", window.place.span, message, related=related)
 
 

@@ -56,7 +56,7 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 symbol.span,
                 f"the requirement `{symbol.name}` has another definition that differs",
                 related=(view.defined_at(counts, _COUNTS),),
-                notes=(f"write `satisfies {written(symbol.name)}` to refer to it, or use another ID",),
+                notes=(_other_way(entry, symbol),),
             )
 
 
@@ -79,7 +79,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     yield Diagnostic(
         "unused-requirement",
         requirement.name.span,
-        f"unused requirement `{requirement.name.text}`: no node satisfies it",
+        f"unused requirement `{requirement.name.text}`: no `satisfies` or `apply` attaches it to a node",
         notes=(f"attach it to a node with `satisfies {written(requirement.name.text)}` or `apply`",),
         tags=(Tag.UNNECESSARY,),
     )
@@ -99,11 +99,18 @@ def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
         message = f"the requirement `{symbol.name}` demands nothing"
         if action is not None:
             message += f" that can be violated, so `on violation {action}` has no effect"
-        note = "add a clause such as `takes at most 30 s`" + ("" if action else ", or a text in quotes")
+        note = "add a clause such as `takes at most 30 s`" + ("" if action else ", or a title in quotes")
         yield Diagnostic("requirement-without-text", symbol.span, message, notes=(note,))
 
 
 _COUNTS = "first definition, which takes effect"
+
+
+def _other_way(entry: Entry, symbol: Symbol) -> str:
+    """What to write instead of a second definition: only below a node can a reference replace it."""
+    if symbol.target is entry.item:
+        return "keep one definition, or give this requirement another ID"
+    return f"write `satisfies {written(symbol.name)}` to refer to it, or use another ID"
 
 
 def _differ(symbol: Symbol, first: Symbol) -> bool:

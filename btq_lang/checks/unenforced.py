@@ -49,7 +49,10 @@ def _found(
 ) -> Diagnostic:
     requirement = applied.requirement
     asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are hard unasked
-    note = "btq only monitors it: remove `on violation`, or write `on violation warn`"
+    note = (
+        "nothing stops the robot, `btq verify` can only check it in the logs afterwards: "
+        "remove `on violation`, or write `on violation warn`"
+    )
     return Diagnostic(
         "not-enforced",
         place.span,

@@ -99,7 +99,7 @@ def _counted(clause: ClauseVerdict) -> str:
     held = clause.counted - clause.violated
     of = f"{held} of {clause.counted}{unknown}"
     if clause.verdict == UNDECIDED:
-        decided = "no number of further {clause.unit} decides it"
+        decided = f"no number of further {clause.unit} can decide it"
         if clause.more is not None:
             decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
         return f"{of}; {decided}"

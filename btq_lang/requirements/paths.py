@@ -245,7 +245,9 @@ class PathReader(Asker):
             span,
             f"ambiguous path `{shown}`: {len(found)} nodes match",
             related=related,
-            notes=("a path must match one node; write `every` for all of them, in a claim or in `apply … to every …`",),
+            notes=(
+                "a path must match one node; write `every` for all of them, in a clause or in `apply … to every …`",
+            ),
             fixes=tuple(replace_fix(f"Write `{path}`", span, path) for path in list(paths)[:_SHOWN]),
         )
 

@@ -48,14 +48,14 @@ _NO_SUCH: Final = {
     ">>": "scripts have no shifts; divide by a power of two",
     "%": "scripts have no remainder operator",
     ",": "unexpected `,` in a script; statements are separated by `;`, and the decimal sign is `.`",
-    ".": "unexpected `.`: only numbers contain it, `..` joins texts, and names of keys have none",
+    ".": "unexpected `.`: only numbers contain it, `..` joins texts, and names of entries have none",
     "[": "scripts have no lists",
     "]": "scripts have no lists",
-    "{": "braces belong to ports; name a key in a script without them",
-    "}": "braces belong to ports; name a key in a script without them",
-    "$": "name a key in a script without `$`",
+    "{": "braces belong to ports; in a script, write the entry without them",
+    "}": "braces belong to ports; in a script, write the entry without them",
+    "$": "in a script, write the entry without `$`",
     "#": "scripts have no comments",
-    "@": "`@` must be followed at once by the name of a key of the root blackboard",
+    "@": "`@` must be followed at once by the name of an entry of the root blackboard",
     "'": "missing closing quote for this text",
     '"': "missing closing quote for this text; text in a script goes in single quotes: '…'",
     "not": "`not` is written `!` in a script, which binds more tightly: put what it negates in brackets, `!(a == b)`",
@@ -96,7 +96,7 @@ def wrong_quotes(span: Span, content: str) -> Diagnostic:
 
 
 def braced(text: str, span: Span, name: str) -> Diagnostic:
-    message = f"name a key in a script without braces: `{name}`"
+    message = f"in a script, write the entry without braces: `{name}`"
     beside = text[span.start - 1 : span.start] + text[span.end : span.end + 1]
     if any(
         character.isalnum() or character in "_@{}." for character in beside
@@ -124,7 +124,7 @@ def number(span: Span, raw: str, meant: str | None) -> Diagnostic:
 
 
 def unit(span: Span, name: str) -> Diagnostic:
-    note = "write the number in the unit of the key"
+    note = "write the number in the unit of the entry"
     return error(span, f"unexpected unit `{name}`: scripts have no units", notes=(note,))
 
 
@@ -204,8 +204,8 @@ def assignment_behind_ternary(span: Span) -> Diagnostic:
 
 
 def not_assignable(operator: Span, is_equals: bool) -> Diagnostic:
-    """An assignment to something that is no key."""
-    message = "only a key can be assigned to: the engine loads this and fails at the tick"
+    """An assignment to something other than an entry."""
+    message = "only an entry can be assigned to: the engine loads this and fails at the tick"
     if not is_equals:
         return error(operator, message)
     fix = replace_fix("Compare with `==`", operator, "==")

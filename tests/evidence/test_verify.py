@@ -295,6 +295,17 @@ def test_xml_is_a_mission_too(lab: Path, shared: Path) -> None:
     ]
 
 
+def test_certainty_that_no_number_of_runs_can_show(lab: Path) -> None:
+    text = (lab / "lab.btq").read_text(encoding="utf-8")
+    before, _, rest = text.partition("QualityReq in_time")
+    demand = "PickTube/Pick takes at most 1 s in at least 100 % of runs confidence 95 %"
+    tree = rest[rest.index("BehaviorTree mainTree") :]
+    (lab / "lab.btq").write_text(f"{before}QualityReq rq : reliability\n    {demand}\n{tree}", encoding="utf-8")
+    _, output, _ = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq")
+    (line,) = (line for line in output.splitlines() if "undecided" in line)
+    assert line.endswith("; no number of further runs can decide it")
+
+
 def test_colours_are_for_terminals(lab: Path) -> None:
     _, output, _ = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq", "--color", "always")
     assert "\x1b[1;31mviolated       \x1b[0m  in_time" in output
