@@ -304,6 +304,17 @@ def test_no_other_form_is_written_under_its_name(tmp_path: Path, capfd: pytest.C
     assert (capfd.readouterr().err, (tmp_path / "a.png").exists()) == (message, False)
 
 
+@pytest.mark.parametrize("command", ["graph", "trace"])
+def test_a_mission_is_not_overwritten(command: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    mission = tmp_path / "a.btq"
+    mission.write_text("BehaviorTree Main\n    Go\n")
+    assert main([command, str(mission), "-o", str(mission)]) == 2
+    message = (
+        f"btq {command}: {mission} has the name of a mission, which this would overwrite; choose another one for -o\n"
+    )
+    assert (capfd.readouterr().err, mission.read_text()) == (message, "BehaviorTree Main\n    Go\n")
+
+
 def test_what_the_command_cannot_draw(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.btq").write_text("signal battery : %\n")
     assert main(["graph", str(tmp_path / "a.btq")]) == 2

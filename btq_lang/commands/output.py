@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 
 from btq_lang.commands.files import write_stdout
+from btq_lang.file import SUFFIXES
 from btq_lang.loader import LoadProblem, absolute, write_whole
 
 
@@ -18,8 +19,11 @@ def form_of(options: Namespace, forms: Sequence[str]) -> str:
 
 
 def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
-    """What is wrong where the file's name ends in a form that btq does not write, and none is asked for."""
+    """What is wrong with the file's name: a mission's, or one that ends in a form that btq does not write, where none
+    is asked for."""
     ending = _ending(options)
+    if ending in (*SUFFIXES, ".xml"):
+        return f"{options.output} has the name of a mission, which this would overwrite; choose another one for -o"
     if options.format or ending not in _OTHERS:
         return None
     return f"no {ending} is written, but {', '.join(forms)}: --format says which, whatever the name"
