@@ -144,6 +144,8 @@ class ClaimParser(ConditionParser):
             notes = ("`keeps` holds while the node runs, `needs` when it starts, `leaves` when it has succeeded",)
             self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
             self.recover()
+        elif isinstance(subject, Path) and self.at_word("fails"):
+            self.expected(_A_VERB, ("`tries at most 3` limits the attempts, `succeeds` demands that it does not fail",))
         elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
         elif not isinstance(subject, Path):
@@ -152,7 +154,10 @@ class ClaimParser(ConditionParser):
             self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
         else:
             name = "/".join(word.raw for word in subject.names)
-            note = _INSTEAD_OF_A_NODE
+            note = (
+                f"`{shown(name)}` is read as the node that the clause is about; write a verb after it, or begin with a "
+                "clause word: in at least, while, on violation, goal, …"
+            )
             if subject.names[0].kind == STRING:
                 note = "a requirement has one title, after its name; reasons are written `because …`"
             elif self.kind == STRING:
@@ -342,8 +347,10 @@ def is_time(raw: str) -> bool:
 
 QUALITY_IN_HEAD: Final = "a requirement's quality goes after its name: `QualityReq fast : reliability`"
 MEANT: Final = {  # by what is read as a node in front of a verb
-    "at": "a bound goes after its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
+    "at": "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
     "violation": "write `on violation fail`",
+    **dict.fromkeys(("max", "maximum"), "an upper bound goes after its verb: `takes at most 30 s`"),
+    **dict.fromkeys(("min", "minimum"), "a lower bound goes after its verb: `takes at least 1 s`"),
     "within": "write `succeeds within 30 s`, or `takes at most 30 s`",
     "if": "to limit a clause to a situation, add `while humans_near` or `when fragile`",
     "unless": "write `while not humans_near`",
@@ -366,9 +373,6 @@ MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
 _COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
-_INSTEAD_OF_A_NODE: Final = (
-    "btq reads it as a node, since no clause begins with it: in at least, while, on violation, goal, …"
-)
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(

@@ -409,7 +409,9 @@ class ClauseParser(ClaimParser):
         if self.accept_word("in"):
             if self.kind == QUANTITY:
                 fix = replace_fix("Put `at least` before it", Span(self.here().start, self.here().start), "at least ")
-                self.complain("syntax-error", self.here(), f"odds are written `in at least {self.raw}`", (), (fix,))
+                self.complain(
+                    "syntax-error", self.here(), f"a probability is written `in at least {self.raw}`", (), (fix,)
+                )
                 value = self.take()
             else:
                 ok = self.expect_word("at") and self.expect_word("least")
@@ -421,7 +423,7 @@ class ClauseParser(ClaimParser):
         if self.kind == QUANTITY:
             at = self.here()
             fix = replace_fix("Put `probability >=` before it", Span(at.start, at.start), "probability >= ")
-            self.complain("syntax-error", at, f"odds are written `with probability >= {self.raw}`", (), (fix,))
+            self.complain("syntax-error", at, f"a probability is written `with probability >= {self.raw}`", (), (fix,))
             value = self.take()
         elif self.expect_word("probability"):
             if self.at(">=") or self.at(">"):
@@ -430,7 +432,7 @@ class ClauseParser(ClaimParser):
                 value = self.percentage("98 %")
             elif self.kind == QUANTITY:
                 fix = replace_fix("Put `>=` before it", Span(self.here().start, self.here().start), ">= ")
-                message = f"odds are written `with probability >= {self.raw}`"
+                message = f"a probability is written `with probability >= {self.raw}`"
                 self.complain("syntax-error", self.here(), message, (), (fix,))
                 value = self.take()
             else:

@@ -535,7 +535,10 @@ class NodeParser(AttributeParser):
         self.skip_block(level)
 
 
-XML: Final = "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with `#`"
+XML: Final = (
+    "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
+    "a comment begins with `#`, not `<!--`"
+)
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
 _TAG: Final = regex(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))

@@ -245,7 +245,7 @@ def test_included_xml_of_which_a_tree_has_a_name_that_a_build_would_mend_is_refu
     btq.write(m='include "old.xml"\nRoot Main\nBehaviorTree Main\n    SubTree "Open Drawer"\n')
     btq.write(**{"old.xml": OLD.format("<AlwaysSuccess/>").replace("Old", "Open Drawer")})
     code, report, _ = btq.build("m.btq")
-    told = "error[forbidden-name]: the engine refuses the tree name `Open Drawer`: it contains a space"
+    told = "error[forbidden-name]: the engine refuses the tree ID `Open Drawer`: it contains a space"
     assert (code, report.startswith(f"{told}\n --> old.xml:2:21\n")) == (1, True)
     assert btq.files == ["m.btq", "old.xml"]
     btq.write(**{"btq.toml": 'ignore = ["forbidden-name"]\n'})  # the XML stays as it is, and so does what it is called

@@ -68,7 +68,7 @@ def test_good_literals(port_type: str, text: str) -> None:
         *(("double", text, "expected a number in the range of double") for text in ("1e999", "-1e999", "1e-999")),
         *(("float", text, "expected a number in the range of float") for text in ("1e39", "1e-50")),
         *(("bool", text, "expected true, false, 1 or 0") for text in ("", "yes", "tRUE", "2", "true ", "01")),
-        ("BT::NodeStatus", "success", "expected SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE"),
+        ("BT::NodeStatus", "success", "expected SUCCESS, FAILURE, RUNNING, SKIPPED or IDLE"),
         ("std::vector<int>", "1;;3", "expected an integer as each item, found an empty item"),
         (
             "std::vector<int>",

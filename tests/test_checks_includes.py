@@ -133,7 +133,7 @@ def _of_xml(main: str = "main.btq", **xml: str) -> tuple[Diagnostic, ...]:
             "gone.xml",
             "cannot find the file `gone.xml`",
         ),
-        (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree name `Na v`: it contains a space"),
+        (_GOOD.replace('"Nav"', '"Na v"'), "Na v", "the engine refuses the tree ID `Na v`: it contains a space"),
     ],
 )
 def test_what_the_engine_would_refuse_in_included_xml_is_told_where_it_is_included(

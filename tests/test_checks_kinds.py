@@ -172,7 +172,7 @@ def test_one_mistake_in_a_name_is_told_once() -> None:
     palette = "TreeNodesModel\n    Action Grasp\n"
     assert_problems(
         palette + tree("Root"),
-        "5:9 error forbidden-name «Root» the engine refuses the node name `Root`: `Root` is a reserved name",
+        "5:9 error forbidden-name «Root» the engine refuses the node ID `Root`: `Root` is a reserved name",
     )
     assert_problems(
         palette + tree("keeps"),

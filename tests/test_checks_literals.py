@@ -167,9 +167,10 @@ BehaviorTree Part
 
     for status in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "{v}"):
         assert found(status, "true") == []
-    refused = "expected SUCCESS, FAILURE, SKIPPED or RUNNING for `{}`, found `IDLE`"
+    refused = "expected SUCCESS, FAILURE, RUNNING or SKIPPED for `{}`, found `IDLE`"
     assert found("IDLE", "false") == [
-        (refused.format(port), f"`{port}` has the type BT::NodeStatus except IDLE") for port in ("if_empty", "else")
+        (refused.format(port), f"`{port}` is a BT::NodeStatus, and IDLE is not allowed")
+        for port in ("if_empty", "else")
     ]
     note = "the engine reads this attribute before any entry exists: write `true`, or remove it"
     for remap in ("{=}", "{v}", '"{v}"'):

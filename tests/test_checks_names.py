@@ -34,9 +34,9 @@ def test_a_tree_is_renamed_wherever_it_is_named() -> None:
     assert_problems(
         text,
         'main.btq:3:14 warning forbidden-name «"Move tubes"» '
-        "the engine refuses the tree name `Move tubes`: it contains a space",
+        "the engine refuses the tree ID `Move tubes`: it contains a space",
         'parts.btq:1:14 warning forbidden-name «"3 tubes"» '
-        "the engine refuses the tree name `3 tubes`: it contains a space",
+        "the engine refuses the tree ID `3 tubes`: it contains a space",
     )
     assert_fix(text, "Rename it to `Move_tubes` everywhere", text.replace('"Move tubes"', "Move_tubes"))
     parts = '//- parts.btq\nBehaviorTree "3 tubes"\n    X\n//- main.btq\ninclude "parts.btq"\n' + tree(
@@ -79,7 +79,7 @@ def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
     """Not at each of its SubTrees, nor where a SubTree names a tree that is not there."""
     assert_problems(
         tree("->", '    SubTree "a b"', '    SubTree "a b"') + 'BehaviorTree "a b"\n    X\n',
-        '5:14 warning forbidden-name «"a b"» the engine refuses the tree name `a b`: it contains a space',
+        '5:14 warning forbidden-name «"a b"» the engine refuses the tree ID `a b`: it contains a space',
     )
     assert_problems(
         tree('SubTree "a b"'),
@@ -87,7 +87,7 @@ def test_a_forbidden_name_is_told_where_the_tree_is() -> None:
     )
     assert_problems(
         'include "parts.xml" (ros_pkg = "robot")\n' + tree('SubTree "a b"'),
-        '3:13 warning forbidden-name «"a b"» the engine refuses the tree name `a b`: it contains a space',
+        '3:13 warning forbidden-name «"a b"» the engine refuses the tree ID `a b`: it contains a space',
     )
 
 
@@ -101,7 +101,7 @@ def test_a_node_may_have_any_id_in_the_explicit_form(name: str) -> None:
     text = tree(name)
     (why,) = [why for mark, why in ((" ", "a space"), ("?", "`?`"), (".", "`.`")) if mark in shown]
     assert_problems(
-        text, f"2:5 error forbidden-name «{name}» the engine refuses the node name `{shown}`: it contains {why}"
+        text, f"2:5 error forbidden-name «{name}» the engine refuses the node ID `{shown}`: it contains {why}"
     )
     assert_fix(text, f"Add its category: `Action {name}`", tree(f"Action {name}"))
     assert_clean(tree(f"Action {name}"))

@@ -258,7 +258,7 @@ def test_the_mission_is_known(text: str) -> None:
 
 def test_naming_the_mission() -> None:
     two = "BehaviorTree A\n    X\nBehaviorTree B\n    X\n"
-    problem = "warning unknown-main-tree «A» unknown main tree: no tree refers to `A`, `B`"
+    problem = "warning unknown-main-tree «A» ambiguous main tree: no other tree refers to `A` or `B`"
     assert_problems(two, f"1:14 {problem}")
     assert_fix(two, "Make `B` the main tree", f"Root B\n{two}")
     assert_problems(f"Root ()\n{two}", f"2:14 {problem}")

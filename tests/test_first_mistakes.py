@@ -63,16 +63,16 @@ FROM_XML: Final[list[Case]] = [
     (
         tree("<Sequence>", "    Go", "</Sequence>"),
         "2:5 error syntax-error «<Sequence>» expected btq, found XML: a node is written `Sequence` | "
-        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
-        "`#`",
+        "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
+        "a comment begins with `#`, not `<!--`",
         None,
     ),
     (
         tree('<MoveBase station="charger"/>'),
         '2:5 error syntax-error «<MoveBase station="charger"/>» expected btq, found XML: a node is written '
         '`MoveBase (station="charger")` | '
-        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
-        "`#`",
+        "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
+        "a comment begins with `#`, not `<!--`",
         tree('MoveBase (station="charger")'),
     ),
     (
@@ -83,8 +83,8 @@ FROM_XML: Final[list[Case]] = [
     (
         '<?xml version="1.0"?>\n<root BTCPP_format="4">\n  <BehaviorTree ID="Main"/>\n</root>\n',
         '1:1 error syntax-error «<?xml version="1.0"?>» expected btq, found XML | '
-        "`btq check` reads XML files as they are, `btq import` makes .btq files of them; comments begin with "
-        "`#`",
+        "if this is BehaviorTree.CPP XML, rename the file to .xml, or convert it with `btq import`; "
+        "a comment begins with `#`, not `<!--`",
         None,
     ),
     (
@@ -415,7 +415,7 @@ FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
     (
         requirement("at most 30 s"),
         "4:8 error syntax-error «most» expected a verb before `at most`, found `most` | "
-        "a bound goes after its verb, `takes at most 3 s`; odds are written `in at least 95 % of runs`",
+        "a bound goes after its verb, `takes at most 3 s`; a probability is written `in at least 95 % of runs`",
         requirement("takes at most 30 s"),
     ),
     (
@@ -469,7 +469,7 @@ FROM_THE_PUBLISHED_SYNTAX: Final[list[Case]] = [
     ),
     (
         requirement("succeeds with 98 %"),
-        "4:19 error syntax-error «98 %» odds are written `with probability >= 98 %`",
+        "4:19 error syntax-error «98 %» a probability is written `with probability >= 98 %`",
         requirement("succeeds with probability >= 98 %"),
     ),
     (

@@ -382,7 +382,11 @@ def test_clause(clause: str, shown: str) -> None:
     [
         ("while", "while MISSING", f"1:6 syntax-error «» expected {A_CONDITION}, {END}"),
         ("in", "odds >= MISSING", f"1:3 syntax-error «» expected `at`, {END}"),
-        ("in 98 % of runs", "odds >= 98% of runs", "1:4 syntax-error «98 %» odds are written `in at least 98 %`"),
+        (
+            "in 98 % of runs",
+            "odds >= 98% of runs",
+            "1:4 syntax-error «98 %» a probability is written `in at least 98 %`",
+        ),
         ("in at most 98 % of runs", "odds >= MISSING", "1:7 syntax-error «most» expected `least`, found `most`"),
         ("in at least 98 of runs", "odds >= MISSING", "1:13 syntax-error «98» expected a percentage: 98 %, found `98`"),
         ("in at least 98 %", "odds >= 98%", f"1:17 syntax-error «» expected `of`, {END}"),
@@ -394,7 +398,7 @@ def test_clause(clause: str, shown: str) -> None:
         (
             "with probability 98 %",
             "odds >= 98%",
-            "1:18 syntax-error «98 %» odds are written `with probability >= 98 %`",
+            "1:18 syntax-error «98 %» a probability is written `with probability >= 98 %`",
         ),
         ("with >= 98 %", "odds >= MISSING", "1:6 syntax-error «>=» expected `probability`, found `>=`"),
         (

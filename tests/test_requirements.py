@@ -307,6 +307,15 @@ def test_trees_that_run_each_other_have_no_top() -> None:
     assert [problem.diagnostic.rule for problem in resolved(text).problems] == ["unmatched-path"]
 
 
+def test_two_demands_in_one_clause_are_two_clauses() -> None:
+    text = "QualityReq q\n    takes at most 30 s and succeeds\nBehaviorTree Main\n    Action Dock satisfies q\n"
+    (problem,) = resolved(text).problems
+    assert (problem.diagnostic.message, problem.diagnostic.notes) == (
+        "unknown node `and`",
+        ("a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own",),
+    )
+
+
 def test_a_library_does_not_know_whose_nodes_it_speaks_of() -> None:
     text = '//- main.btq\nQualityReq rq1 "t"\n    X takes at most 1 s\nBehaviorTree A\n    Y\n'
     assert len(resolved(text).problems) == 1

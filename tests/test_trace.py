@@ -309,8 +309,9 @@ def test_markdown() -> None:
     assert lines[:6] == [
         "## Requirements and qualities",
         "",
-        "5 requirements (3 clauses: 3 monitored), 1 of them hard and not enforced everywhere, 6 qualities;"
-        " of 5 skills 2 carry a quality or a requirement, 1 through a node above, 2 none.",
+        "5 requirements (3 clauses: 3 monitored), 1 of them hard (on violation fail or halt)"
+        " and not enforced everywhere, 6 qualities;"
+        " of 5 custom leaf nodes 2 carry a quality or a requirement, 1 through a node above, 2 none.",
         "",
         "| Requirement | Quality | Holds for | How | Defined |",
         "|---|---|---|---|---|",
@@ -604,7 +605,7 @@ def test_of_missions_with_errors_it_shows_what_it_understands(
     mission.write_text("BehaviorTree Main\n    Sequnce\n        Action A satisfies rq9\n", encoding="utf-8")
     assert main(["trace", str(mission), "--format", "markdown"]) == 1
     out, err = capfd.readouterr()
-    assert "Skills without any quality: `A`" in out
+    assert "Custom leaf nodes without any quality: `A`" in out
     assert err == "btq trace: the missions have an error, so something may be missing: see btq check\n"
     assert main(["trace", str(tmp_path / "none.btq")]) == 2
     assert main(["trace", ""]) == 2
@@ -668,7 +669,8 @@ BehaviorTree Main
                 "`never force >= 50 N` applies to no node\n",
                 "Hard requirements that are not enforced everywhere\n  r5, m.btq:2\n",
                 "Clauses without a node\n  r5, m.btq:2: never force >= 50 N\n",
-                "1 requirement (2 clauses: 1 enforced, 1 without a node), 1 of them hard and not enforced everywhere",
+                "1 requirement (2 clauses: 1 enforced, 1 without a node), "
+                "1 of them hard (on violation fail or halt) and not enforced\neverywhere",
             ),
         ),
         (
@@ -677,7 +679,8 @@ BehaviorTree Main
                 " | enforced, not attached<br>`never force >= 50 N` applies to no node | ",
                 "* Hard requirements that are not enforced everywhere: r5 (m.btq:2)\n",
                 "* Clauses without a node: r5 (m.btq:2): `never force >= 50 N`\n",
-                "1 requirement (2 clauses: 1 enforced, 1 without a node), 1 of them hard and not enforced everywhere",
+                "1 requirement (2 clauses: 1 enforced, 1 without a node), "
+                "1 of them hard (on violation fail or halt) and not enforced everywhere",
             ),
         ),
         (

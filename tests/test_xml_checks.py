@@ -61,7 +61,7 @@ def test_the_engine_knows_no_namespaces() -> None:
     assert_problems(
         text,
         f"2:4 {ignored.format('x:include', 'include')}",
-        "3:28 error forbidden-name «x:Go» the engine refuses the node name `x:Go`: it contains `:`",
+        "3:28 error forbidden-name «x:Go» the engine refuses the node ID `x:Go`: it contains `:`",
         f"4:4 {ignored.format('x:BehaviorTree', 'BehaviorTree')}",
     )
     workspace = workspace_of({"main.xml": text.replace("//- main.xml", "").strip()})
@@ -104,7 +104,7 @@ def test_comments_in_xml_silence_rules_for_a_whole_element() -> None:
 def test_a_name_that_a_build_would_mend_is_an_error_in_xml() -> None:
     (found,) = problems('<root BTCPP_format="4"><BehaviorTree ID="a b"><A/></BehaviorTree></root>')
     assert (found.rule, found.effective_severity.value) == ("forbidden-name", "error")
-    assert found.message == "the engine refuses the tree name `a b`: it contains a space"
+    assert found.message == "the engine refuses the tree ID `a b`: it contains a space"
 
 
 def test_explicit_forms_are_refused_only_directly_below_a_reactive_sequence() -> None:

@@ -331,7 +331,7 @@ _DECORATORS: Final = (
         "front of it in a ReactiveSequence.",
         (
             _script("if", _STRING, "The condition"),
-            _result("else", "The result of a false condition: FAILURE, SUCCESS or SKIPPED", "FAILURE"),
+            _result("else", "The result of a false condition: SUCCESS, FAILURE, RUNNING or SKIPPED", "FAILURE"),
         ),
     ),
     _loop("Int", "int", _queue("int")),

@@ -172,13 +172,13 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
             "mark the node for `apply`",
             "makes the node one of those that `every node tagged driving` selects",
         ),
-        ("parameters", "parameters station = home", "ports, in the published syntax", "the node's ports"),
+        ("parameters", "parameters station = home", "ports, in the classic syntax", "the node's ports"),
     ),
     "attribute of a node": (
         (
             "name",
             'MoveBase (name = "ToBench")',
-            "the node's own name",
+            "instance name",
             "the name of this one node; short: `MoveBase ToBench`",
         ),
         (
@@ -190,7 +190,7 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         (
             "Quality",
             "MoveBase (satisfices Quality = safety)",
-            "a quality, in the published syntax",
+            "a quality, in the classic syntax",
             "a concern of the node; short: `satisfices safety`",
         ),
     ),

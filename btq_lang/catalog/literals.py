@@ -81,10 +81,10 @@ def _check_one(plain: str, text: str, version: str) -> LiteralProblem | None:
         return None if known else LiteralProblem("refused", "true, false, 1 or 0")
     if plain == RESULT:
         known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED")
-        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, SKIPPED or RUNNING")
+        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, RUNNING or SKIPPED")
     if plain == "BT::NodeStatus":
         known = text in ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
-        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, SKIPPED, RUNNING or IDLE")
+        return None if known else LiteralProblem("refused", "SUCCESS, FAILURE, RUNNING, SKIPPED or IDLE")
     return None
 
 

@@ -50,14 +50,15 @@ def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -
 def _told(value: Word, met: Meeting, severity: Severity | None) -> Diagnostic:
     port = f"`{met.pair.key.text}` of `{met.node.head.text}`"
     message = (
-        f"BehaviorTree.CPP {_TYPED_SINCE} and later refuse to load this tree: `{value.text}` is a number, {port} a text"
+        f"BehaviorTree.CPP {_TYPED_SINCE} and later refuse to load this tree: `{value.text}` is a number, "
+        f"{port} a string"
     )
     return Diagnostic(
         "number-for-text",
         value.span,
         message,
-        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the text port"),),
-        notes=(f"pass an entry that holds the text: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
+        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the string port"),),
+        notes=(f"pass an entry that holds the string: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
         severity=severity,
     )
 

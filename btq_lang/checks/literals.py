@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
+from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, PortKind, port_type
@@ -64,6 +65,8 @@ def invalid_literal(view: View, entry: Entry) -> Iterator[Diagnostic]:
         if problem is None:
             continue
         notes = (f"`{target.port}` has the type {target.type}",)
+        if target.type == RESULT:
+            notes = (f"`{target.port}` is a BT::NodeStatus, and IDLE is not allowed",)
         if not target.converts:
             message = f"expected {problem.expected} for `{target.port}`, found {problem.found or _shown(text)}"
             yield Diagnostic("invalid-literal", value.span, message, notes=notes, severity=Severity.WARNING)

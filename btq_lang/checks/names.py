@@ -46,7 +46,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 continue
             for port in model.ports:
                 if port.name is not None and (reason := port_name_problem(port.name.text, version)):
-                    yield _refused("port", port.name, reason)
+                    yield _refused("port name", port.name, reason)
 
 
 def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -79,7 +79,7 @@ def _of_id(view: View, seen: SeenNode, name: Word, reason: str) -> Iterator[Diag
     if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
         yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
-        refused = _refused("node", name, reason, _explicit(seen, name))
+        refused = _refused("node ID", name, reason, _explicit(seen, name))
         yield replace(refused, notes=_NO_NAMESPACES) if _is_prefixed(name.text) else refused
 
 
@@ -91,9 +91,9 @@ def _is_prefixed(name: str) -> bool:
 
 def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
-        yield _refused("instance", label, reason)
+        yield _refused("instance name", label, reason)
     if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
-        refused = _refused("instance", label, "it is empty, like the name of the main tree")
+        refused = _refused("instance name", label, "it is empty, like the name of the main tree")
         note = "`btq build` leaves it out"
         yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
 
@@ -111,7 +111,7 @@ def _nameless(view: View, entry: Entry, tree: Tree) -> Iterator[Diagnostic]:
 def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> Diagnostic:
     """Only a warning where a build writes the tree and all that refer to it under a legal name, which must be free."""
     if view.is_xml:
-        return _refused("tree", name, reason)
+        return _refused("tree ID", name, reason)
     legal = legal_name(name.text)
     taken = view.look_up(lookups.taken_names, name.text).get(legal)
     note = f"`btq build` writes it as `{legal}`"
@@ -120,7 +120,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
     return Diagnostic(
         "forbidden-name",
         name.span,
-        f"the engine refuses the tree name `{name.text}`: {reason}",
+        f"the engine refuses the tree ID `{name.text}`: {reason}",
         notes=(note,),
         fixes=fixes,
         severity=Severity.WARNING if taken is None else Severity.ERROR,
@@ -128,7 +128,7 @@ def _tree_name(view: View, name: Word, reason: str, fixes: tuple[Fix, ...]) -> D
 
 
 def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
-    message = f"the engine refuses the {what} name `{name.text}`: {reason}"
+    message = f"the engine refuses the {what} `{name.text}`: {reason}"
     return Diagnostic("forbidden-name", name.span, message, fixes=fixes)
 
 

@@ -155,13 +155,14 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     tops = [name for name in view.look_up(lookups.own_trees) if not calls.callers(view, name)]
     if len(tops) < 2:
         return  # without one at the top they run in circles, and that is told
-    names = ", ".join(f"`{name}`" for name in tops[:_MOST_NAMES])
+    shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
+    names = f"{', '.join(shown[:-1])} or {shown[-1]}" if len(tops) <= _MOST_NAMES else f"{', '.join(shown)}, …"
     span = entry.item.name.span if entry.item.name else Span(entry.item.start, entry.item.end)
     way = '`main_tree_to_execute="…"` of <root>' if view.is_xml else "a line `Root <tree>`"
     yield Diagnostic(
         "unknown-main-tree",
         span,
-        f"unknown main tree: no tree refers to {names}{' …' if len(tops) > _MOST_NAMES else ''}",
+        f"ambiguous main tree: no other tree refers to {names}",
         related=tuple(
             view.defined_at(other, "another tree without a reference")
             for name in tops[1:_MOST_NAMES]

@@ -162,7 +162,7 @@ def _compared(condition: Compare, signals: Signals, time: int) -> Truth:
             assert isinstance(unknown, Unknown), "one of the two is"
             result = unknown if result is True else result
         elif isinstance(left, str) != isinstance(right, str):
-            result = Unknown("a text cannot be compared with a number")
+            result = Unknown("a string cannot be compared with a number")
         elif not _COMPARISONS[sign](left, right):
             return False
     return result
@@ -187,7 +187,7 @@ def _number(part: Number | Flag | Text, signals: Signals, time: int) -> SampleVa
         if isinstance(left, Unknown) or isinstance(right, Unknown):
             return left if isinstance(left, Unknown) else right
         if isinstance(left, str) or isinstance(right, str):
-            return Unknown("a text cannot be calculated with")
+            return Unknown("no calculation is possible with a string")
         if part.operator == "/" and right == 0:
             return Unknown("a division by zero")
         return float(_OPERATIONS[part.operator](left, right))

@@ -96,7 +96,7 @@ _NODES = (
     ("timeout", "halt what takes too long", "Timeout (msec = ${1:30 s})\n    $0"),
     (
         "classic-action",
-        "an action with a requirement in the published syntax",
+        "an action with a requirement in the classic syntax",
         "ScriptAction (\n"
         '    name = "${1:MoveBase}"\n'
         "    satisfices Quality = ${2:performance}\n"

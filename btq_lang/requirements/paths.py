@@ -213,7 +213,8 @@ class PathReader(Asker):
                 replace_fix(f"Replace `{word.text}` with `{name}`", word.span, _written(name)) for word, name in likely
             )
             message = f"{self._missing(names, shown)}{did_you_mean(name for _, name in likely)}"
-            self.complain("unmatched-path", path.span, message, fixes=fixes)
+            notes = (_ONE_DEMAND,) if path.names[0].raw == "and" else ()
+            self.complain("unmatched-path", path.span, message, notes=notes, fixes=fixes)
         return None
 
     def none_of(self, name: Word) -> None:
@@ -302,6 +303,7 @@ def _written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
+_ONE_DEMAND: Final = "a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own"
 _SHOWN: Final = 5  # places and fixes of one diagnostic
 _LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that mean one of them alone
 _MOST_COMPARED: Final = 200_000  # pairs of names: some tenths of a second

@@ -84,7 +84,7 @@ _TABLE = (
     # Nodes and their ports.
     Rule("unknown-node", _W, "a node kind that neither the engine nor any model defines"),
     Rule("no-models", _H, "many nodes with ports, and no model for any of them"),
-    Rule("not-an-engine-node", _W, "a word of the published language that the engine does not register as a node"),
+    Rule("not-an-engine-node", _W, "a word of the classic syntax that the engine does not register as a node"),
     Rule("newer-engine-node", _E, "a built-in node that the project's engine version does not have"),
     Rule("category-mismatch", _W, "a node used as another category than its model declares"),
     Rule("unknown-port", _E, "a port that the node does not have"),
@@ -92,7 +92,7 @@ _TABLE = (
     Rule("unknown-attribute", _W, "an `_attribute` that the engine ignores silently"),
     Rule("invalid-literal", _E, "a value that the port's type does not accept"),
     Rule("trailing-text-in-number", _W, "text after a number that the engine drops silently"),
-    Rule("number-for-text", _E, "a number that a SubTree passes to a text port below it"),
+    Rule("number-for-text", _E, "a number that a SubTree passes to a string port below it"),
     Rule("entry-with-two-types", _E, "a blackboard entry that is connected to ports of two types"),
     Rule("quantity-on-unitless-port", _E, "a quantity on a port whose unit is unknown or has another dimension"),
     Rule("misspelt-type", _W, "a port type that is very close to a C++ type"),
@@ -168,15 +168,23 @@ _TABLE = (
     Rule("signal-never-written", _W, "a signal whose entry no port and no script writes"),
     Rule("unused-signal", _H, "a signal that no clause uses"),
     Rule("unused-context", _H, "a context that no condition names"),
-    Rule("signal-may-be-unset", _W, "a guard on a signal without an initial value"),
+    Rule("signal-may-be-unset", _W, "an enforced condition (a guard) on a signal without an initial value"),
     # Traps of the engine's semantics.
     Rule("reactive-multiple-async", _W, "a reactive node with more than one asynchronous child"),
     Rule("explicit-in-reactive", _E, "an explicit form in XML where the engine requires the node's own tag"),
-    Rule("one-shot-monitor", _W, "_failureIf or _successIf on a long-running node, where it is checked only once"),
+    Rule(
+        "one-shot-monitor",
+        _W,
+        "a precondition `_failureIf` or `_successIf` on a long-running node: it is checked only when the node starts",
+    ),
     Rule("while-skip-is-success", _W, "`_while` halts the node and the parent continues as if it had succeeded"),
     Rule("skipped-condition", _W, "a condition of IfThenElse or WhileDoElse that may be skipped: the engine throws"),
     Rule("unreachable-child", _W, "a child that can never run"),
-    Rule("condition-without-recheck", _H, "a condition below a memory Fallback that cannot interrupt a running node"),
+    Rule(
+        "condition-without-recheck",
+        _H,
+        "a condition that cannot interrupt a running node, because the Fallback above it does not check it again",
+    ),
 )
 
 RULES = {rule.name: rule for rule in _TABLE}

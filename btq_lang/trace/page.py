@@ -190,7 +190,8 @@ def _gaps(overview: Overview) -> Iterator[str]:
         "bare_nodes": [f'<a href="#{each.key}">{escape(each.name)}</a> {_at(each.at)}' for each in overview.bare_nodes],
     }
     if not any(found.values()):
-        yield "<p>Every hard requirement is enforced, every quality has a requirement, every skill a quality.</p>"
+        hard = "hard requirement (on violation fail or halt)"
+        yield f"<p>Every {hard} is enforced, every quality has a requirement, every custom leaf node a quality.</p>"
     for gap, lines in found.items():
         if lines:
             yield f"<h3>{GAPS[gap]} ({len(lines)})</h3>"

@@ -17,12 +17,12 @@ def summary(overview: Overview) -> str:
     said = f"{counted(len(overview.requirements), 'requirement')}"
     said += f" ({counted(sum(ways.values()), 'clause')}: {held})" if held else ""
     if hard := len(overview.unenforced):
-        said += f", {hard} of them hard and not enforced everywhere"
+        said += f", {hard} of them hard (on violation fail or halt) and not enforced everywhere"
     said += f", {counted(len(overview.qualities), 'quality', 'qualities')}"
     skills = overview.coverage()
     if not sum(skills.values()):
         return f"{said}."
-    of = f"{said}; of {counted(sum(skills.values()), 'skill')} {skills['own']}"
+    of = f"{said}; of {counted(sum(skills.values()), 'custom leaf node')} {skills['own']}"
     of += " carries" if skills["own"] == 1 else " carry"
     return f"{of} a quality or a requirement, {skills['above']} through a node above, {skills['none']} none."
 
@@ -53,6 +53,6 @@ GAPS: Final = {
     "unattached": "Requirements without a node",
     "loose": "Clauses without a node",
     "bare_trees": "Trees without any quality",
-    "bare_nodes": "Skills without any quality",
+    "bare_nodes": "Custom leaf nodes without any quality",
 }
 _ATTACHED: Final = {"subject": "", "satisfies": "", "apply": "by apply", "link": "a link only"}
