@@ -67,7 +67,7 @@ class PathReader(Asker):
         # None of these knows the reader: one that knows what knows it would stay, with all that it has read, until
         # Python looks for garbage, and an editor makes one at every key.
         requirements, signals, contexts = self.requirements, self.signals, self.contexts
-        is_crowded = cache(lambda: _is_crowded(workspace, scope, nodes))
+        is_crowded = _crowding(workspace, scope, nodes)
         self._answers: dict[str, Callable[[Any], object]] = {
             "find": nodes.find,
             "every": nodes.every,
@@ -280,6 +280,11 @@ class PathReader(Asker):
             if len(found) == 1 and found[0].node is node:
                 return "/".join(map(_written, names))
         return None
+
+
+def _crowding(workspace: Workspace, scope: Scope, nodes: Nodes) -> Callable[[], bool]:
+    """`_is_crowded`, worked out once; not made in the reader, for compiled the two would make a ring."""
+    return cache(lambda: _is_crowded(workspace, scope, nodes))
 
 
 def _is_crowded(workspace: Workspace, scope: Scope, nodes: Nodes) -> bool:
