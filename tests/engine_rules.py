@@ -114,7 +114,7 @@ def _of_ports(node: etree._Element, version: float) -> Iterator[str]:
         elif port.content == "value":
             problem = check_literal(port.literal or port_type(port, _text(version)), value, _text(version))
             if problem is not None and problem.kind == "refused":
-                yield f"{kind.tag}.{key}: {value!r} {problem.reason}"
+                yield f"{kind.tag}.{key}: {value!r}, expected {problem.expected}"
 
 
 def _of_name(what: str, name: str, version: float) -> Iterator[str]:

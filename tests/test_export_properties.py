@@ -40,7 +40,7 @@ def test_the_rules_find_what_is_wrong() -> None:
     both = ["no BTCPP_format", "two TreeNodesModel", "no main tree 'B'"]
     ports = [
         "Timeout has 0 children",
-        "Timeout.msec: '-1' is out of range: unsigned int is 0 to 4294967295",
+        "Timeout.msec: '-1', expected an integer from 0 to 4294967295",
         "Timeout has no port x",
     ]
     assert violations(xml, "4.10") == [
