@@ -1,12 +1,13 @@
 """The list of a completion, as an editor narrows it with every letter and takes its first entry at Enter.
 
 One invariant: Enter after a complete word is a line break.  A word leaves the list with its last letter, and the list
-closes where it was the last one; a word that begins another one stays, first and as it is typed, so that accepting it
-changes nothing.
+closes where it was the last one.  A word that an editor still finds in another one, `string` in `std::vector<string>`,
+stays first and as it is typed, so that accepting it changes nothing.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.features.proposals import Proposal
@@ -28,18 +29,23 @@ def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Prop
     for place, one in enumerate(proposals):
         order.append((min(place, begun.get(one.label.lower(), place)), len(one.label), place))
     ordered = [proposals[place] for _, _, place in sorted(order)]
-    return tuple([each for one in ordered for each in _entries(one, typed, asked, one.label.lower() in begun)])
+    found_in = _found_in(proposals, typed.lower())
+    return tuple([each for one in ordered for each in _entries(one, typed, asked, one.label.lower() in found_in)])
 
 
-def _entries(one: Proposal, typed: str, asked: bool, is_beginning: bool) -> Iterator[Proposal]:
-    """The entries of one proposal: none, the proposal, or also its bare word."""
+def _entries(one: Proposal, typed: str, asked: bool, is_found: bool) -> Iterator[Proposal]:
+    """The entries of one proposal: none, the proposal, or also its bare word.
+
+    Args:
+        is_found: an editor finds the word in another one.
+    """
     if one.kind in ("keyword", "snippet") and one.label[:1].islower() and typed[:1].isupper():
         return  # an editor ignores case, and a name begins that is no keyword
     if one.kind == "snippet":
         yield one
         return
     is_typed = one.label == typed
-    if not is_typed and not is_beginning:
+    if not is_typed and not is_found:
         yield replace(one, filter=_shortened(one, typed))
         return
     if one.snippet is None and one.insert.strip() == one.label:
@@ -59,6 +65,37 @@ def _shortened(one: Proposal, typed: str) -> str:
     that is there already."""
     words = one.filter.split(" ") if one.filter else [one.label]
     return " ".join([word if word == typed else word[:-1] or word for word in words])
+
+
+def _found_in(proposals: Sequence[Proposal], typed: str) -> set[str]:
+    """The labels that go on as it is typed and that an editor finds in the text of another proposal: it looks for their
+    letters in this order, the first one where a word begins.  Of a long list all: each with each takes long."""
+    if len(proposals) > _MANY:
+        return {one.label.lower() for one in proposals}
+    texts = [f"{one.label} {one.filter}" for one in proposals]
+    lowered = [(place, text.lower()) for place, text in enumerate(texts)]
+    by_initial: dict[str, list[tuple[int, str]]] = {}
+    for (place, text), written in zip(lowered, texts, strict=True):
+        for initial in {found.lower() for found in _INITIAL.findall(written)}:
+            by_initial.setdefault(initial, []).append((place, text))
+    found: set[str] = set()
+    for place, one in enumerate(proposals):
+        label = one.label.lower()
+        if label.startswith(typed) and any(
+            other != place and _holds(text, label) for other, text in by_initial.get(label[:1], ())
+        ):
+            found.add(label)
+    return found
+
+
+def _holds(text: str, letters: str) -> bool:
+    """Whether a text has these letters in this order."""
+    at = 0
+    for letter in letters:
+        at = text.find(letter, at) + 1
+        if not at:
+            return False
+    return True
 
 
 def _begun(proposals: Sequence[Proposal]) -> Mapping[str, int]:
@@ -83,3 +120,7 @@ def _begun(proposals: Sequence[Proposal]) -> Mapping[str, int]:
 def _words(one: Proposal) -> list[str]:
     """What an editor may compare the typed letters with; it ignores case."""
     return [one.label.lower(), *(one.filter.lower().split(" ") if one.filter else ())]
+
+
+_INITIAL = re.compile(r"(?:(?<![^\W_])|(?<=[^\W_])(?=[A-Z]))\S")  # the first of a word, or a capital inside one
+_MANY = 200  # all of the engine's nodes, all units, and as many names of a project again

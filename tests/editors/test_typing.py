@@ -180,6 +180,18 @@ def test_a_quote_that_opens_a_string_shows_what_belongs_there(code: Workbench) -
     code.see(f"{LIST} .monaco-list-row:has-text('demands.btq')")
 
 
+@pytest.mark.parametrize("typed", [": string", ": double", ": int", ": bool"])
+def test_enter_after_the_type_of_a_port_is_a_line_break(code: Workbench, typed: str) -> None:
+    """VS Code finds `string` in `std::vector<string>`, too."""
+    path = begin(code, "Action Read\n    output label ")
+    for key in typed:
+        code.type(key)
+        code.page.wait_for_timeout(250)  # a list opens
+    code.keys("Enter")
+    code.save()
+    assert path.read_text(encoding="utf-8").rstrip(" ") == f"Action Read\n    output label {typed}\n"
+
+
 def test_enter_after_a_word_that_begins_another_is_a_line_break(code: Workbench) -> None:
     path = begin(code, "BehaviorTree Main\n    ")
     code.type("Retry")

@@ -411,6 +411,10 @@ def test_the_list_that_opens_by_itself(line: str, trigger: str, labels: tuple[st
         ("BehaviorTree X\n    MoveBase (station$0", ()),
         ("BehaviorTree X\n    Pick satisfies slow$0", ()),
         ("BehaviorTree$0", ()),
+        # One that an editor finds in another, also with letters between its own, stays as it is.
+        ("Action A\n    output label : string$0", ("string",)),
+        ("Action A\n    output label : double$0", ("double",)),
+        ("Action A\n    output label : bool$0", ()),
         # One that begins others stays, first and as it is.
         ("BehaviorTree X\n    Retr$0", ("Retry …", "Retry", "retry", "RetryUntilSuccessful")),
         ("BehaviorTree X\n    Retry$0", ("Retry", "retry", "RetryUntilSuccessful")),
@@ -505,3 +509,10 @@ def filled(snippet: str) -> str:
     values = {number: chosen or text for number, chosen, text in hole.findall(snippet)}
     without_holes = hole.sub(lambda found: values[found[1]], snippet)
     return re.sub(r"\$(\d)", lambda found: values.get(found[1], ""), without_holes).replace("\\}", "}")
+
+
+def test_in_a_long_list_every_word_stays_as_it_is_typed() -> None:
+    """None is looked for in the others then; Enter is a line break all the same."""
+    names = [f"Skill{number:03}" for number in range(300)]
+    tree = "BehaviorTree Main\n    ->\n" + "".join(f"        {name}\n" for name in names)
+    check_left(f"{tree}        Skill299$0\n", "Skill299")
