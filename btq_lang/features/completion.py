@@ -265,7 +265,7 @@ def _line_heads(workspace: Workspace, path: str, place: Place) -> Iterator[Propo
 def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Iterator[Proposal]:
     last = place.last
     if len(place.words) == 1 and first in _DECLARED:
-        yield from offer.undeclared(workspace, *_DECLARED[first])
+        yield from offer.undeclared(workspace, path, *_DECLARED[first])
     elif first == "include":
         yield from offer.includes(workspace, path, quoted=True) if len(place.words) == 1 else ()
     elif first == "qualities":
@@ -324,7 +324,7 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
         behind = [word.text for word in words[at + 1 :]]
         if not behind:
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
-            yield from offer.undeclared(workspace, *_DECLARED["QualityReq"])
+            yield from offer.undeclared(workspace, path, *_DECLARED["QualityReq"])
             return
         if behind[-1] in (":", ".") and "takes" not in behind:
             yield from offer.qualities(workspace, path, place)

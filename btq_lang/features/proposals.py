@@ -149,13 +149,16 @@ def trees(workspace: Workspace, path: str) -> Iterator[Proposal]:
         yield Proposal(name, "tree", f"{len(ports)} ports" if ports else "", head, snippet, "", name, include)
 
 
-def undeclared(workspace: Workspace, kind: Kind, what: What) -> Iterator[Proposal]:
-    """The names that something in the project refers to and that no file declares yet."""
+def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Iterator[Proposal]:
+    """The names that the file, or one that it is linked with, refers to and that no file declares yet."""
     found: set[str] = set()
-    for path, file in workspace.files.items():
+    for other in workspace.linked(path):
+        file = workspace.files[other]
+        if what is not What.VALUE and all(workspace.files_defining(of, name) for of, name in file.used_names if of is kind):
+            continue
         for entry in file.parsed.entries:
             named = (one for one in file.mentions_of(entry) if one.what is what and not one.defines)
-            found.update(one.name for one in named if not subject(workspace, Found(path, entry, one)).home)
+            found.update(one.name for one in named if not subject(workspace, Found(other, entry, one)).home)
     for name in sorted(found):
         if is_name(name) and not workspace.defined_anywhere(kind, name):
             yield Proposal(name, _KIND_NAMES[kind], "not declared yet", name)

@@ -16,8 +16,10 @@ from feature_asserts import (
     check_offers,
 )
 
+from btq_lang.features.completion import complete
 from btq_lang.features.snippets import item_snippets, node_snippets
 from btq_lang.parser import parse
+from btq_lang.workspace import Workspace
 
 FILES = """//- main.btq
 signal battery : % from {battery_level}
@@ -469,6 +471,22 @@ signal far : m
 """
     main, lib = files.split("//- lib.btq\n")
     check_completion(f"{main}{line}\n//- lib.btq\n{lib}", *labels)
+
+
+def test_where_a_name_is_declared_no_file_is_read_that_refers_to_nothing_undeclared() -> None:
+    main, user, other = (
+        "BehaviorTree ",
+        'include "main.btq"\nBehaviorTree A\n    SubTree B',
+        "BehaviorTree C\n    SubTree D\n",
+    )
+    for declares_it, labels in ((False, ["B"]), (True, [])):
+        tree = "\nBehaviorTree B\n    X\n" if declares_it else "\n"
+        workspace = Workspace.of({"main.btq": main, "user.btq": user + tree, "other.btq": other})
+        for path in ("user.btq", "other.btq"):
+            workspace.files[path].pack()
+        assert [one.label for one in complete(workspace, "main.btq", len(main)).proposals] == labels
+        assert workspace.files["user.btq"].is_unpacked is not declares_it
+        assert not workspace.files["other.btq"].is_unpacked
 
 
 ITEMS = ("tree", "mission", "req-time", "req-resource", "req-keeps", "req-odds", "skill")
