@@ -287,6 +287,14 @@ def test_what_standard_input_includes_and_xml_there(tmp_path: Path) -> None:
     assert btq("-", "go.btq", cwd=tmp_path, stdin=xml) == (0, "", "")
 
 
+def test_nodes_of_kinds_that_are_words_of_the_language(tmp_path: Path) -> None:
+    for kind in ("xml", "BehaviorTree"):
+        for name in ("Old", "New"):
+            (tmp_path / f"{name}.btq").write_text(f'BehaviorTree Main\n    ->\n        "{kind}" {name}\n        Go\n')
+        said = "Old.btq -> New.btq\n~ node Main/New changed  New.btq:3\n    ~ name: Old -> New\n\n1 node changed\n"
+        assert btq("Old.btq", "New.btq", cwd=tmp_path) == (1, said, "")
+
+
 def test_a_change_in_an_included_file_is_one_of_the_mission(tmp_path: Path) -> None:
     for folder, limit in (("a", 30), ("b", 20)):
         (tmp_path / folder).mkdir()

@@ -72,8 +72,8 @@ if TYPE_CHECKING:
 
 
 SUBTREE: Final = "SubTree"
-TREE: Final = "BehaviorTree"
-VERBATIM: Final = "xml"
+TREE: Final = "<tree>"  # no node has such a kind
+VERBATIM: Final = "<xml>"
 MAIN: Final = "main tree"
 MISSION: Final = "mission"
 
@@ -198,7 +198,7 @@ class _Reader:
     # ---- trees ----
 
     def tree(self, tree: Tree) -> Part:
-        top = Part(TREE, TREE, self._place(tree.start, tree.end))
+        top = Part(TREE, "BehaviorTree", self._place(tree.start, tree.end))
         top.name = tree.name.text if tree.name is not None else None
         self._pairs(top, tree.attributes)
         self._clauses(top, tree.clauses)
@@ -231,7 +231,7 @@ class _Reader:
         return part
 
     def _verbatim(self, verbatim: Verbatim) -> Part:
-        part = Part(VERBATIM, VERBATIM, self._place(verbatim.start, verbatim.end))
+        part = Part(VERBATIM, "xml", self._place(verbatim.start, verbatim.end))
         part.values["element"] = _value(verbatim.text)
         return part
 
