@@ -47,6 +47,7 @@ NO_ITEMS = Json("[]")
 NOTHING = Json('{"kind": "full", "items": []}')
 TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
 A_PAUSE = 0.1  # seconds, less than between two keys of most who type
+UNNOTICED = 0.05  # seconds, for which an answer may wait for a check
 MOST_REST = 0.5  # seconds, for which a file that takes long to check is left alone after a key
 A_LOOK = 5  # seconds between two looks at whether the editor's process still runs
 MOST_DETAILS = 500  # a parameter may hold a whole text
@@ -287,9 +288,12 @@ class Server(LanguageServer):
             self.task = asyncio.ensure_future(self._check())
 
     async def rest(self, path: str) -> None:
-        """Let whoever types ask first: wait after the last key as long as it takes to check a file."""
+        """Let whoever types ask first: wait after the last key as long as it takes to check a large file."""
         clock = asyncio.get_running_loop().time
-        while (rest := self.last_key + min(self.session.took.get(path, 0), MOST_REST) - clock()) > 0:
+        while (took := self.session.took.get(path, 0)) > UNNOTICED:
+            rest = self.last_key + min(took, MOST_REST) - clock()
+            if rest <= 0:
+                break
             await asyncio.sleep(rest)
 
     async def _check(self) -> None:
