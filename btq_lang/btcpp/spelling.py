@@ -23,7 +23,7 @@ def spelt(word: Word) -> str:
     """A word as it stands between the quotes of an attribute."""
     raw = word.raw
     if word.kind != STRING:
-        return escape_text(raw) if _SPECIAL(raw) else raw  # a tab in `{a	b}` stays
+        return escape_text(raw).replace('"', "&quot;") if _SPECIAL(raw) else raw  # a tab in `{a	b}` stays
     inside = raw[1:-1]
     if _SPECIAL(inside) is None and len(raw) > 1 and raw[-1] == raw[0]:
         return inside
