@@ -154,7 +154,9 @@ def undeclared(workspace: Workspace, path: str, kind: Kind, what: What) -> Itera
     found: set[str] = set()
     for other in workspace.linked(path):
         file = workspace.files[other]
-        if what is not What.VALUE and all(workspace.files_defining(of, name) for of, name in file.used_names if of is kind):
+        if what is not What.VALUE and all(
+            workspace.files_defining(of, name) for of, name in file.used_names if of is kind
+        ):
             continue
         for entry in file.parsed.entries:
             named = (one for one in file.mentions_of(entry) if one.what is what and not one.defines)
