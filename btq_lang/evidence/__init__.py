@@ -12,8 +12,10 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     scopes.py      which activations count
     clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
     tally.py, odds.py   what was counted, and how sure it makes one
-    coverage.py    which nodes ran
+    explain.py     what led to a violation
+    coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data
+    headline.py    the line that says what to look at
     table.py, json_document.py   the writers
 """
 

@@ -1,50 +1,138 @@
-"""Which nodes ran, and how long the leaves took."""
+"""Which nodes ran, in how many runs, how long they took and what they came to; retries, and where failures began."""
 
 from __future__ import annotations
 
 from array import array
 
-from btq_lang.evidence.verdicts import NodeTimes
+from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
-    from btq_lang.evidence.model import Activation, LoggedTree
+    from btq_lang.evidence.model import Activation, LoggedTree, Outcome
 
 
 class Coverage:
     """The nodes of the logs of a mission.
 
     Attributes:
-        exercised: whether each of them ran, by uid and path.
+        retries: starts of what Retry nodes repeat, without the first of each.
+        recoveries: starts of the second children of Nav2's RecoveryNodes.
     """
 
     def __init__(self) -> None:
-        self.exercised: Final[dict[tuple[int, str], bool]] = {}
-        self._leaves: Final[dict[str, array[float]]] = {}
+        self.retries: Final = _Repeated()
+        self.recoveries: Final = _Repeated()
+        self._nodes: Final[dict[tuple[int, str], _Node]] = {}
+        self._now: dict[int, _Node] = {}  # those of the tree whose log is read, by uid
+        self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # what a start of them counts for
+        self._runs = 1
 
     def expect(self, tree: LoggedTree) -> None:
         """The nodes of a log may run."""
-        for node in tree.nodes.values():
-            self.exercised.setdefault((node.uid, node.path), False)
+        self._now = {
+            uid: self._nodes.setdefault((uid, node.path), _Node(node.path, node.kind, tree.last[uid] == uid))
+            for uid, node in tree.nodes.items()
+        }
+        self._repeated = {}
+        for uid, node in tree.nodes.items():
+            if node.kind in _RETRYING and tree.last[uid] > uid:
+                self._repeated.setdefault(uid, []).append((self.retries, -1))
+                self._repeated.setdefault(uid + 1, []).append((self.retries, 1))
+                second = tree.last[uid + 1] + 1
+                if node.kind == _RECOVERY and second <= tree.last[uid]:
+                    self._repeated.setdefault(second, []).append((self.recoveries, 1))
 
-    def count(self, tree: LoggedTree, activation: Activation) -> None:
-        """One of them ran."""
+    def count(self, activation: Activation) -> None:
+        """One of them has ended."""
         uid = activation.uid
-        path = tree.nodes[uid].path
-        self.exercised[uid, path] = True
-        if tree.last[uid] == uid and activation.outcome in ("S", "F"):
-            self._leaves.setdefault(path, array("d")).append(activation.seconds)
+        self._now[uid].count(activation, self._runs)
+        for repeated, step in self._repeated.get(uid, ()):
+            repeated.now += step
 
-    def slowest(self) -> NodeTimes | None:
-        """The leaf that takes longest in 95 of 100 activations; None where none takes any time."""
-        times = [(path, sorted(each)) for path, each in self._leaves.items()]
-        found = [NodeTimes(path, _percentile(each, 50), _percentile(each, 95)) for path, each in times]
-        slowest = max(found, key=lambda each: each.p95, default=None)
-        return slowest if slowest is not None and slowest.p95 > 0 else None
+    def end_run(self, run: int, began: int | None) -> None:
+        """The run that was open has ended.
+
+        Args:
+            began: the node where its failure began, if it failed.
+        """
+        self._runs += 1
+        if began is not None:
+            self._now[began].began += 1
+        for repeated in (self.retries, self.recoveries):
+            repeated.end_run(run)
+
+    def took(self, uid: int, time: int) -> None:
+        """A tick of a leaf has taken so many µs."""
+        self._now[uid].ticks.append(time)
+
+    def summary(self) -> tuple[NodeSummary, ...]:
+        """The nodes in the order of their numbers."""
+        return tuple(node.summary() for _, node in sorted(self._nodes.items(), key=lambda each: each[0]))
 
 
-def _percentile(ordered: list[float], percent: int) -> float:
-    """The smallest of some values that so many percent of them do not exceed."""
-    return ordered[-(-len(ordered) * percent // 100) - 1]
+class _Node:
+    """What was counted of a node."""
+
+    def __init__(self, path: str, kind: str, is_leaf: bool) -> None:
+        self.began = 0
+        self.ticks: Final = array("q")
+        self._path: Final = path
+        self._kind: Final = kind
+        self._is_leaf: Final = is_leaf
+        self._outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
+        self._times: Final = array("q")  # of those that succeeded or failed, in µs
+        self._runs = self._run = 0
+
+    def count(self, activation: Activation, run: int) -> None:
+        self._outcomes[activation.outcome] += 1
+        if activation.outcome in ("S", "F") and activation.timing == "exact":
+            self._times.append(activation.end - activation.begin)
+        if self._run != run:
+            self._run = run
+            self._runs += 1
+
+    def summary(self) -> NodeSummary:
+        times, ticks = sorted(self._times), sorted(self.ticks)
+        return NodeSummary(
+            path=self._path,
+            kind=self._kind,
+            is_leaf=self._is_leaf,
+            runs=self._runs,
+            succeeded=self._outcomes["S"],
+            failed=self._outcomes["F"],
+            halted=self._outcomes["H"],
+            interrupted=self._outcomes["O"],
+            failures_began=self.began,
+            p50=_percentile(times, 50),
+            p95=_percentile(times, 95),
+            tick_p95=_percentile(ticks, 95),
+            tick_worst=_percentile(ticks, 100),
+        )
+
+
+class _Repeated:
+    """How often something was done again: in the run that is open, in all, and in which run most often."""
+
+    def __init__(self) -> None:
+        self.now = 0
+        self._total = self._most = self._run = 0
+
+    def end_run(self, run: int) -> None:
+        self._total += self.now
+        if self.now > self._most:
+            self._most, self._run = self.now, run
+        self.now = 0
+
+    def summary(self) -> Repeats:
+        return Repeats(self._total, self._most, self._run or None)
+
+
+def _percentile(ordered: list[int], percent: int) -> float | None:
+    """The smallest of some times that so many percent of them do not exceed, in seconds; None without any."""
+    return ordered[-(-len(ordered) * percent // 100) - 1] / 1e6 if ordered else None
+
+
+_RECOVERY: Final = "RecoveryNode"
+_RETRYING: Final = frozenset(("RetryUntilSuccessful", "RetryUntilSuccesful", _RECOVERY))

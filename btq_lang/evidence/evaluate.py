@@ -5,13 +5,17 @@ One invariant: state is kept only for what is open, the current run, and what ha
 
 from __future__ import annotations
 
+from functools import partial
+
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.coverage import Coverage
+from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
+from btq_lang.evidence.ticks import timed
 from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
 from btq_lang.record import replace
 
@@ -64,12 +68,16 @@ class MissionEvaluation:
             for uid in clause.join(joined):
                 at.setdefault(uid, []).append(clause)
         guards = Guards(tree, joined.enforcing(), at)
+        explainer = Explainer(tree, at, signals)
+        for clause in self._clauses:
+            clause.tally.explain = partial(explainer.chain, clause.claim)
         self._coverage.expect(tree)
         begin: int | None = None
         end = 0
         runs = 0
-        for activation in activations(session):
-            self._coverage.count(tree, activation)
+        for activation in activations(timed(session, self._coverage.took)):
+            self._coverage.count(activation)
+            origin = explainer.see(activation)
             if activation.uid in guards.concerned:  # few of the nodes are
                 for refusal in guards.refused(activation):
                     for clause in at[refusal.uid]:
@@ -83,6 +91,7 @@ class MissionEvaluation:
                 begin = activation.begin if begin is None else begin
                 end = activation.end
                 self._outcomes[activation.outcome] += 1
+                self._coverage.end_run(run.number, origin.uid if origin is not None else None)
                 for clause in self._clauses:
                     clause.tally.end_run(run)
                 signals.forget_before(end)
@@ -122,9 +131,9 @@ class MissionEvaluation:
                 if clauses
             ),
             outcomes=tuple((_OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
-            exercised=sum(self._coverage.exercised.values()),
-            nodes=len(self._coverage.exercised),
-            slowest=self._coverage.slowest(),
+            nodes=self._coverage.summary(),
+            retries=self._coverage.retries.summary(),
+            recoveries=self._coverage.recoveries.summary(),
             by_people=tuple(each.name for each in found.all.values() if each.claims and _is_by_people(each)),
         )
 

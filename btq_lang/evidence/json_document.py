@@ -10,12 +10,26 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from typing import Final, TypeAlias
 
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Repeats, Report, RequirementVerdict, Source
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
 FORMAT: Final = "btq-verdicts"
 VERSION: Final = 1
+_OF_NODES: Final = (
+    "path",
+    "kind",
+    "runs",
+    "succeeded",
+    "failed",
+    "halted",
+    "interrupted",
+    "failures_began",
+    "p50",
+    "p95",
+    "tick_p95",
+    "tick_worst",
+)
 
 
 def json_text(report: Report) -> str:
@@ -27,6 +41,7 @@ def json_text(report: Report) -> str:
         "version": VERSION,
         "runs": sum(mission.runs for mission in report.missions),
         "sources": sources,
+        "missions": [_mission(mission) for mission in report.missions],
         "requirements": [
             _requirement(requirement, mission) for mission in report.missions for requirement in mission.requirements
         ],
@@ -47,6 +62,21 @@ def _source(source: Source, mission: MissionVerdicts) -> Json:
         "nodes": source.nodes,
         "remarks": list(source.remarks),
     }
+
+
+def _mission(mission: MissionVerdicts) -> Json:
+    return {
+        "name": mission.name,
+        "runs": mission.runs,
+        "outcomes": dict(mission.outcomes),
+        "retries": _repeats(mission.retries),
+        "recoveries": _repeats(mission.recoveries),
+        "nodes": [{name: getattr(node, name) for name in _OF_NODES} for node in mission.nodes],
+    }
+
+
+def _repeats(repeats: Repeats) -> Json:
+    return {"total": repeats.total, "most": repeats.most, "run": repeats.run}
 
 
 def _requirement(requirement: RequirementVerdict, mission: MissionVerdicts) -> Json:
@@ -85,6 +115,17 @@ def _clause(clause: ClauseVerdict) -> Json:
                 "measured": each.measured or None,
                 "bound": each.bound or None,
                 "why": each.why,
+                "chain": [
+                    {
+                        "kind": link.kind,
+                        "path": link.path,
+                        "text": link.text,
+                        "seconds": link.seconds,
+                        "activations": link.activations,
+                        "failed": link.failed,
+                    }
+                    for link in each.chain
+                ],
             }
             for each in clause.violations
         ],

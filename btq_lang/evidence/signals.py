@@ -48,6 +48,12 @@ class Signals:
             return Unknown(f"the last sample of `{signal.name}` is too old")
         return _as_declared(signal, value)
 
+    def sampled(self, signal: Signal, time: int) -> int | None:
+        """When the sample was taken that a signal has at a time."""
+        series = self._series(signal)
+        found = series.at(time) if series is not None else None
+        return found[0] if found is not None else None
+
     def moments(self, signals: Iterable[Signal], begin: int, end: int) -> list[int]:
         """The times from `begin` to `end` at which a condition on these signals may change: samples, and where one
         grows too old."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btq_lang.evidence.headline import headline
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
@@ -23,7 +24,7 @@ def table(report: Report, colour: bool = False) -> str:
     paint = painter(colour)
     lines: list[str] = []
     for mission in report.missions:
-        lines += [*_heading(mission), "", *_rows(mission, paint), "", _summary(mission), ""]
+        lines += [*_heading(mission), "", *_rows(mission, paint), "", *_summary(mission), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 
@@ -52,19 +53,23 @@ def _period(source: Source) -> str:
 
 
 def _rows(mission: MissionVerdicts, paint: Paint) -> Iterator[str]:
-    rows: list[tuple[Verdict, list[str]]] = []
+    rows: list[tuple[Verdict, list[str], str]] = []
+    medians = {each.path: each.p50 for each in mission.nodes if each.p50 is not None}
     for requirement in sorted(mission.requirements, key=lambda each: _ORDER.index(each.verdict)):
         title = requirement.title
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
             texts = [name, title, _clause(clause, requirement), *_result(clause)]
-            rows.append((clause.verdict, [printable(text) for text in texts]))
+            below = headline(clause, medians) if clause.verdict == VIOLATED else ""
+            rows.append((clause.verdict, [printable(text) for text in texts], printable(below)))
             name = title = ""  # once is enough
-    widths = [max(_cells(row[column]) for _, row in rows) if rows else 0 for column in range(4)]
-    for verdict, row in rows:
+    widths = [max(_cells(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
+    for verdict, row, below in rows:
         cells = [text + " " * (width - _cells(text)) for text, width in zip(row, widths, strict=False) if width]
         word = verdict + " " * (len(NEVER) - len(verdict))
         yield f"  {paint(_STYLES[verdict], word)}  {'  '.join([*cells, *row[4:]])}".rstrip()
+        if below:
+            yield f"{' ' * (len(NEVER) + 4)}{below}"
     if not rows:
         yield "  the mission has no requirement to judge"
 
@@ -111,20 +116,33 @@ def _counted(clause: ClauseVerdict) -> str:
     return f"{of}, {limit} with confidence {share(clause.confidence)}"
 
 
-def _summary(mission: MissionVerdicts) -> str:
-    parts = [f"runs: {', '.join(f'{number} {outcome}' for outcome, number in mission.outcomes) or 'none'}"]
-    parts.append(f"nodes exercised {mission.exercised} of {mission.nodes}")
-    if mission.slowest is not None:
-        each = mission.slowest
-        parts.append(f"slowest: {printable(each.path)} p50 {duration(each.p50)}, p95 {duration(each.p95)}")
+def _summary(mission: MissionVerdicts) -> Iterator[str]:
+    """The runs and the nodes, a line each."""
+    runs = [f"runs: {', '.join(f'{number} {outcome}' for outcome, number in mission.outcomes) or 'none'}"]
+    if began := sorted(mission.nodes, key=lambda each: -each.failures_began)[:_NAMED]:
+        places = [f"{each.path} ({each.failures_began})" for each in began if each.failures_began]
+        runs += [f"failures began at {', '.join(places)}"] if places else []
+    for word, repeats in (("retries", mission.retries), ("recoveries", mission.recoveries)):
+        if repeats.total:
+            runs.append(f"{word} {repeats.total}, at most {repeats.most} in run {repeats.run}")
+    yield " · ".join(map(printable, runs))
+    nodes = [f"nodes: exercised {sum(each.runs > 0 for each in mission.nodes)} of {len(mission.nodes)}"]
+    slowest = max((each for each in mission.nodes if each.is_leaf), key=lambda each: each.p95 or 0, default=None)
+    if slowest is not None and slowest.p95 and slowest.p50 is not None:
+        nodes.append(f"slowest: {slowest.path} p50 {duration(slowest.p50)}, p95 {duration(slowest.p95)}")
+    blocks = max(mission.nodes, key=lambda each: each.tick_worst or 0, default=None)
+    if blocks is not None and blocks.tick_p95 is not None and (worst := blocks.tick_worst or 0) >= _LONG_TICK:
+        nodes.append(f"longest tick: {blocks.path} p95 {duration(blocks.tick_p95)}, worst {duration(worst)}")
+    yield " · ".join(map(printable, nodes))
     if mission.by_people:
-        parts.append(f"verified by people: {', '.join(mission.by_people)}")
-    return " · ".join(parts)
+        yield printable(f"verified by people: {', '.join(mission.by_people)}")
 
 
 def _cells(text: str) -> int:
     return laid_out(text)[1][-1]
 
 
+_NAMED: Final = 3  # nodes where failures began
+_LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
 _ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)
 _STYLES: Final = {VIOLATED: "error", SATISFIED: "hint", UNDECIDED: "warning", UNKNOWN: "info", NEVER: "warning"}

@@ -12,10 +12,11 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Final
 
     from btq_lang.evidence.verbs import Judgement, Measure
-    from btq_lang.evidence.verdicts import Verdict
+    from btq_lang.evidence.verdicts import Link, Verdict
     from btq_lang.requirements.model import Odds
 
 
@@ -32,6 +33,7 @@ class Tally:
 
     Attributes:
         counted, violated, unknown, cut_off, why, violations, worst: as of a `ClauseVerdict`.
+        explain: what led to a violation, by its judgement and its path.
     """
 
     def __init__(self, odds: Odds | None, confidence: float | None) -> None:
@@ -42,11 +44,12 @@ class Tally:
         self.why = ""
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
+        self.explain: Callable[[Judgement, str], tuple[Link, ...]] | None = None
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self._odds: Final = odds
         self._confidence: Final = confidence
         self._worst_excess = float("-inf")
-        self._broken: Final[list[tuple[Judgement, str]]] = []  # of the run that is open
+        self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the run that is open
         self._kept = self._unclear = 0  # likewise
         self._worst_now: Measure | None = None
 
@@ -59,7 +62,8 @@ class Tally:
         if judgement.holds:
             self._kept += 1
         else:
-            self._broken.append((judgement, path))
+            chain = self.explain(judgement, path) if self.explain is not None else ()
+            self._broken.append((judgement, path, chain))
         measure = judgement.measure
         if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
             self._worst_now = measure
@@ -77,7 +81,7 @@ class Tally:
         self.violated += broken
         self.unknown += unclear
         room = max(_MOST_VIOLATIONS - len(self.violations), 0)
-        self.violations.extend(_violation(judgement, path, run) for judgement, path in shown[:room])
+        self.violations.extend(_violation(*each, run) for each in shown[:room])
         worst = self._worst_now
         if worst is not None and worst.excess > self._worst_excess:
             self._worst_excess = worst.excess
@@ -123,13 +127,13 @@ class Tally:
         return VIOLATED if upper_limit(k, n, self._confidence) < wanted else UNDECIDED
 
 
-def _violation(judgement: Judgement, path: str, run: Run) -> Violation:
+def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Run) -> Violation:
     measure = judgement.measure
     measured = quantity(measure.si, measure.unit, measure.bound) if measure is not None else ""
     bound = measure.bound_text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
     why = judgement.said.replace("{}", measured)
-    return Violation(run.number, run.source, path, run.begin, at, measured, bound, why)
+    return Violation(run.number, run.source, path, run.begin, at, measured, bound, why, chain)
 
 
 USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none

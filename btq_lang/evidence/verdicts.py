@@ -22,6 +22,26 @@ NEVER: Final = "never exercised"
 _WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
 
 
+class Link(Record):
+    """Something that led to a violation.
+
+    Attributes:
+        kind: `part`: a node below it that took a share of its time; `origin`: where a failure began; `sample`: what a
+            condition was judged by; `failure`: a leaf that had failed before in the run.
+        path: of the node; of a sample the leaf that ran when it was taken, empty where none did.
+        text: in words.
+        seconds: how long the node ran; of a sample its age.
+        activations, failed: of the node meanwhile.
+    """
+
+    kind: Literal["part", "origin", "sample", "failure"]
+    path: str
+    text: str
+    seconds: float
+    activations: int
+    failed: int
+
+
 class Violation(Record):
     """An activation that breaks a clause.
 
@@ -33,6 +53,7 @@ class Violation(Record):
         at: how far into the run the clause was broken, in seconds.
         measured, bound: in the bound's unit; empty where there is no number to compare.
         why: what happened, in words.
+        chain: what led to it, what matters most first.
     """
 
     run: int
@@ -43,6 +64,7 @@ class Violation(Record):
     measured: str
     bound: str
     why: str
+    chain: tuple[Link, ...]
 
 
 class Worst(Record):
@@ -117,12 +139,39 @@ class Source(Record):
     remarks: tuple[str, ...]
 
 
-class NodeTimes(Record):
-    """A leaf's durations in seconds: the median, and what 95 of 100 do not exceed."""
+class NodeSummary(Record):
+    """A node of the logs.
+
+    Attributes:
+        path, kind: as the engine names it, and the ID it is registered under.
+        runs: in how many it ran.
+        succeeded, failed, halted, interrupted: how many of its activations.
+        failures_began: in how many failed runs the failure began at it.
+        p50, p95: what half, and 95 of 100, of its activations to a result do not exceed, in seconds; None without any.
+        tick_p95, tick_worst: how long its `tick()` takes, likewise, where the log shows it.
+    """
 
     path: str
-    p50: float
-    p95: float
+    kind: str
+    is_leaf: bool
+    runs: int
+    succeeded: int
+    failed: int
+    halted: int
+    interrupted: int
+    failures_began: int
+    p50: float | None
+    p95: float | None
+    tick_p95: float | None
+    tick_worst: float | None
+
+
+class Repeats(Record):
+    """How often something was done again: in all runs, at most in one, and in which; None where it never was."""
+
+    total: int
+    most: int
+    run: int | None
 
 
 class MissionVerdicts(Record):
@@ -131,8 +180,9 @@ class MissionVerdicts(Record):
     Attributes:
         file: of the mission.
         outcomes: how many runs ended how.
-        exercised, nodes: how many of its nodes ran, of how many.
-        slowest: the leaf that takes longest; None where none takes any time.
+        nodes: of the logs, in the order of their numbers.
+        retries: of what Retry nodes and Nav2's RecoveryNodes repeat.
+        recoveries: of what RecoveryNodes do between two tries.
         by_people: the requirements that are verified by review, test or analysis, and not judged here.
     """
 
@@ -141,9 +191,9 @@ class MissionVerdicts(Record):
     sources: tuple[Source, ...]
     requirements: tuple[RequirementVerdict, ...]
     outcomes: tuple[tuple[str, int], ...]
-    exercised: int
-    nodes: int
-    slowest: NodeTimes | None
+    nodes: tuple[NodeSummary, ...]
+    retries: Repeats
+    recoveries: Repeats
     by_people: tuple[str, ...]
 
     @property

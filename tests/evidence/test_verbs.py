@@ -289,6 +289,7 @@ def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
             "measured": "0.0372 s",
             "bound": "0.03 s",
             "why": "took 0.0372 s",
+            "chain": [],
         }
     ]
 

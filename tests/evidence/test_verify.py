@@ -146,15 +146,20 @@ TABLE = """\
 200 runs in lab.btlog, 2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)
 
   violated         in_time        Reach the charging station in time     MoveToCharger takes at most 280 ms                   4 of 26 activations, worst 331 ms in run 31
+                   MoveToCharger: took 331 ms, bound 280 ms; its median is 233 ms (run 31 of lab.btlog, 331 ms after its start at 2026-11-20 21:22:35.757 UTC)
   violated         way_home       Arrive with some battery left          MoveToStation leaves battery >= 15 %                 1 of 169 activations, worst 8 % in run 157
+                   MoveToStation: `battery` was 8 % at the end, bound 15 %; sampled just before, while MoveToStation ran; MoveToCharger had failed before in this run (run 157 of lab.btlog, 411 ms after its start at 2026-11-20 21:23:38.092 UTC)
   violated         not_too_early  Charge when that is needed             Charge needs battery < 17 %                          2 of 25 activations, worst 17.5 % in run 99
+                   Charge::5: `battery` was 17.5 % at the start, bound 17 %; sampled just before, while MoveToCharger ran (run 99 of lab.btlog, 206 ms after its start at 2026-11-20 21:23:11.036 UTC)
   satisfied        reliable       The mission succeeds nearly always     mission succeeds in at least 80 % of runs            186 of 200, at least 89.3 % with confidence 95 %
   satisfied        picked         Picking rarely fails                   every Pick succeeds in at least 90 % of activations  583 of 616, 94.6 %; limits 92.9 % to 96.1 % with confidence 95 % each
   satisfied        swift          The tubes are moved swiftly            PickTube/Pick takes at most 1 s                      held so far in 447 activations, worst 0.087 s in run 136
   undecided        placed         What was picked is placed              PickPlace/Place succeeds in at least 99 % of runs    159 of 162; 611 more without a violation decide it
   unknown          ordered        Nothing is placed that was not picked  PickPlace/Place follows PickPlace/Pick succeeds      `follows` is not judged yet
 
-runs: 186 succeeded, 14 failed · nodes exercised 19 of 19 · slowest: MoveToCharger p50 233 ms, p95 324 ms · verified by people: reviewed
+runs: 186 succeeded, 14 failed · failures began at PickPlate/Pick::10 (7), MoveToStation (6), PickPlate/Place::11 (1) · retries 419, at most 3 in run 1
+nodes: exercised 19 of 19 · slowest: MoveToCharger p50 233 ms, p95 324 ms
+verified by people: reviewed
 """  # noqa: E501
 
 

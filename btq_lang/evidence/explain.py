@@ -1,0 +1,165 @@
+"""What led to a violation: where the time went, where a failure began, which sample was read and who ran then.
+
+One invariant: of what has ended only sums are kept, for each node that is open those of the nodes below it, and of a
+run its last failure, so memory does not grow with a log.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.conditions import signals_in
+from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.verdicts import Link
+from btq_lang.evidence.wording import duration
+from btq_lang.record import Record
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+    from typing import Final, TypeAlias
+
+    from btq_lang.evidence.model import Activation, LoggedTree, Outcome
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.verbs import Judgement
+    from btq_lang.requirements.model import Claim
+
+    Sums: TypeAlias = dict[int, list[int]]  # by uid: activations, those that failed, µs
+
+
+class Origin(Record):
+    """Where a failure began: a node that failed although its last child did not, or that has no child.
+
+    Attributes:
+        child: the one that ended last; 0 for none.
+        outcome: of that child.
+    """
+
+    uid: int
+    child: int
+    outcome: Outcome | None
+
+
+class Explainer:
+    """What the nodes of a session do, while its log is read."""
+
+    def __init__(self, tree: LoggedTree, judged: Collection[int], signals: Signals) -> None:
+        """
+        Args:
+            judged: the nodes whose violations are to be explained.
+        """
+        self._tree: Final = tree
+        self._judged: Final = judged
+        self._signals: Final = signals
+        self._below: Final[dict[int, Sums]] = {}  # of open nodes
+        self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
+        self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last one of each judged node
+        self._leaves: Final[dict[int, Activation]] = {}  # the last one of each leaf
+        self._failed: Activation | None = None  # the last leaf of the run that ran for a while and failed
+        self._is_over = False  # the last run
+
+    def see(self, activation: Activation) -> Origin | None:
+        """An activation has ended; where its failure began, if it failed."""
+        uid, outcome, tree = activation.uid, activation.outcome, self._tree
+        if self._is_over:
+            self._failed = None
+        self._is_over = uid == ROOT
+        sums = self._below.pop(uid, None)
+        child, came, origin = self._last.pop(uid, _NO_CHILD)
+        if outcome != "F":
+            origin = None
+        elif came != "F":
+            origin = Origin(uid, child, came)
+        if uid in self._judged:
+            self._ended[uid] = activation, dict(sums or {}), origin
+        if tree.last[uid] == uid:
+            self._leaves[uid] = activation
+            if outcome == "F" and activation.end > activation.begin:
+                self._failed = activation
+        parent = tree.parent[uid]
+        if parent:
+            if outcome != "H" or parent not in self._last:  # what a node halts as it ends is not what ended it
+                self._last[parent] = uid, outcome, origin
+            self._add(parent, activation, sums)
+        return origin
+
+    def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
+        """What led to the violation of a clause by the activation that has just ended of the node with a path."""
+        if claim.condition is not None:
+            return tuple(self._sample(claim, judgement.at, path))
+        for activation, sums, origin in self._ended.values():
+            if activation.end == judgement.at and self._tree.nodes[activation.uid].path == path:
+                parts = tuple(self._parts(activation, sums))
+                is_late = judgement.measure is not None
+                return parts if is_late or origin is None else (self._origin(activation, sums, origin), *parts)
+        return ()
+
+    def _add(self, parent: int, activation: Activation, sums: Sums | None) -> None:
+        """Add an activation, and those below it, to the sums of its parent."""
+        above = self._below.get(parent)
+        if above is None:
+            above = self._below[parent] = sums if sums is not None else {}
+        elif sums is not None:
+            for uid, (number, failed, time) in sums.items():
+                sum_ = above.setdefault(uid, [0, 0, 0])
+                sum_[0] += number
+                sum_[1] += failed
+                sum_[2] += time
+        own = above.setdefault(activation.uid, [0, 0, 0])
+        own[0] += 1
+        own[1] += activation.outcome == "F"
+        own[2] += activation.end - activation.begin
+
+    def _parts(self, activation: Activation, sums: Sums) -> Iterator[Link]:
+        """Where the time went: the nodes that ran for a twentieth of it, leaves first, then the longest."""
+        tree = self._tree
+        long = [uid for uid, (_, _, time) in sums.items() if time * 20 >= activation.end - activation.begin and time]
+        for uid in sorted(long, key=lambda uid: (tree.last[uid] > uid, -sums[uid][2], uid)):
+            number, failed, time = sums[uid]
+            path = tree.nodes[uid].path
+            text = f"{path} ran {duration(time / 1e6)} of it"
+            if number > 1:
+                text += f" in {number} starts"
+                text += f", {failed} of them failed" if failed else ""
+            elif failed:
+                text += ", and failed"
+            yield Link("part", path, text, time / 1e6, number, failed)
+
+    def _origin(self, activation: Activation, sums: Sums, origin: Origin) -> Link:
+        """Where a failure began."""
+        nodes = self._tree.nodes
+        path = nodes[origin.uid].path
+        if origin.uid == activation.uid:
+            text = f"it ran {duration(activation.seconds)}"
+            if origin.outcome is not None:
+                text = f"its last child {nodes[origin.child].path} {_CAME_TO[origin.outcome]}"
+            return Link("origin", path, text, activation.seconds, 1, 1)
+        number, failed, time = sums.get(origin.uid, (1, 1, 0))
+        text = f"it began at {path}"
+        if origin.outcome is not None:
+            text += f", whose last child {nodes[origin.child].path} {_CAME_TO[origin.outcome]}"
+        elif number > 1:
+            text += f", {failed} of its {number} starts failed"
+        return Link("origin", path, text, time / 1e6, number, failed)
+
+    def _sample(self, claim: Claim, time: int, judged: str) -> Iterator[Link]:
+        """The samples that a condition reads: how old they are, and which leaf ran when they were taken."""
+        for signal in dict.fromkeys(signals_in(claim.condition)):
+            sampled = self._signals.sampled(signal, time)
+            if sampled is None:
+                continue
+            age = time - sampled
+            text = "sampled just before" if age < _JUST_BEFORE else f"sampled {duration(age / 1e6)} before"
+            ran = [each for each in self._leaves.values() if each.begin <= sampled <= each.end > each.begin]
+            path = ""
+            if ran:
+                path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
+                text += f", while {path} ran"
+            yield Link("sample", path, text, age / 1e6, 1, 0)
+        failed = self._failed
+        path = self._tree.nodes[failed.uid].path if failed is not None else judged
+        if failed is not None and path != judged and failed.end <= time:
+            yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
+
+
+_NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)
+_CAME_TO: Final = {"S": "succeeded", "H": "was halted", "O": "was still running"}
+_JUST_BEFORE: Final = 1000  # µs

@@ -1,0 +1,50 @@
+"""How long the `tick()` of a leaf takes, which blocks the whole tree.
+
+One invariant: only rows of one tick are compared.  When a leaf writes its first row right after its parent has begun,
+or after a sibling before it has completed, nothing else ran in between.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Session
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from btq_lang.evidence.model import Transition
+
+
+def timed(session: Session, took: Callable[[int, int], None]) -> Session:
+    """The same session, whose transitions report ticks of leaves as they are read.
+
+    Args:
+        took: is given the uid and the µs of each.
+    """
+    return Session(session.tree, _timed(session, took), session.samples, session.remarks)
+
+
+def _timed(session: Session, took: Callable[[int, int], None]) -> Iterator[Transition]:
+    tree = session.tree
+    parent = tree.parent
+    leaves = {uid for uid, last in tree.last.items() if uid == last}
+    running: set[int] = set()
+    before, uid_before, status_before = 0, 0, RUNNING
+    for row in session.transitions:
+        time, uid, status = row
+        if uid in leaves:
+            if uid not in running and status in _ANSWERS and time >= before:
+                above = parent[uid]
+                is_sibling = parent.get(uid_before) == above and uid_before < uid
+                if (is_sibling and status_before in _RESULTS) or (uid_before == above and status_before == RUNNING):
+                    took(uid, time - before)
+            if status == RUNNING:
+                running.add(uid)
+            else:
+                running.discard(uid)
+        before, uid_before, status_before = row
+        yield row
+
+
+_RESULTS = (SUCCESS, FAILURE)
+_ANSWERS = (RUNNING, SUCCESS, FAILURE)
