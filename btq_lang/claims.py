@@ -74,7 +74,7 @@ class ClaimParser(ConditionParser):
         elif word in _OF_CONDITIONS:
             if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
                 note = (
-                    "write `succeeds` for a node that never fails; that a node runs is a condition: `never node Dock`"
+                    "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
                 )
                 self.expected("a condition", (note,))
             else:
@@ -128,7 +128,7 @@ class ClaimParser(ConditionParser):
             self.complain("syntax-error", self.here(), "the names of a path are separated by `/`", (), (fix,))
             self.recover()
         elif isinstance(subject, Path) and (self.at_word("and") or self.at(",")):
-            note = "a clause is about one node; write it for each, or `sum of A, B` for the time of both"
+            note = "a clause applies to one node; write it for each, or `sum of A, B` for the time of both"
             self.expected(_A_VERB, (note,))
         elif first is not None and first.raw == "at" and (fixes := self.takes_before(first)):
             self.expected(f"a verb before `at {self.raw}`", (MEANT["at"],), fixes)
@@ -145,7 +145,9 @@ class ClaimParser(ConditionParser):
             self.complain("syntax-error", Span(at, self.here().end), message, notes, (fix,))
             self.recover()
         elif isinstance(subject, Path) and self.at_word("fails"):
-            self.expected(_A_VERB, ("`tries at most 3` limits the attempts, `succeeds` demands that it does not fail",))
+            self.expected(
+                _A_VERB, ("`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",)
+            )
         elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
         elif not isinstance(subject, Path):
@@ -155,7 +157,7 @@ class ClaimParser(ConditionParser):
         else:
             name = "/".join(word.raw for word in subject.names)
             note = (
-                f"`{shown(name)}` is read as the node that the clause is about; write a verb after it, or begin with a "
+                f"btq reads `{shown(name)}` as the subject of a clause; write a verb after it, or begin with a "
                 "clause word: in at least, while, on violation, goal, …"
             )
             if subject.names[0].kind == STRING:
@@ -314,7 +316,7 @@ class ClaimParser(ConditionParser):
             if not self.accept(","):
                 break
             if len(cases) == MAX_CASES:
-                note = "let a node work the value out, and declare a signal for what it writes"
+                note = "compute the value in a node, and declare a signal for its output"
                 self.complain("nested-too-deep", self.here(), f"more than {MAX_CASES} cases in one value", (note,))
                 self.recover()
                 return Table(tuple(cases))

@@ -35,7 +35,10 @@ MISSION_XML = """\
 """
 
 
-GUESSED = "models guessed from how nodes are used: {}; declare those that are something else, as in `Condition Name`\n"
+GUESSED = (
+    "categories guessed from the use of the nodes: {}; "
+    "declare a node whose category is wrong, for example `Condition Name`\n"
+)
 
 
 class Btq:
@@ -86,7 +89,7 @@ def test_what_is_up_to_date_is_left_alone(btq: Btq) -> None:
     btq.build()
     before = os.stat("skills.xml").st_mtime_ns
     btq.write(mission=MISSION.replace('"a"', '"b"'))
-    assert btq.build() == (0, "wrote mission.xml\n", "1 file left as it is\n")
+    assert btq.build() == (0, "wrote mission.xml\n", "1 file unchanged\n")
     assert os.stat("skills.xml").st_mtime_ns == before
 
 
@@ -321,7 +324,7 @@ def test_a_side_file_that_is_not_made_any_more_goes(btq: Btq) -> None:
     btq.write(mission="Root Main\nBehaviorTree Main\n    Pick satisfices safety\n")
     assert btq.build() == (0, "wrote mission.xml\nwrote mission.qreq.json\n", GUESSED.format("Pick (Action)"))
     btq.write(mission="Root Main\nBehaviorTree Main\n    Pick\n")
-    assert btq.build("--check") == (1, "out of date: mission.xml\nleft over: mission.qreq.json\n", "")
+    assert btq.build("--check") == (1, "out of date: mission.xml\nstale: mission.qreq.json\n", "")
     assert btq.build() == (0, "wrote mission.xml\nremoved mission.qreq.json\n", GUESSED.format("Pick (Action)"))
     assert btq.build("--check") == (0, "", "")
     btq.write(**{"mission.qreq.json": "{}\n"})  # somebody else's
@@ -334,11 +337,11 @@ def test_what_was_built_from_a_mission_that_is_gone_is_named_and_stays(btq: Btq)
     btq.write(**{"others.xml": '<root BTCPP_format="4"/>\n'})
     assert btq.build()[0] == 0
     (btq.folder / "b.btq").unlink()
-    assert btq.build("--check") == (1, "left over: b.xml\nleft over: b.qreq.json\n", "")
+    assert btq.build("--check") == (1, "stale: b.xml\nstale: b.qreq.json\n", "")
     assert btq.build() == (
         0,
         "",
-        GUESSED.format("Pick (Action)") + "left over: b.xml\nleft over: b.qreq.json\n1 file left as it is\n",
+        GUESSED.format("Pick (Action)") + "stale: b.xml\nstale: b.qreq.json\n1 file unchanged\n",
     )
     assert btq.files == ["a.btq", "a.xml", "b.qreq.json", "b.xml", "others.xml"]
     assert btq.build("--check", "-o", "elsewhere")[1] == "missing: elsewhere/a.xml\n"
@@ -391,7 +394,7 @@ def test_verbatim_has_no_mark_and_mends_nothing(btq: Btq) -> None:
         '<?xml version="1.0" encoding="UTF-8"?>\n<root main_tree_to_execute="A">\n  <BehaviorTree ID="A">\n'
         "    <Pick/>\n  </BehaviorTree>\n</root>\n"
     )
-    assert btq.build("--verbatim") == (0, "", "1 file left as it is\n")
+    assert btq.build("--verbatim") == (0, "", "1 file unchanged\n")
 
 
 def test_the_target_decides_what_is_refused(btq: Btq) -> None:

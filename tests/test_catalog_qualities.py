@@ -355,7 +355,7 @@ def test_what_is_understood_and_not_exact(
         (
             "2023",
             "context-coverage",
-            "`context-coverage` is a name of ISO/IEC 25010:2011; 2023 has nothing in its place",
+            "`context-coverage` is a name of ISO/IEC 25010:2011; 2023 has no counterpart",
         ),
         (
             *("2023", "pleasure"),
@@ -365,7 +365,7 @@ def test_what_is_understood_and_not_exact(
         (
             "2011",
             "compliance",
-            "`acceptability.compliance` is new in ISO/IEC 25019:2023; 2011 has nothing in its place",
+            "`acceptability.compliance` is new in ISO/IEC 25019:2023; 2011 has no counterpart",
         ),
         ("2011", "alarm", "`alarm` means safety.hazard-warning, which is new in ISO/IEC 25010:2023"),
     ],

@@ -44,7 +44,7 @@ def test_what_the_category_says() -> None:
 def test_where_two_categories_disagree_only_that_is_told() -> None:
     assert_problems(
         "Decorator Slow\n" + tree("Action Slow", "    X"),
-        "3:5 warning category-mismatch «Action» `Slow` is written as Action, but its model declares Decorator",
+        "3:5 warning category-mismatch «Action» `Slow` is written as Action, but its model declares it as Decorator",
     )
 
 

@@ -242,13 +242,14 @@ def test_the_engines_that_a_project_names(engines: tuple[str, ...], problem: str
 def test_only_what_can_stay_as_it_is_is_mended_safely() -> None:
     fits = "Condition Open\n" + tree("Action Open")
     assert_problems(
-        fits, "4:9 warning category-mismatch «Action» `Open` is written as Action, but its model declares Condition"
+        fits,
+        "4:9 warning category-mismatch «Action» `Open` is written as Action, but its model declares it as Condition",
     )
     assert_fix(fits, "Replace it with `Condition`", fits.replace("        Action", "        Condition"), safe=True)
     childless = "Decorator Slow\n" + tree("Action Slow")  # a decorator without a child would be the next mistake
     assert_problems(
         childless,
-        "4:9 warning category-mismatch «Action» `Slow` is written as Action, but its model declares Decorator",
+        "4:9 warning category-mismatch «Action» `Slow` is written as Action, but its model declares it as Decorator",
     )
     assert_fix(childless, "Replace it with `Decorator`", childless.replace("        Action", "        Decorator"))
 

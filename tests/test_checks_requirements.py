@@ -56,7 +56,7 @@ def test_one_requirement_in_several_places() -> None:
 
 
 def test_each_other_text_is_told_against_the_first() -> None:
-    told = "the requirement `rq1` has another definition that differs"
+    told = "conflicting definitions of the requirement `rq1`"
     assert_problems(
         classic("one", "two", "one", "three"),
         f'4:38 error conflicting-requirement «"rq1"» {told}',
@@ -77,7 +77,7 @@ def test_clauses_and_qualities_are_part_of_what_is_said(first: str, second: str)
     line = first.count("\n") + 2
     assert_problems(
         text,
-        f"{line}:12 error conflicting-requirement «rq1» the requirement `rq1` has another definition that differs",
+        f"{line}:12 error conflicting-requirement «rq1» conflicting definitions of the requirement `rq1`",
     )
     assert_clean(f"QualityReq rq1 {second}\nQualityReq rq1 {second}\n")
 

@@ -44,7 +44,7 @@ def test_every_place_of_a_script_is_looked_at() -> None:
 
 
 def test_a_condition_has_to_give_a_value_and_other_scripts_have_not() -> None:
-    message = "a condition that ends in an assignment: `=` changes the entry; to compare, write `==`"
+    message = "this condition ends in an assignment: `=` changes the entry; to compare, write `==`"
     assert findings(tree('AlwaysSuccess (_skipIf = "x = 1")'), "script-error") == [f"2 warning «=» {message}"]
     assert findings(tree('ScriptCondition (code = "x = 1")'), "script-error") == [f"2 warning «=» {message}"]
     assert findings(tree('AlwaysSuccess (_post = "x = 1")'), "script-error") == []

@@ -32,24 +32,24 @@ def told(clauses: str, signals: str = "", tree: str = "->\n    Action A\n    Con
     [
         ("A takes at least 5 s", "the engine can stop a node, but cannot make it do more"),
         ("A runs at least 1 per 5 s", "BehaviorTree.CPP has no node that makes another one start in time"),
-        ("A keeps p95(n) <= 3", "no script can read the samples of `p95(n)`"),
-        ("A keeps n <= 3 or node C", "no script can tell which nodes run"),
+        ("A keeps p95(n) <= 3", "a script cannot read the samples of `p95(n)`"),
+        ("A keeps n <= 3 or node C", "a script cannot check whether a node runs"),
         ("A keeps bare <= 3", "`bare` has no blackboard entry"),
         (
             "A takes at most 5 s|while n > 3",
-            "whether an activation was within `while n > 3` is known only when it is over",
+            "whether `while n > 3` holds during a whole activation is known only at its end",
         ),
-        ("A follows C halts", "the engine runs no script when that happens"),
-        ("A takes at most 5 s|in at least 98 % of runs", "a probability is judged over many runs"),
+        ("A follows C halts", "the engine runs no script at this event"),
+        ("A takes at most 5 s|in at least 98 % of runs", "a probability is evaluated in the logs of many runs"),
         ("A takes at most 5 s|verified by test", "verified by test"),
         (
             "from A fails to C succeeds takes at most 5 s",
-            "it bounds the time between nodes, where no guard fits",
+            "it limits the time between nodes, and no node encloses that time",
         ),
-        ("sum of A, C takes at most 5 s", "it bounds the time between nodes, where no guard fits"),
+        ("sum of A, C takes at most 5 s", "it limits the time between nodes, and no node encloses that time"),
         (
             "from mission starts to C succeeds takes at most 5 s",
-            "it bounds the time between nodes, where no guard fits",
+            "it limits the time between nodes, and no node encloses that time",
         ),
     ],
 )
@@ -105,14 +105,15 @@ def test_a_classic_constraint_is_hard_without_being_asked() -> None:
 def test_nodes_that_nothing_can_stand_around() -> None:
     tree = '->\n    Action A (_skipIf = "@x" _onSuccess = "@y := 1")\n    Condition C'
     assert told("A takes at most 5 s|on violation fail", tree=tree) == [
-        "the engine cannot enforce `on violation fail`: `A` may be skipped and has `_onSuccess`"
+        "the engine cannot enforce `on violation fail`: `A` may be skipped and has `_onSuccess`, so with a "
+        "guard around it the tree would behave differently"
     ]
     # To halt the mission, something stands around its root.
     tree = "RunOnce\n    ->\n        Action A\n        Condition C"
     assert told("A takes at most 5 s|on violation fail", tree=tree) == []
     assert told("A takes at most 5 s|on violation halt", tree=tree) == [
-        "the engine cannot enforce `on violation halt`: `RunOnce` may be skipped from within, "
-        "but a guard around it could not be"
+        "the engine cannot enforce `on violation halt`: a node below `RunOnce` may skip it, and with a guard around it "
+        "the tree would behave differently"
     ]
 
 
@@ -140,9 +141,7 @@ def test_nodes_of_included_files(main: str) -> None:
     is_here = "# here" in main
     what = "the engine cannot enforce `on violation halt`"
     why = f"{what}: `A` is in an included file, which other missions may include; "
-    assert [each.message for each in found.pop("main.btq")] == (
-        [] if is_here else [f"{why}with --bundle it is enforced"]
-    )
+    assert [each.message for each in found.pop("main.btq")] == ([] if is_here else [f"{why}--bundle enforces it"])
     assert list(found.values()) == [[], []]
     ways = [held.way for clauses in how_held(workspace, "main.btq") for held in clauses]
     assert ways == ["enforced" if is_here else "monitored"]
@@ -180,6 +179,6 @@ def assert_same(workspace: Workspace, path: str) -> None:
         for held in clauses
         if held.asked and held.way != "enforced" and (held.place.path == path or applied.place.path == path)
     }
-    unsaid = {each for each in missing - reasons if "it is unclear" not in each}
+    unsaid = {each for each in missing - reasons if "the main tree is unknown" not in each}
     assert not unsaid or any(each.rule in OTHERWISE for each in found)
     assert reasons <= missing | {"verified by review", "verified by test", "verified by analysis"}

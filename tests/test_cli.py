@@ -93,8 +93,8 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
     ("output", "message"),
     [
         ("-", "expected a folder; input from `-` goes to standard output"),
-        ("out.xml", "expected a folder, in which each file keeps its name"),
-        ("out.btq", "expected a folder, in which each file keeps its name"),
+        ("out.xml", "expected a folder; each file keeps its name there"),
+        ("out.btq", "expected a folder; each file keeps its name there"),
     ],
 )
 def test_a_folder_is_asked_for(btq: Run, command: str, output: str, message: str) -> None:
@@ -215,14 +215,14 @@ def test_a_folder_without_missions_is_named(btq: Run, tmp_path: Path) -> None:
     done = btq("check", "empty", "x.btq/")
     assert (done.returncode, done.stdout, done.stderr) == (
         2,
-        "No files were checked: no .btq below empty/, x.btq/\n",
+        "No files were checked: no .btq file below empty/, x.btq/\n",
         "",
     )
     done = btq("check", "empty", "--output-format", "github")
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", "btq check: no .btq below empty/\n")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "btq check: no .btq file below empty/\n")
     for command in ("build", "trace", "graph"):
         done = btq(command, "x.btq")
-        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"btq {command}: no .btq below x.btq/\n")
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"btq {command}: no .btq file below x.btq/\n")
     (tmp_path / "a.btq").write_text("BehaviorTree Main\n    AlwaysSuccess\n")
     assert btq("check", "empty", "a.btq").returncode == 0
 
@@ -257,7 +257,9 @@ def test_xml_is_not_formatted(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "tree.xml").write_text(XML)
     done = btq("format", "tree.xml")
     assert done.returncode == 2
-    assert done.stderr.startswith("btq: tree.xml: this is XML, which `btq format` leaves alone: see `btq import`\n")
+    assert done.stderr.startswith(
+        "btq: tree.xml: this is XML, which `btq format` does not change; `btq import` converts it to .btq\n"
+    )
 
 
 OLD = """\
@@ -305,7 +307,7 @@ def test_import_writes_over_nothing(btq: Run, tmp_path: Path) -> None:
     assert done.stderr == "btq: x.btq: already exists; --force overwrites it\n0 files imported\n"
     done = btq("import", "x.xml", "a/x.xml", "-o", "made")
     assert done.returncode == 2
-    assert "btq: a/x.xml: not imported: x.xml becomes made/x.btq, too\n" in done.stderr
+    assert "btq: a/x.xml: not imported: x.xml would also become made/x.btq\n" in done.stderr
     assert not (tmp_path / "made").exists()
     assert btq("import", "x.xml", "-o", "made").returncode == 0
     assert (tmp_path / "made" / "x.btq").read_text() == (
@@ -338,7 +340,7 @@ def test_import_of_broken_xml_writes_nothing_and_shows_it(btq: Run, tmp_path: Pa
     done = btq("import", "x.xml")
     assert (done.returncode, (tmp_path / "x.btq").exists()) == (1, False)
     assert done.stderr.startswith("error[xml-syntax]: expected </BehaviorTree>, found </Sequence>\n --> x.xml:4:3\n")
-    assert done.stderr.endswith("0 files imported, 1 file that cannot be read left alone\n")
+    assert done.stderr.endswith("0 files imported, 1 file not imported\n")
     assert btq("import", "nowhere.xml").returncode == 2
     assert btq("import").returncode == 2
 
@@ -554,7 +556,7 @@ def test_explain_of_several_names(btq: Run) -> None:
     assert btq("explain", "takes at most").stdout == btq("explain", "takes").stdout != ""
     done = btq("explain", "Retry", "nonsense")
     assert done.stdout == btq("explain", "Retry").stdout
-    assert done.stderr == ("btq explain: unknown name `nonsense`; `btq explain` lists all there is\n")
+    assert done.stderr == ("btq explain: unknown name `nonsense`; `btq explain` lists all names\n")
     assert done.returncode == 2
 
 
@@ -585,7 +587,7 @@ def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_p
     assert btq("check", "robot").stdout == "No problems found in 2 files\n"
     assert btq("format", "--check", "robot").returncode == 0
     again = btq("init", "robot")
-    assert (again.returncode, "nothing written" in again.stderr) == (2, True)
+    assert (again.returncode, "nothing was written" in again.stderr) == (2, True)
 
 
 def test_what_is_next_can_be_pasted(btq: Run, tmp_path: Path) -> None:

@@ -189,7 +189,7 @@ def test_markdown_for_a_pull_request() -> None:
         "- node `Main/Work/Hold` **changed** (`new.btq:14`)",
         "  - `kind: Grip -> Hold`",
     ]
-    assert list(as_markdown.render([comparison(OLD, OLD)])) == ["The missions say the same."]
+    assert list(as_markdown.render([comparison(OLD, OLD)])) == ["The missions are the same."]
 
 
 @pytest.mark.parametrize(
@@ -348,7 +348,7 @@ def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
     (tmp_path / "mission.qreq.json").unlink()
     code, out, told = btq("mission.btq", "mission.xml", cwd=tmp_path)
     assert (code, out.splitlines()[-1]) == (1, "1 requirement removed, 1 node changed")
-    message = "it was built, and its requirements are unknown without the side file beside it"
+    message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
     assert told == f"btq: mission.xml: {message}\n"
 
 
@@ -413,7 +413,7 @@ def test_a_missing_include_is_told(tmp_path: Path) -> None:
     (tmp_path / "b.btq").write_text("BehaviorTree Main\n    Go\n")
     code, out, told = btq("a.btq", "b.btq", cwd=tmp_path)
     assert (code, out.splitlines()[1]) == (1, "- include skills.btq removed  a.btq:1")
-    assert told == "btq: a.btq: includes `skills.btq`, which does not exist: its content cannot be compared\n"
+    assert told == "btq: a.btq: includes `skills.btq`, which does not exist: its content is not compared\n"
 
 
 def test_a_mission_and_its_xml(tmp_path: Path) -> None:
@@ -461,7 +461,7 @@ def test_a_file_with_an_error_is_compared_as_far_as_it_is_understood(tmp_path: P
     code, out, told = btq("a.btq", "b.btq", cwd=tmp_path)
     assert (code, out) == (0, "")
     assert told.startswith("btq: b.btq:3:1: ")
-    assert told.endswith("; what could be understood is compared\n")
+    assert told.endswith("; btq compares the rest\n")
 
 
 @pytest.fixture
@@ -689,7 +689,7 @@ def test_of_files_that_become_one_none_is_imported(tmp_path: Path) -> None:
     (tmp_path / "main.xml").write_text('<root BTCPP_format="4"><include path="a/x.xml"/></root>\n')
     command = [sys.executable, "-m", "btq_lang", "import", "main.xml", "a/x.xml", "b/x.xml", "-o", "fl"]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    told = "btq: b/x.xml: not imported: a/x.xml becomes fl/x.btq, too\n0 files imported\n"
+    told = "btq: b/x.xml: not imported: a/x.xml would also become fl/x.btq\n0 files imported\n"
     assert (run.returncode, run.stdout, run.stderr) == (2, "", told)
     assert not (tmp_path / "fl").exists()
 

@@ -129,7 +129,7 @@ MAIN = (
     "Root Main\nBehaviorTree Main\n    ->\n        Drive\n        SubTree Skill\n"
 )
 FILES = {"shared.btq": SHARED, "skills.btq": SKILLS, "main.btq": MAIN}
-ELSEWHERE = "`Look` is in an included file, which other missions may include; with --bundle it is enforced"
+ELSEWHERE = "`Look` is in an included file, which other missions may include; --bundle enforces it"
 
 
 def test_an_included_file_holds_what_it_asks_for_itself() -> None:
@@ -179,7 +179,7 @@ def test_included_xml_is_not_built(tmp_path: Path) -> None:
     main.write_text(f"{text}Root Main\nBehaviorTree Main\n    SubTree Part\n", encoding="utf-8")
     workspace = open_workspace(str(main))
     assert states(workspace, str(main)) == [
-        "r: monitored: `Grip` is in an XML file, which is not built; with --bundle it is enforced"
+        "r: monitored: `Grip` is in an XML file, which the build does not change; --bundle enforces it"
     ]
     assert states(workspace, str(main), bundled=True) == ["r: enforced"]
     assert '<Timeout name="r_limit" msec="5000" _btq="r">' in xml_of(workspace, str(main), bundled=True)
@@ -203,10 +203,7 @@ def test_counters_of_included_files_keep_apart() -> None:
 
 # ---- why not ----
 
-TOO_LONG = (
-    "its script would be longer than 10000 characters; "
-    "let a node work it out, and declare a signal for what that writes"
-)
+TOO_LONG = "its script would be longer than 10000 characters; compute it in a node, and declare a signal for its output"
 
 
 @pytest.mark.parametrize(
@@ -215,15 +212,21 @@ TOO_LONG = (
         ("takes at most 0.1 ms", "a Timeout cannot be set to `0.1 ms`"),
         ("takes at most 60 d", "a Timeout cannot be set to `60 d`"),
         ("takes at most 5 s\n    over last 3 runs", "a window is evaluated in the logs of many runs"),
-        ("tries at most 2\n    when on", "its scope, `when on`, is judged from the log only"),
+        ("tries at most 2\n    when on", "its scope, `when on`, is evaluated only in logs"),
         ("needs nowhere", "`nowhere` has no blackboard entry"),
-        ('keeps mode == "it\'s"', "a text in a script cannot contain a quote, and in older engines only ASCII"),
-        ('keeps mode == "größe"', "a text in a script cannot contain a quote, and in older engines only ASCII"),
+        (
+            'keeps mode == "it\'s"',
+            "a string in a script cannot contain single quotes, and before 4.9 only ASCII characters",
+        ),
+        (
+            'keeps mode == "größe"',
+            "a string in a script cannot contain single quotes, and before 4.9 only ASCII characters",
+        ),
         ("leaves large", TOO_LONG),
         ("needs nearly_as_large and nearly_as_large\n    when nearly_as_large", TOO_LONG),
         ("runs every 1 s", "BehaviorTree.CPP has no node that makes another one start in time"),
         ("starts within 1 s after Rest starts", "BehaviorTree.CPP has no node that makes another one start in time"),
-        ("follows when on", "the engine runs no script when that happens"),
+        ("follows when on", "the engine runs no script at this event"),
     ],
 )
 def test_reasons(clauses: str, why: str) -> None:
@@ -243,8 +246,8 @@ def test_a_guard_minds_no_age_and_says_so() -> None:
         f"QualityReq q\n    Move keeps speed <= 1 m/s\n    Move needs not near and speed == 0 m/s\n{FAIL}{TAIL}"
     )
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "q: enforced: `speed` is read however old it is",
-        "q: enforced: `near`, `speed` are read however old they are",
+        "q: enforced: guards read the latest value of `speed`, whatever its age",
+        "q: enforced: guards read the latest value of `near`, `speed`, whatever its age",
     ]
 
 
@@ -252,7 +255,7 @@ def test_a_node_that_is_skipped_from_within_stays_so() -> None:
     text = "QualityReq r\n    takes at most 5 s\n    on violation fail\napply r to Some\nRoot Main\nBehaviorTree Main\n"
     text += '    ?\n        -> Some\n            Move (_skipIf = "off")\n        Rest\n'
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "r: monitored: `-> Some` may be skipped from within, but a guard around it could not be"
+        "r: monitored: a node below `-> Some` may skip it, and with a guard around it the tree would behave differently"
     ]
 
 
@@ -260,7 +263,8 @@ def test_what_is_never_reset_stays_so() -> None:
     text = f"QualityReq r\n    takes at most 5 s\n{FAIL}apply r to Asked, Then\nRoot Main\nBehaviorTree Main\n"
     text += "    IfThenElse\n        Move Asked\n        Move Then\n"
     assert states(Workspace.of({"main.btq": text}), "main.btq") == [
-        "r: monitored: `Move Asked` is the condition of `IfThenElse`, which would then evaluate it in another way",
+        "r: monitored: `Move Asked` is the condition of `IfThenElse`, "
+        "which would evaluate it differently with a guard around it",
         "r: enforced",
     ]
 
@@ -282,7 +286,7 @@ def test_what_a_description_demands() -> None:
     found = states(workspace, "main.btq")
     assert found == [
         "rq1: enforced",
-        "rq1: monitored: its script is not one expression that every version of the engine reads alike",
+        "rq1: monitored: its script is not a single expression that all versions of the engine evaluate alike",
     ]
     assert 'code="(battery &gt; 20)"' in xml_of(workspace, "main.btq")
 
@@ -299,7 +303,7 @@ def test_numbers(value: float, text: str) -> None:
 
 
 def test_a_number_without_end() -> None:
-    with pytest.raises(NoScript, match="a number has no end"):
+    with pytest.raises(NoScript, match="it contains an infinite number"):
         real(float("inf"))
 
 
@@ -338,7 +342,7 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     assert btq.build("mission.btq", "--verbose")[2] == (
         "mission.btq:2:5: enforced: quick, `Move takes at most 5 s` at `Move`\n"
         f"mission.btq:5:5: monitored: calm, `Rest takes at most 2 s` at `Rest`\n{counted}{SEEN}"
-        "2 files left as they are\n"
+        "2 files unchanged\n"
     )
     assert "<!-- Nodes with _btq enforce requirements: at tick rate, so they are no safety function. -->" in btq.read(
         "mission.xml"
@@ -346,7 +350,7 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     btq.write(mission=LIKELY)
     assert btq.build("mission.btq")[2] == (
         "mission.btq:2:5: not enforced, monitored: quick, `Move takes at most 5 s` at `Move`: a probability "
-        f"is judged over many runs\nclauses of requirements: 2 monitored\n{SEEN}"
+        f"is evaluated in the logs of many runs\nclauses of requirements: 2 monitored\n{SEEN}"
     )
 
 
@@ -371,7 +375,7 @@ def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> N
     btq.write(mission=main.format(""))
     assert btq.build("mission.btq")[2] == (
         "rules.btq:3:5: not checked: quick, `succeeds` applies to no node\n"
-        f"clauses of requirements: 1 monitored, 1 without a node\n{SEEN}2 files left as they are\n"
+        f"clauses of requirements: 1 monitored, 1 without a node\n{SEEN}2 files unchanged\n"
     )
 
 

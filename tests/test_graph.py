@@ -300,7 +300,7 @@ def test_the_file_s_ending_says_the_form(ending: str, form: str, tmp_path: Path)
 def test_no_other_form_is_written_under_its_name(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.btq").write_text(MISSION)
     assert main(["graph", str(tmp_path / "a.btq"), "-o", str(tmp_path / "a.png")]) == 2
-    message = "btq graph: no .png is written, but svg, dot, mermaid: --format says which, whatever the name\n"
+    message = "btq graph: cannot write .png; choose one of svg, dot, mermaid with --format, or another file name\n"
     assert (capfd.readouterr().err, (tmp_path / "a.png").exists()) == (message, False)
 
 
@@ -309,9 +309,7 @@ def test_a_mission_is_not_overwritten(command: str, tmp_path: Path, capfd: pytes
     mission = tmp_path / "a.btq"
     mission.write_text("BehaviorTree Main\n    Go\n")
     assert main([command, str(mission), "-o", str(mission)]) == 2
-    message = (
-        f"btq {command}: {mission} has the name of a mission, which this would overwrite; choose another one for -o\n"
-    )
+    message = f"btq {command}: -o {mission} may overwrite a mission; choose another file name\n"
     assert (capfd.readouterr().err, mission.read_text()) == (message, "BehaviorTree Main\n    Go\n")
 
 
@@ -321,7 +319,7 @@ def test_what_the_command_cannot_draw(tmp_path: Path, capfd: pytest.CaptureFixtu
     assert capfd.readouterr().err.endswith("a.btq has no trees\n")
     (tmp_path / "b.btq").write_text(MISSION)
     assert main(["graph", str(tmp_path)]) == 2
-    assert capfd.readouterr().err.endswith("b.btq: one file at a time is drawn\n")
+    assert capfd.readouterr().err.endswith("b.btq: expected one file to draw, found more\n")
     assert main(["graph", str(tmp_path / "none.btq")]) == 2
     assert main(["graph", str(tmp_path / "b.btq"), "-o", str(tmp_path / "b.btq" / "c")]) == 2
     assert "cannot be written" in capfd.readouterr().err

@@ -310,7 +310,7 @@ def test_what_a_build_has_put_in_is_taken_out() -> None:
             A (_description = "mine")
             B
         """,
-        "4:8 what a build added is left out: 2 descriptions",
+        "4:8 removed what `btq build` added: 2 descriptions",
     )
 
 
@@ -375,12 +375,12 @@ def test_version_3_says_it_as_version_4_does() -> None:
         "6:17 success_threshold of Parallel is now success_count",
         "6:39 failure_threshold of Parallel is now failure_count",
         '7:32 in="key" of a SubTree names an entry: now "{key}"',
-        "7:53 `none` of a SubTree names no entry: kept as it is",
+        "7:53 `none` of a SubTree names no entry: kept unchanged",
         '7:61 __shared_blackboard is now _autoremap="true"',
         "8:23 __shared_blackboard is left out: version 4 shares only what is mapped",
         "9:8 SubTreePlus is now SubTree",
         "9:40 __autoremap is now _autoremap",
-        "10:8 BlackboardCheckInt was a node of version 3: write a Precondition with a script: kept as it is",
+        "10:8 BlackboardCheckInt was a node of version 3: write a Precondition with a script: kept unchanged",
         "15:7 the port __shared_blackboard of a SubTree's model is left out: version 4 would require it",
         keep_v3=False,
     )

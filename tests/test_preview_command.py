@@ -202,5 +202,5 @@ def test_what_cannot_be_shown(
     assert main(["preview", str(tmp_path / "main.btq"), "--port", str(port)]) == 2
     assert main(["preview", str(tmp_path / "main.btq"), "--port", "99999"]) == 2
     said = capsys.readouterr().err.splitlines()
-    assert [line.rpartition(": ")[2] for line in said[:2]] == ["no such file", "a folder"]
+    assert [line.rpartition(": ")[2] for line in said[:2]] == ["no such file", "expected a file, found a folder"]
     assert [line.split(":")[1] for line in said[2:]] == [f" port {port}", " port 99999"]

@@ -142,10 +142,10 @@ def test_the_worth_of_numbers() -> None:
 # A script, what is marked, what is said (its beginning), and what the safe fix makes of it.
 REFUSED: list[tuple[str, str, str, str | None]] = [
     # Slips with one certain meaning.
-    ('a == "x"', '"x"', "text in a script goes in single quotes", "a == 'x'"),
-    ("a == “x”", "“x”", "text in a script goes in single quotes", "a == 'x'"),
-    ("a == ‘x’", "‘x’", "text in a script goes in single quotes", "a == 'x'"),
-    ("a == &quot;x&quot;", "&quot;x&quot;", "text in a script goes in single quotes", "a == 'x'"),
+    ('a == "x"', '"x"', "strings in scripts go in single quotes", "a == 'x'"),
+    ("a == “x”", "“x”", "strings in scripts go in single quotes", "a == 'x'"),
+    ("a == ‘x’", "‘x’", "strings in scripts go in single quotes", "a == 'x'"),
+    ("a == &quot;x&quot;", "&quot;x&quot;", "strings in scripts go in single quotes", "a == 'x'"),
     ("a and b", "and", "`and` is written `&&` in a script", "a && b"),
     ("a OR b", "OR", "`OR` is written `||` in a script", "a || b"),
     ("a && not b", "not ", "`not` is written `!` in a script", "a && !b"),
@@ -174,7 +174,7 @@ REFUSED: list[tuple[str, str, str, str | None]] = [
     (
         'a == "it\'s"',
         '"it\'s"',
-        "text in a script goes in single quotes: '…'; text cannot contain a single quote",
+        "strings in scripts go in single quotes: '…'; a string cannot contain a single quote",
         None,
     ),
     ("not a == b", "not", "`not` is written `!` in a script, which binds more tightly", None),
@@ -200,8 +200,8 @@ REFUSED: list[tuple[str, str, str, str | None]] = [
     ("$x", "$", "in a script, write the entry without `$`", None),
     ("# x", "#", "scripts have no comments", None),
     ("@ := 1", "@", "`@` must be followed at once", None),
-    ("a == 'x", "'x", "missing closing quote for this text", None),
-    ('a == "x', '"x', "missing closing quote for this text", None),
+    ("a == 'x", "'x", "missing closing quote for this string", None),
+    ('a == "x', '"x', "missing closing quote for this string", None),
     # The grammar.
     ("battery > ", ">", "missing operand after `>`", None),
     ("1 +", "+", "missing operand after `+`", None),
@@ -365,7 +365,7 @@ def test_what_older_engines_read_otherwise(text: str, messages: list[str], fixed
     ("text", "message"),
     [
         ("false_alarms > 3", "4.6 and 4.8 refuse a name that begins with `true` or `false`"),
-        ("a == 'Küche'", "4.6 and 4.8 refuse a text with characters outside ASCII"),
+        ("a == 'Küche'", "4.6 and 4.8 refuse a string with characters outside ASCII"),
     ],
 )
 def test_what_older_engines_refuse_and_no_bracket_mends(text: str, message: str) -> None:
@@ -413,10 +413,10 @@ def test_a_mended_slip_does_not_hide_what_older_engines_read_otherwise() -> None
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("'ready'", "a condition must give 0 or 1: the engine fails when it meets a text"),
-        ("2", "a condition must give 0 or 1: the engine fails when it meets 2"),
-        ("x := 1; (0.5)", "a condition must give 0 or 1: the engine fails when it meets 0.5"),
-        ("a ? 'x' : true", "a condition must give 0 or 1: the engine fails when it meets a text"),
+        ("'ready'", "a condition must evaluate to 0 or 1: with a string, the engine fails at the tick"),
+        ("2", "a condition must evaluate to 0 or 1: with 2, the engine fails at the tick"),
+        ("x := 1; (0.5)", "a condition must evaluate to 0 or 1: with 0.5, the engine fails at the tick"),
+        ("a ? 'x' : true", "a condition must evaluate to 0 or 1: with a string, the engine fails at the tick"),
     ],
 )
 def test_a_value_that_is_no_condition(text: str, message: str) -> None:
@@ -429,11 +429,11 @@ def test_an_assignment_as_a_condition() -> None:
     text = "ready; x = 1"
     (problem,) = check_script(parse_script(text), expects_value=True)
     assert text[problem.span.start : problem.span.end] == "="
-    assert problem.message == "a condition that ends in an assignment: `=` changes the entry; to compare, write `==`"
+    assert problem.message == "this condition ends in an assignment: `=` changes the entry; to compare, write `==`"
     assert (problem.rule, problem.effective_severity) == ("script-error", Severity.WARNING)
     assert [(fix.safe, apply_fix(text, fix)) for fix in problem.fixes] == [(False, "ready; x == 1")]
     (problem,) = check_script(parse_script("(x := 1)"), expects_value=True)
-    assert (problem.message, problem.fixes) == ("a condition that ends in an assignment: `:=` changes the entry", ())
+    assert (problem.message, problem.fixes) == ("this condition ends in an assignment: `:=` changes the entry", ())
 
 
 @pytest.mark.parametrize("text", ["0", "1", "1.0", "true", "ready", "a > 3", "x := 3; x == 3", "a ? 0 : b", "!a"])
@@ -617,7 +617,7 @@ def test_full_brackets_mean_the_same_in_all_versions(script: Script) -> None:
     # No bracket helps a name or a text that older engines cannot read.
     assert {problem.message.partition(" refuse ")[2] for problem in problems} <= {
         "a name that begins with `true` or `false`",
-        "a text with characters outside ASCII",
+        "a string with characters outside ASCII",
     }
 
 

@@ -362,7 +362,10 @@ def test_bundles_that_hold_different_files_of_one_name_are_not_mixed(btq: Btq, c
         assert btq.build(f"{folder}/{folder}.btq", "--bundle", "-o", "out")[0] == 0
     capsys.readouterr()
     assert main(["import", "out/one.xml", "out/two.xml", "-o", "back"]) == 2
-    assert "btq: out/one.xml: not imported: out/two.xml has another back/a.btq\n" in capsys.readouterr().err
+    assert (
+        "btq: out/one.xml: not imported: the bundle out/two.xml contains another version of back/a.btq\n"
+        in capsys.readouterr().err
+    )
     assert below(btq.folder / "back") == {}
 
 
@@ -383,15 +386,15 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     xml, side = btq.folder / "out" / "main.xml", btq.folder / "out" / "main.qreq.json"
     xml.write_text(xml.read_text().replace("<Move", "<Drive"))
     assert main(["import", "out/main.xml"]) == 0
-    summary = "out/main.xml:5:27: what a build added is left out: {}\n1 file imported with 1 change\n"
-    put = "1 node that enforces, 3 descriptions"
+    summary = "out/main.xml:5:27: removed what `btq build` added: {}\n1 file imported with 1 change\n"
+    put = "1 node that enforces requirements, 3 descriptions"
     lost = "its node no longer exists: satisfices ergonomics (line 18 of the mission as built)"
     after = "Next: btq check out/main.btq\n"
     assert capsys.readouterr().err == f"out/main.xml: {lost}\n{summary.format(put)}{after}"
     side.write_text("{}")
     assert main(["import", "out/main.xml", "--force"]) == 0
-    lost = "3 nodes carried requirements or qualities: "
-    no = "out/main.qreq.json is not the one that the build wrote beside the XML"
+    lost = "the requirements or qualities of 3 nodes are lost: "
+    no = "out/main.qreq.json belongs to another build; put the one of this build there to keep them"
     assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
     side.unlink()
     assert main(["import", "out/main.xml", "--force"]) == 0
@@ -420,7 +423,7 @@ def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> 
         f"main.xml:{at['quick_limit']}:8: `quick_limit` was changed {then}"
     ]
     without = re.sub(r' *<Timeout name="quick_2.*?(<Stay[^>]*>).*?</Timeout>', r"\1", built, flags=re.DOTALL)
-    assert told(without) == [f"main.xml:{at['quick_2']}:2: `quick_2_limit` was taken out {then}"]
+    assert told(without) == [f"main.xml:{at['quick_2']}:2: `quick_2_limit` was removed {then}"]
     # Nodes that move or go with all that is around them, and other spellings, are no such change.
     guarded = re.findall(r" *<Timeout.*?</Timeout>\n", built, re.DOTALL)
     assert told(built.replace(guarded[0], "")) == []
@@ -437,10 +440,10 @@ def test_what_a_mission_includes_is_to_be_imported_too(btq: Btq, capsys: Capsys)
     capsys.readouterr()
     next_ = "Next: btq check {}/main.btq\n"
     assert main(["import", "out/main.xml"]) == 0
-    also = "also: btq import out/shared/a.xml\n"
+    also = "To import an included file: btq import out/shared/a.xml\n"
     assert capsys.readouterr().err == f"1 file imported\n{also}{next_.format('out')}"
     assert main(["import", "out/main.xml", "-o", "back"]) == 0
-    also = "also: btq import out/shared/a.xml -o back/shared\n"
+    also = "To import an included file: btq import out/shared/a.xml -o back/shared\n"
     assert capsys.readouterr().err == f"1 file imported\n{also}{next_.format('back')}"
     assert main(["import", "out/shared/a.xml", "-o", "back/shared"]) == 0
     assert main(["check", "back"]) == 0

@@ -163,7 +163,7 @@ def test_forty_contexts_are_built_and_imported(tmp_path: Path, capsys: pytest.Ca
     (tmp_path / MAIN).write_text(text, encoding="utf-8")
     assert main(["build", str(tmp_path / MAIN)]) == 0
     said = capsys.readouterr().err
-    assert said.count("its script would be longer than 10000 characters; let a node work it out") == 4
+    assert said.count("its script would be longer than 10000 characters; compute it in a node") == 4
     side = tmp_path / "main.qreq.json"
     assert len(side.read_text("utf-8")) < 20_000
     (tmp_path / MAIN).unlink()

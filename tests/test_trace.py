@@ -487,7 +487,9 @@ def test_the_command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypa
     assert (tmp_path / "docs" / "trace.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>\n")
     capfd.readouterr()
     assert main(["trace", "0.btq", "-o", "trace.pdf"]) == 2
-    assert capfd.readouterr().err.startswith("btq trace: no .pdf is written, but table, csv, json, markdown, html")
+    assert capfd.readouterr().err.startswith(
+        "btq trace: cannot write .pdf; choose one of table, csv, json, markdown, html"
+    )
     assert main(["trace", "0.btq"]) == 0
     assert capfd.readouterr().out.startswith("Requirement ")
 
@@ -526,7 +528,7 @@ def test_what_the_build_enforces(tmp_path: Path, capfd: pytest.CaptureFixture[st
     assert "--bundle" in shared_why
     assert held(tmp_path, capfd, "--bundle") == [("enforced", ""), ("enforced", "")]
     (tmp_path / "main.btq").write_text(INCLUDING + "        Drive satisfies rq9\n")
-    assert set(held(tmp_path, capfd)) == {("monitored", "nothing is built of a mission with errors")}
+    assert set(held(tmp_path, capfd)) == {("monitored", "btq build writes nothing for a mission with errors")}
 
 
 def test_a_hard_requirement_that_is_not_enforced_everywhere_is_a_gap(
@@ -606,7 +608,7 @@ def test_of_missions_with_errors_it_shows_what_it_understands(
     assert main(["trace", str(mission), "--format", "markdown"]) == 1
     out, err = capfd.readouterr()
     assert "Custom leaf nodes without any quality: `A`" in out
-    assert err == "btq trace: the missions have an error, so something may be missing: see btq check\n"
+    assert err == "btq trace: the missions have an error, so the overview may be incomplete; run btq check\n"
     assert main(["trace", str(tmp_path / "none.btq")]) == 2
     assert main(["trace", ""]) == 2
 

@@ -57,7 +57,7 @@ def test_the_engine_knows_no_namespaces() -> None:
           <x:notes>of somebody else</x:notes>
         </root>
         """
-    ignored = "warning xml-ignored «{0}» the engine ignores <{0}>: it knows no namespaces, and reads <{1}>"
+    ignored = "warning xml-ignored «{0}» the engine ignores <{0}>, because it does not support namespaces; write <{1}>"
     assert_problems(
         text,
         f"2:4 {ignored.format('x:include', 'include')}",
@@ -186,7 +186,7 @@ OLD = """\
 def test_notes_on_xml_speak_of_xml() -> None:
     main = ("unknown-main-tree", ('name the main tree with `main_tree_to_execute="…"` of <root>',))
     shortest = '`<Action ID="InitNeo4j"/>` in <TreeNodesModel>'
-    node = ("unknown-node", (f"the other nodes of this file have models; the shortest is {shortest}",))
+    node = ("unknown-node", (f"the other nodes of this file have models; to declare this one, write {shortest}",))
     why = "SequenceStar is the name of SequenceWithMemory in version 3"
     way = "`btq import` converts the file to .btq in the syntax of version 4"
     assert [(each.rule, each.notes) for each in problems(OLD)] == [main, ("not-an-engine-node", (why, way)), node]

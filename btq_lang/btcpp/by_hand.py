@@ -47,7 +47,7 @@ class ByHand(Record):
 
     @property
     def happened(self) -> str:
-        return "changed" if self.sum else "taken out"
+        return "changed" if self.sum else "removed"
 
 
 def node_guards(root: Element) -> Iterator[NodeGuards]:

@@ -74,7 +74,7 @@ def condition_script(condition: Condition, stored: Stored) -> str:
     if isinstance(condition, Script):
         return _own_script(condition)
     if isinstance(condition, Running):
-        raise NoScript("no script can tell which nodes run")
+        raise NoScript("a script cannot check whether a node runs")
     raise NoScript(f"`{condition.name}` has no value")
 
 
@@ -113,7 +113,7 @@ def signal_script(signal: Signal) -> str:
     if signal.key is None:
         raise NoScript(f"`{signal.name}` has no blackboard entry")
     if not (key.isascii() and key.isidentifier()):
-        raise NoScript(f"`{signal.name}` is read from `{key}`, which is not a name in a script")
+        raise NoScript(f"`{signal.name}` is read from `{key}`, which cannot be a name in a script")
     return f"@{key}"
 
 
@@ -134,14 +134,14 @@ def no_longer_than_allowed(script: str) -> None:
         NoScript: it is too long.
     """
     if len(script) > LONGEST:
-        what_to_do = "let a node work it out, and declare a signal for what that writes"
+        what_to_do = "compute it in a node, and declare a signal for its output"
         raise NoScript(f"its script would be longer than {LONGEST} characters; {what_to_do}")
 
 
 def real(value: float) -> str:
     """A number, as every version reads it."""
     if not -inf < value < inf:
-        raise NoScript("a number has no end")
+        raise NoScript("it contains an infinite number")
     text = repr(abs(value))
     if "e" in text:
         from decimal import Decimal
@@ -183,7 +183,7 @@ def _number(number: Number, unit: Unit | None, stored: Stored) -> str:
     if isinstance(number, Table):
         return stored(number, unit)
     if isinstance(number, Aggregate):
-        raise NoScript(f"no script can read the samples of `{number.function}({number.signal.name})`")
+        raise NoScript(f"a script cannot read the samples of `{number.function}({number.signal.name})`")
     raise NoScript(f"`{number.name}` has no value")
 
 
@@ -205,7 +205,7 @@ def _scaled(script: str, factor: float, offset: float) -> str:
 
 def _text(text: str) -> str:
     if "'" in text or not text.isascii():
-        raise NoScript("a text in a script cannot contain a quote, and in older engines only ASCII")
+        raise NoScript("a string in a script cannot contain single quotes, and before 4.9 only ASCII characters")
     return f"'{text}'"
 
 
@@ -215,14 +215,14 @@ def _own_script(script: Script) -> str:
 
     parsed = parse_script(script.code)
     if check_script(parsed, expects_value=True) or len(parsed.statements) != 1:
-        raise NoScript("its script is not one expression that every version of the engine reads alike")
+        raise NoScript("its script is not a single expression that all versions of the engine evaluate alike")
     if any(each.writes for each in variables(parsed)):
-        raise NoScript("its script changes something")
+        raise NoScript("its script changes an entry")
     return f"({script.code.strip().rstrip(';').strip()})"
 
 
 def _none_stored(_table: Table, _unit: Unit | None) -> str:
-    raise NoScript("a first value is one value")
+    raise NoScript("an initial value cannot depend on a condition")
 
 
 LONGEST: Final = 10_000  # characters: the engine reads such a script at each load, and nobody else can

@@ -268,9 +268,9 @@ class _Planner:
             self.wrappers.setdefault(id(each.node), []).append(wrapper)
         notes = [made.note] if made.note else []
         if unset := [signal.name for signal in made.signals if signal.initially is None]:
-            notes.append(f"the mission ends where {_are(unset)} read before a first sample")
+            notes.append(f"the mission ends if a guard reads {_listed(unset)} before anything writes it")
         if aging := [signal.name for signal in made.signals if signal.fresh is not None]:
-            notes.append(f"{_are(aging)} read however old {'it is' if len(aging) == 1 else 'they are'}")
+            notes.append(f"guards read the latest value of {_listed(aging)}, whatever its age")
         return "; ".join(notes)
 
 
@@ -298,9 +298,8 @@ class _Looks:
         return self._found.mission
 
 
-def _are(names: Sequence[str]) -> str:
-    """`a` is; `a`, `b` are"""
-    return f"{', '.join(f'`{name}`' for name in names)} {'is' if len(names) == 1 else 'are'}"
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
 
 
 # ---- what is put around nodes ----

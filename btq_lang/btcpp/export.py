@@ -146,7 +146,7 @@ def _models(source: Source, entry: Entry, item: ModelsItem, contents: list[Conte
     """`TreeNodesModel`: the engine takes one."""
     around = source.around(entry, item)
     if models.palettes and not source.verbatim:
-        message = "its models are written in the first TreeNodesModel: the engine takes one"
+        message = "its models move to the first TreeNodesModel: the engine accepts only one"
         source.repair(entry, item, message)
         element = models.palettes[0]
         contents += source.written((*around.before, *around.within, *around.behind))

@@ -35,11 +35,15 @@ def without_generated(document: Document, changes: list[Change]) -> int:
                 break
     if enforcing or described:
         parts = [
-            *((_counted(len(enforcing), "node that enforces", "nodes that enforce"),) if enforcing else ()),
+            *(
+                (_counted(len(enforcing), "node that enforces requirements", "nodes that enforce requirements"),)
+                if enforcing
+                else ()
+            ),
             *((_counted(len(described), "description", "descriptions"),) if described else ()),
         ]
         first = min((*enforcing, *described))
-        changes.append(Change(first, f"what a build added is left out: {', '.join(parts)}"))
+        changes.append(Change(first, f"removed what `btq build` added: {', '.join(parts)}"))
     return len(described)
 
 

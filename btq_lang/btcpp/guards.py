@@ -188,13 +188,13 @@ class _Draft:
     def unscoped(self) -> None:
         """The clause is one that a scope cannot be told of."""
         if self.requirement.scopes:
-            raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is judged from the log only")
+            raise NotEnforced(f"its scope, `{self.requirement.scopes[0].text}`, is evaluated only in logs")
 
     def _scopes(self) -> str | None:
         script: str | None = None
         for scope in self.requirement.scopes:
             if scope.word == "while":
-                raise NotEnforced(f"whether an activation was within `{scope.text}` is known only when it is over")
+                raise NotEnforced(f"whether `{scope.text}` holds during a whole activation is known only at its end")
             one = self.script(scope.condition)
             script = one if script is None else f"({script} && {one})"
         return script
@@ -208,7 +208,7 @@ def _takes(draft: _Draft) -> None:
     when = draft.when()
     _limit(draft, _upper(draft), when)
     if isinstance(draft.claim.subject, Span):
-        draft.noted(f"as a bound on {draft.node.shown}, anew whenever that starts")
+        draft.noted(f"as a limit on {draft.node.shown}, which restarts whenever {draft.node.shown} starts")
 
 
 def _succeeds(draft: _Draft) -> None:
@@ -248,7 +248,7 @@ def _limit(draft: _Draft, bound: Limit, when: str | None) -> None:
 
 def _milliseconds(value: Bounded) -> str:
     if not isinstance(value, Value):
-        raise NotEnforced("a Timeout takes a whole number of milliseconds, and no signal's value")
+        raise NotEnforced("a Timeout takes a whole number of milliseconds, not the value of a signal")
     whole = int(value.si * 1000 + 1e-6)
     if not 0 < whole < 2**32:
         raise NotEnforced(f"a Timeout cannot be set to `{value.text}`")
@@ -305,7 +305,7 @@ def _tries(draft: _Draft) -> None:
     per = draft.claim.per
     holder = per.node if isinstance(per, Target) else None
     if isinstance(per, Target) and per.through:
-        raise NotEnforced("it counts only in some instances of a node")
+        raise NotEnforced("its `per` names only some instances of a node")
     count = draft.cell("count", "0.0", holder)
     most = value_script(bound.value, None, draft.stored)
     code = f"(({count} + 1.0) {bound.relation} {most})"
@@ -326,9 +326,9 @@ def _follows(draft: _Draft) -> None:
     if isinstance(subject, Mission) and event.happening == "starts":
         draft.cell("seen", "true")
     elif not isinstance(subject, Target) or event.happening not in _SEEN:
-        raise NotEnforced("the engine runs no script when that happens")
+        raise NotEnforced("the engine runs no script at this event")
     elif subject.through:
-        raise NotEnforced("it follows only some instances of a node")
+        raise NotEnforced("its event names only some instances of a node")
     first = "true" if isinstance(subject, Mission) else "false"
     seen = draft.cell("seen", first)
     draft.around(CONDITION, "Sequence", "follows", before=(draft.condition("check", f"({seen} == true)"),))
@@ -358,7 +358,7 @@ def _upper(draft: _Draft) -> Limit:
         raise NotEnforced("the engine can stop a node, but cannot make it do more")
     if limit.upper is None:
         return limit
-    draft.noted("its lower end is monitored")
+    draft.noted("its lower bound is only monitored")
     return Limit("<=", limit.upper)
 
 

@@ -200,7 +200,7 @@ class _Writer:
         if meant == element.tag or meant not in ("BehaviorTree", "include", "TreeNodesModel"):
             return
         span = Span(element.start + 1, element.start + 1 + len(element.tag))
-        message = f"the engine ignores <{element.tag}>: it knows no namespaces, and reads <{meant}>"
+        message = f"the engine ignores <{element.tag}>, because it does not support namespaces; write <{meant}>"
         self.ignored.append(Diagnostic("xml-ignored", span, message))
 
     def first(self, element: Element, key: str) -> Attribute | None:
@@ -415,7 +415,7 @@ class _Writer:
         if self.marks is not None:
             self.marks.append((line, column, None, [(said, (content.start, end))], (), None, ""))
         if "*/" in content.text and not is_kept(content.text):
-            message = "`*/` in a comment is written `* /`, or the comment loses its last space"
+            message = "a `*/` in this comment is written `* /`, or the comment loses its last space"
             self.changes.append(Change(Span(content.start, end), message))
 
     def blank_line(self) -> None:

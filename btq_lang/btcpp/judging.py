@@ -84,7 +84,7 @@ class Judge:
         """
         requirement, subject = applied.requirement, applied.subject
         if requirement.odds is not None:
-            raise NotEnforced("a probability is judged over many runs")
+            raise NotEnforced("a probability is evaluated in the logs of many runs")
         if requirement.window is not None:
             raise NotEnforced("a window is evaluated in the logs of many runs")
         if isinstance(subject, Target) and subject.through:
@@ -92,9 +92,9 @@ class Judge:
         if isinstance(subject, Span) and claim.verb == "takes" and (node := self._looks.of_span(subject)) is not None:
             return node
         if not isinstance(subject, Target | Mission):
-            raise NotEnforced("it bounds the time between nodes, where no guard fits")
+            raise NotEnforced("it limits the time between nodes, and no node encloses that time")
         if subject.node is None:
-            raise NoBeginning("it is unclear which tree is the mission")
+            raise NoBeginning("the main tree is unknown; name it with a line `Root <tree>`")
         return subject.node
 
     def needs(
@@ -120,7 +120,7 @@ class Judge:
             first |= _first_value(signal)
         if (first or made.cells or made.stop) and not self._is_shared:
             if not self._looks.begins():
-                raise NoBeginning("it is unclear which tree is the mission, and where it begins")
+                raise NoBeginning("the main tree is unknown; name it with a line `Root <tree>`")
             if made.stop is not None:
                 mission = self._looks.mission()
                 assert mission is not None, "there is a mission that begins"
@@ -131,8 +131,8 @@ class Judge:
 def where_else(workspace: Workspace, node: SourceNode) -> str:
     """Why nothing is put around a node of another file where each file is written by itself."""
     if workspace.files[node.path].origin is not None:
-        return f"{node.shown} is in an XML file, which is not built; with --bundle it is enforced"
-    return f"{node.shown} is in an included file, which other missions may include; with --bundle it is enforced"
+        return f"{node.shown} is in an XML file, which the build does not change; --bundle enforces it"
+    return f"{node.shown} is in an included file, which other missions may include; --bundle enforces it"
 
 
 def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
@@ -142,16 +142,22 @@ def _can_stand_around(node: SourceNode, is_skipped_inside: bool) -> None:
         NotEnforced: it does not.
     """
     if is_skipped_inside:
-        raise NotEnforced(f"{node.shown} may be skipped from within, but a guard around it could not be")
+        raise NotEnforced(
+            f"a node below {node.shown} may skip it, and with a guard around it the tree would behave differently"
+        )
     names = [pair.key.text for pair in node.node.attributes]
     if may_be_skipped(names) and (said := next((name for name in names if name in _POSTCONDITIONS), None)):
-        raise NotEnforced(f"{node.shown} may be skipped and has `{said}`")
+        raise NotEnforced(
+            f"{node.shown} may be skipped and has `{said}`, so with a guard around it the tree would behave differently"
+        )
     # Nobody resets the condition of these: when it is asked again, an action says what it said before, and `_failureIf`
     # is not looked at.  With something around it, it would be reset.
     asks = node.parent if node.parent is not None and node.parent.tag in ("IfThenElse", "WhileDoElse") else None
     is_asked_anew = node.category in _ASKED_ANEW and "_failureIf" not in names and "_successIf" not in names
     if asks is not None and node.index == 0 and not is_asked_anew:
-        raise NotEnforced(f"{node.shown} is the condition of {asks.shown}, which would then evaluate it in another way")
+        raise NotEnforced(
+            f"{node.shown} is the condition of {asks.shown}, which would evaluate it differently with a guard around it"
+        )
 
 
 def _first_value(signal: Signal) -> dict[str, str]:

@@ -106,7 +106,7 @@ class Source:
 
     def respelt(self, entry: Entry, part: Part, said: str, written: str) -> None:
         """A constant of a subtree's port is spelt as another type."""
-        why = "4.9.1 and later would take it for a number of another type than the node below"
+        why = "4.9.1 and later would read it as another type than the node below expects"
         self.repair(entry, part, f"`{said}` is written as `{written}`: {why}")
 
     def raw(self, entry: Entry, verbatim: Verbatim) -> Raw:

@@ -183,7 +183,7 @@ class Trees:
         if other is not None:
             self._source.problem(entry, name, f"`{other}` and `{text}` both become the node ID `{tag}`")
         elif tag in BUILTINS:
-            self._source.problem(entry, name, f"`{text}` becomes the node ID `{tag}`, which is a node of the engine")
+            self._source.problem(entry, name, f"`{text}` becomes the node ID `{tag}`, which is a built-in node")
         self._placeholders[name.raw] = text, tag
         return text, tag
 
@@ -230,7 +230,9 @@ class Trees:
             number += 1
         unique = f"{text}_{number}"
         self._names.add(unique)
-        message = f"the second SubTree `{text}` of this tree is written as `{unique}`: the engine refuses two"
+        message = (
+            f"the second SubTree `{text}` of this tree is written as `{unique}`: the engine refuses two of one name"
+        )
         self._source.repair(entry, name, message)
         return [Attribute("name", escape(unique)) if each.name == "name" else each for each in attributes]
 

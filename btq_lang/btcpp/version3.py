@@ -77,7 +77,7 @@ class _Translator:
             self.rename(is_explicit, known.replacement)
             identity = known.replacement
         elif known is not None and known.word in _GONE:
-            self.tell(f"{known.why}: kept as it is")
+            self.tell(f"{known.why}: kept unchanged")
         for attribute in element.attributes:
             port = OLD_PORTS.get((identity or "", attribute.name))
             if port is not None:
@@ -116,7 +116,7 @@ class _Translator:
             elif is_plus or key in ("ID", "name") or key.startswith("_") or said.startswith("{"):
                 found.append(attribute)
             elif said == "":
-                self.tell(f"`{key}` of a SubTree names no entry: kept as it is", attribute)
+                self.tell(f"`{key}` of a SubTree names no entry: kept unchanged", attribute)
                 found.append(attribute)
             else:
                 self.tell(f'{key}="{attribute.raw}" of a SubTree names an entry: now "{{{attribute.raw}}}"', attribute)

@@ -36,13 +36,23 @@ class AttributeKind(Record):
 _KINDS: Final = (
     # In the order in which the engine looks at them, whatever the order in the file.
     AttributeKind(
-        "_failureIf", "pre", "FAILURE without a tick, if true when the node starts; not checked while it runs"
+        "_failureIf",
+        "pre",
+        "if true when the node starts, the node returns FAILURE without a tick; not checked while it runs",
     ),
     AttributeKind(
-        "_successIf", "pre", "SUCCESS without a tick, if true when the node starts; not checked while it runs"
+        "_successIf",
+        "pre",
+        "if true when the node starts, the node returns SUCCESS without a tick; not checked while it runs",
     ),
-    AttributeKind("_skipIf", "pre", "SKIPPED without a tick, if true when the node starts; not checked while it runs"),
-    AttributeKind("_while", "pre", "checked at every tick; once false, the node is halted and SKIPPED, not failed"),
+    AttributeKind(
+        "_skipIf",
+        "pre",
+        "if true when the node starts, the node returns SKIPPED without a tick; not checked while it runs",
+    ),
+    AttributeKind(
+        "_while", "pre", "checked at every tick; when it is false, the node is halted and returns SKIPPED, not FAILURE"
+    ),
     AttributeKind("_onHalted", "post", "runs when the node is halted, also at the end of a tree that never reached it"),
     AttributeKind("_onSuccess", "post", "runs after the node has succeeded"),
     AttributeKind("_onFailure", "post", "runs after the node has failed"),
@@ -57,7 +67,7 @@ _KINDS: Final = (
     AttributeKind("_uid", "tool", "the number of a node, in the XML of a log"),
     AttributeKind("_btq", "tool", "the requirement that a generated node enforces"),
     AttributeKind(
-        "__shared_blackboard", "tool", "version 3 shared the blackboard; version 4 ignores it: use _autoremap"
+        "__shared_blackboard", "tool", "shared the blackboard in version 3; version 4 ignores it: use _autoremap"
     ),
     AttributeKind("__autoremap", "tool", "the name of _autoremap in version 3; version 4 ignores it"),
 )

@@ -96,9 +96,9 @@ _CONTROL: Final = (
         (1, None),
         "A Sequence that starts with its first child at every tick.",
         "Conditions in front of an action are checked at every tick while the action runs, and one that fails "
-        "halts it: this is how to keep a condition. Give it only one asynchronous child, the last one: a "
-        "child that returns RUNNING halts all others, so two of them restart each other forever. From 4.7 on "
-        "the engine refuses a child in the explicit form (<Action ID=…>) directly inside it.",
+        "halts it: this is how to keep a condition. Give it only one asynchronous child, the last one: "
+        "when a child returns RUNNING, the node halts all others, so two of them restart each other forever. "
+        "From 4.7 on the engine refuses a child in the explicit form (<Action ID=…>) directly inside it.",
         symbols=("R->", "R→"),
         reactive=True,
     ),
@@ -108,8 +108,8 @@ _CONTROL: Final = (
         (1, None),
         "A Fallback that starts with its first child at every tick.",
         "A condition in front of an action is checked at every tick while the action runs, and halts it when "
-        "it becomes true. Give it only one asynchronous child, the last one: a child that returns RUNNING "
-        "halts all others.",
+        "it becomes true. Give it only one asynchronous child, the last one: when a child returns RUNNING, "
+        "the node halts all others.",
         symbols=("R?",),
         reactive=True,
     ),
@@ -169,11 +169,11 @@ _CONTROL: Final = (
             f"Switch{cases}",
             "Control",
             (cases + 1, cases + 1),
-            f"Ticks the one of {cases} children whose case equals a variable, or the last.",
+            f"Chooses a child by comparing a variable with {cases} cases; the last is the default.",
             f"One child for each of the {cases} cases and a last one, the default. The variable is compared with "
-            "case_1, case_2 … as text, as numbers and as names of enums, at every tick: when another case fits, the "
-            "child that runs is halted. An absent variable, or no case that fits, means the default. Another number "
-            "of children is noticed at the first tick only.",
+            "case_1, case_2 … as text, as numbers and as names of enums, at every tick: when another case matches, the "
+            "running child is halted. If the variable does not exist or no case matches, the last child runs. The "
+            "engine checks the number of children only at the first tick.",
             (
                 _input("variable", _STRING, "The value to compare, usually a blackboard entry"),
                 *(_input(f"case_{n}", _STRING, f"The value that chooses child {n}") for n in range(1, cases + 1)),
@@ -206,9 +206,9 @@ def _loop(suffix: str, type_: str, queue_before: str, aliases: tuple[str, ...] =
         (1, 1),
         f"Ticks its child once for each item of a queue of {type_}.",
         "Takes an item from the front of the queue, writes it to value, and ticks the child with it; it "
-        "returns RUNNING between two items, so it handles one item a tick. A child that fails ends the loop "
-        "with FAILURE. An empty queue returns if_empty, also at the end of a loop. A literal queue is a list "
-        "with semicolons (1;2;3).",
+        "returns RUNNING between two items, so it handles one item per tick. A child that fails ends the loop "
+        "with FAILURE. If the queue is empty, also at the end of a loop, it returns if_empty. A literal queue is a "
+        "list with semicolons (1;2;3).",
         (
             PortKind(
                 "queue",
@@ -326,9 +326,9 @@ _DECORATORS: Final = (
         "Decorator",
         (1, 1),
         "Ticks its child only if a script is true.",
-        "Otherwise it returns else. From 4.7 on the engine checks the script only when the child starts, so "
-        "it does not guard a running action (4.6 checks it at every tick): for that, put a ScriptCondition in "
-        "front of it in a ReactiveSequence.",
+        "Otherwise it returns the value of else. From 4.7 on the engine checks the script only when the child "
+        "starts, so it does not guard a running action (4.6 checks it at every tick): for that, put a "
+        "ScriptCondition in front of it in a ReactiveSequence.",
         (
             _script("if", _STRING, "The condition"),
             _result("else", "The result of a false condition: SUCCESS, FAILURE, RUNNING or SKIPPED", "FAILURE"),

@@ -322,8 +322,8 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
         (
             "halts",
             "follows Pick halts",
-            "it is stopped while it runs",
-            "another node or the program stops the node while it runs",
+            "it is halted while it runs",
+            "another node or the program halts the node while it runs",
         ),
         ("when", "starts within 1 s after when humans_near", "a condition", "a condition becomes true"),
     ),

@@ -205,10 +205,10 @@ def _of_other_edition(old: Quality, index: _Index) -> QualityMatch:
     same = len(candidates) == 1 and _are_equal(old.id, candidates[0].id)
     if index.edition == "2023":
         told = f"`{old.id}` is a name of {old.source}"
-        told += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has nothing in its place"
+        told += f"; in 2023 it is {'' if same else 'nearest to '}{now}" if now else "; 2023 has no counterpart"
     else:
         told = f"`{old.id}` is new in {old.source}"
-        told += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has nothing in its place"
+        told += f"; in 2011 it was {'' if same else 'nearest to '}{now}" if now else "; 2011 has no counterpart"
     return QualityMatch("other-edition", candidates[0] if same else old, candidates, same, told)
 
 

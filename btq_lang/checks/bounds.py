@@ -99,7 +99,7 @@ def _count(
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
         if isinstance(claim.per, Word) and number > 0:
-            notes = ("write a whole number per a longer time: `runs at least 1 per 2 s`",)
+            notes = ("write a whole number and a longer time: `runs at least 1 per 2 s`",)
     elif what == "attempts" and not is_lower and number < 1 and not _has_scope(requirement):
         message = "a node that starts makes at least one attempt, so only a node that never starts keeps this bound"
         notes = ("the first start counts as well: write `tries at most 1` to allow no second one",)

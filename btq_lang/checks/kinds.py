@@ -148,7 +148,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
         fits = least <= len(seen.node.children) and (most is None or len(seen.node.children) <= most)
         safe = category != "SubTree" and (fits or seen.kind is not None)
         fix = replace_fix(f"Replace it with `{category}`", written_as.span, category, safe=safe)
-        message = f"{seen.shown} is written as {written_as.raw}, but {who} {category}"
+        message = f"{seen.shown} is written as {written_as.raw}, but {who} it as {category}"
         related = model_related(view, seen, "the model")
         yield Diagnostic("category-mismatch", written_as.span, message, related=related, fixes=(fix,))
 
@@ -284,7 +284,7 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
         if view.is_xml:
             shortest = f'`<{category} ID="{name.text}"/>` in <TreeNodesModel>'
         others = "the other nodes of this file" if has_palette else "most nodes of this file"
-        notes = (f"{others} have models; the shortest is {shortest}",)
+        notes = (f"{others} have models; to declare this one, write {shortest}",)
     severity = None if likely or has_palette else Severity.HINT
     message = f"unknown node `{name.text}`{did_you_mean(likely)}"
     yield Diagnostic("unknown-node", name.span, message, notes=notes, fixes=fixes, severity=severity)

@@ -126,7 +126,8 @@ def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) 
         message,
         related=(Related(Place(first.head.span), "restarts"),),
         notes=(
-            f"{seen.shown} starts with its first child at every tick; a child that returns RUNNING halts all others",
+            f"{seen.shown} starts with its first child at every tick; when a child returns RUNNING, it halts all "
+            "others",
             f"only the last child of {seen.shown} should run over several ticks; put the steps of a plan into a `->`",
         ),
         severity=None if surely else Severity.HINT,

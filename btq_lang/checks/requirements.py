@@ -54,7 +54,7 @@ def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "conflicting-requirement",
                 symbol.span,
-                f"the requirement `{symbol.name}` has another definition that differs",
+                f"conflicting definitions of the requirement `{symbol.name}`",
                 related=(view.defined_at(counts, _COUNTS),),
                 notes=(_other_way(entry, symbol),),
             )

@@ -26,7 +26,7 @@ def run_again(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched:
             yield from collect([path], find_project(absolute(path)).project)[0]
 
     changes = watch(files, stamp, time.sleep, time.monotonic)
-    print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+    print("Watching for changes; press Ctrl+C to stop", file=sys.stderr)
     try:
         for changed in changes:
             names = ", ".join(shown(path) for path in changed[:3]) + (", …" if len(changed) > 3 else "")

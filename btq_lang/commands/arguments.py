@@ -75,7 +75,7 @@ def _add_paths(parser: ArgumentParser) -> None:
         "paths", nargs="*", default=["."], metavar="PATH", help="files and folders, `-` for standard input; default: ."
     )
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
     )
 
 
@@ -83,17 +83,19 @@ def _add_check(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "check",
-        "find what is wrong with missions, before the robot does",
-        epilog="exit codes: 0 clean, or nothing worse than hints; 1 errors or warnings; 2 usage or I/O\n\n"
+        "find mistakes in missions before the robot does",
+        epilog="exit codes: 0 clean, or only infos and hints; 1 errors or warnings; 2 usage or I/O\n\n"
         "examples:\n  btq check                          the project in this folder\n"
         "  btq check --fix mission.btq        and apply the safe fixes\n"
         "  btq check --output-format github   annotations in a pull request\n",
     )
     _add_paths(parser)
     parser.add_argument("--output-format", choices=FORMATS, help="default: full")
-    parser.add_argument("--select", action="append", metavar="RULES", help="only these rules, with commas")
-    parser.add_argument("--ignore", action="append", metavar="RULES", help="all but these rules, with commas")
-    parser.add_argument("--severity", choices=SEVERITIES, help="report this and worse; default: hint")
+    parser.add_argument("--select", action="append", metavar="RULES", help="only these rules, separated by commas")
+    parser.add_argument(
+        "--ignore", action="append", metavar="RULES", help="all rules except these, separated by commas"
+    )
+    parser.add_argument("--severity", choices=SEVERITIES, help="report this severity and worse; default: hint")
     parser.add_argument("--fix", action="store_true", help="apply the safe fixes")
     parser.add_argument("--watch", action="store_true", help="check again whenever a file changes")
     parser.add_argument("--jobs", type=int, metavar="N", help="number of processes; default: chosen by btq")
@@ -126,21 +128,21 @@ def _add_build(commands: _SubParsersAction[Parser]) -> None:
         epilog="exit codes: 0 written, 1 errors in the missions or (--check) files out of date, 2 usage or I/O\n\n"
         "examples:\n  btq build mission.btq              mission.xml, and one file for each included one\n"
         "  btq build missions -o install      below another folder\n"
-        "  btq build --check                  in CI: is the XML what the missions say?\n",
+        "  btq build --check                  in CI: does the XML match the missions?\n",
     )
     _add_paths(parser)
     _add_folder(parser, "FOLDER", "where to write; default: beside the missions")
-    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all that it includes")
+    parser.add_argument("--bundle", action="store_true", help="each mission in one file with all its includes")
     parser.add_argument("--target", choices=TARGETS, help="the engine's version; default: the project's newest")
     parser.add_argument(
-        "--no-enforce", action="store_true", help="the plain tree: nothing around nodes for requirements"
+        "--no-enforce", action="store_true", help="the plain tree, without the nodes that enforce requirements"
     )
     parser.add_argument(
         "--verbatim", action="store_true", help="exactly the content of the file: no repairs and no additions"
     )
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file is not up to date")
     parser.add_argument("--force", action="store_true", help="overwrite XML that btq did not write")
-    parser.add_argument("--verbose", action="store_true", help="show how every clause is enforced")
+    parser.add_argument("--verbose", action="store_true", help="show for every clause whether and how it is enforced")
     parser.add_argument("--watch", action="store_true", help="build again whenever a file changes")
     parser.set_defaults(report="full")  # editors want a line for each error
     _add_color(parser)
@@ -151,7 +153,7 @@ def _add_folder(parser: ArgumentParser, metavar: str, help: str) -> None:
         if path == "-":
             raise ArgumentTypeError("expected a folder; input from `-` goes to standard output")
         if path.endswith((".btq", ".xml")) and not os.path.isdir(path):
-            raise ArgumentTypeError("expected a folder, in which each file keeps its name")
+            raise ArgumentTypeError("expected a folder; each file keeps its name there")
         return path
 
     parser.add_argument("-o", "--output", type=folder, metavar=metavar, help=help)
@@ -185,8 +187,8 @@ def _add_trace(commands: _SubParsersAction[Parser]) -> None:
         "  btq trace --format markdown             for a pull request\n",
     )
     _add_paths(parser)
-    parser.add_argument("--bundle", action="store_true", help="what is enforced where missions are built with --bundle")
-    parser.add_argument("--format", choices=TRACE_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add_argument("--bundle", action="store_true", help="what is enforced in builds with --bundle")
+    parser.add_argument("--format", choices=TRACE_FORMATS, help="default: by the suffix of the -o file, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
 
@@ -213,7 +215,9 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         help="the mission, may be repeated; default: all of the project, and those of side files beside the logs",
     )
     parser.add_argument(
-        "--signals", metavar="FILE", help="samples as CSV: seconds since the epoch, then a column a signal or entry"
+        "--signals",
+        metavar="FILE",
+        help="samples as CSV: seconds since the epoch, then one column for each signal or entry",
     )
     parser.add_argument("--format", choices=EVIDENCE_FORMATS, help="default: table")
     parser.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
@@ -231,12 +235,12 @@ def _add_graph(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("paths", nargs=1, metavar="FILE", help="the mission, `-` for standard input")
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
     )
-    parser.add_argument("--format", choices=GRAPH_FORMATS, help="default: as the file of -o ends, else svg")
-    parser.add_argument("--qualities", action="store_true", help="with qualities and requirements beside their nodes")
+    parser.add_argument("--format", choices=GRAPH_FORMATS, help="default: by the suffix of the -o file, else svg")
+    parser.add_argument("--qualities", action="store_true", help="show qualities and requirements beside their nodes")
     parser.add_argument(
-        "--direction", choices=DIRECTIONS, default="down", help="where children are drawn; default: down"
+        "--direction", choices=DIRECTIONS, default="down", help="the position of the children; default: down"
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
     _add_color(parser)
@@ -246,7 +250,7 @@ def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "preview",
-        "show a mission's trees in a browser, drawn again whenever a file is saved",
+        "show a mission's trees in a browser, redrawn whenever a file is saved",
         epilog="exit codes: 0 ended by Ctrl+C, 2 usage or I/O\n\n"
         "examples:\n  btq preview mission.btq --open\n"
         "  btq preview mission.btq --on-click 'emacsclient -n +{line}:{column} {file}'\n",
@@ -257,12 +261,14 @@ def _add_preview(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument("--open", action="store_true", help="show it in the browser")
     parser.add_argument(
-        "--on-click", metavar="COMMAND", help="run for a click on a node, with {file}, {line} and {column}; no shell"
+        "--on-click",
+        metavar="COMMAND",
+        help="the command to run on a click on a node, with {file}, {line} and {column}; no shell",
     )
     parser.add_argument(
         "--follow",
         action="store_true",
-        help='for an editor: read {"line": N} and {"text": "…"} from standard input, a JSON object a line; end with it',
+        help='for an editor: read {"line": N} and {"text": "…"} from standard input, an object a line, until it closes',
     )
 
 
@@ -284,7 +290,7 @@ def _add_diff(commands: _SubParsersAction[Parser]) -> None:
         help="two files or folders, `-` for standard input; with --git any number, default: .",
     )
     parser.add_argument(
-        "--stdin-filename", metavar="FILE", help="the file name to assume for standard input, for its includes"
+        "--stdin-filename", metavar="FILE", help="the file name of standard input, for resolving its includes"
     )
     parser.add_argument(
         "--git", metavar="REV", help="compare revisions: REV with the working tree, REV..REV, or REV...REV"
@@ -301,7 +307,7 @@ def _add_explain(commands: _SubParsersAction[Parser]) -> None:
         epilog="examples:\n  btq explain unknown-port\n  btq explain '->'\n  btq explain time-behaviour\n"
         "  btq explain on violation\n",
     )
-    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="nothing: list them all")
+    parser.add_argument("subject", nargs="*", metavar="RULE|NODE|QUALITY|WORD", help="default: list them all")
     _add_color(parser)
 
 
@@ -309,8 +315,8 @@ def _add_init(commands: _SubParsersAction[Parser]) -> None:
     parser = _command(
         commands,
         "init",
-        "create a project that checks clean",
-        epilog="exit codes: 0 created; 2 usage or I/O, also where a project exists already\n\n"
+        "create a project without findings",
+        epilog="exit codes: 0 created; 2 usage or I/O, or the project exists already\n\n"
         "example:\n  btq init my-robot && btq check my-robot\n",
     )
     parser.add_argument("folder", nargs="?", default=".", metavar="FOLDER", help="default: .")

@@ -141,7 +141,7 @@ def build(options: Namespace, files: Files) -> Outcome:
             outputs += _outputs(group.workspace, path, places, exports, options)
     gone = () if options.output else left_over(os.path.dirname(path) for path in sources)
     for path in gone:
-        print(f"left over: {shown(path)}", file=sys.stdout if options.check else sys.stderr)
+        print(f"stale: {shown(path)}", file=sys.stdout if options.check else sys.stderr)
     code = _compare(outputs, bool(gone)) if options.check else _write(outputs, options)
     return Outcome(code, watched, tuple(output.path for output in outputs if output.text is not None))
 
@@ -262,8 +262,8 @@ def _tell_guessed(exports: list[Export]) -> None:
     if len(guessed) > len(shown):
         shown.append(f"{len(guessed) - len(shown)} more")
     if shown:
-        which = "declare those that are something else, as in `Condition Name`"
-        print(f"models guessed from how nodes are used: {', '.join(shown)}; {which}", file=sys.stderr)
+        which = "declare a node whose category is wrong, for example `Condition Name`"
+        print(f"categories guessed from the use of the nodes: {', '.join(shown)}; {which}", file=sys.stderr)
 
 
 def _absolute(place: Place, groups: tuple[Group, ...]) -> tuple[str, Span]:
@@ -360,7 +360,7 @@ def _compare(outputs: list[Output], is_more_stale: bool) -> int:
     """`--check`: name the files that are not what they would be, or would not be."""
     stale = [output for output in outputs if output.text != output.old]
     for output in stale:
-        state = "missing" if output.old is None else "out of date" if output.text is not None else "left over"
+        state = "missing" if output.old is None else "out of date" if output.text is not None else "stale"
         print(f"{state}: {shown(output.path)}")
     return int(bool(stale) or is_more_stale)
 
@@ -390,7 +390,7 @@ def _write(outputs: list[Output], options: Namespace) -> int:
         print(f"{'wrote' if output.text is not None else 'removed'} {shown(output.path)}")
     same = len(outputs) - len(changed)
     if same:
-        print(f"{same} file{'' if same == 1 else 's'} left as {'it is' if same == 1 else 'they are'}", file=sys.stderr)
+        print(f"{same} file{'' if same == 1 else 's'} unchanged", file=sys.stderr)
     return 0
 
 
@@ -417,7 +417,7 @@ def _take_back(outputs: list[Output]) -> None:
         try:
             _put(output.path, output.old)
         except OSError as error:
-            problem = LoadProblem(output.path, f"was changed and cannot be put back: {error.strerror}")
+            problem = LoadProblem(output.path, f"was changed and cannot be restored: {error.strerror}")
             print(f"btq: {problem}", file=sys.stderr)
 
 

@@ -65,13 +65,13 @@ def _warn(side: Side) -> None:
         for include in file.includes:
             is_packaged = any(pair.key.text == "ros_pkg" for pair in include.attributes)
             if include.path is not None and not is_packaged and side.workspace.included_by(path, include) is None:
-                message = f"includes `{include.path.text}`, which does not exist: its content cannot be compared"
+                message = f"includes `{include.path.text}`, which does not exist: its content is not compared"
                 print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if file.origin is not None and DESCRIPTION_MARK in file.source:
-            message = "it was built, and its requirements are unknown without the side file beside it"
+            message = "its requirements are missing: `btq build` wrote them to the .qreq.json that was beside it"
             print(f"btq: {side.shown(path)}: {message}", file=sys.stderr)
         if error := _first_error(file):
-            print(f"btq: {side.shown(path)}:{error}; what could be understood is compared", file=sys.stderr)
+            print(f"btq: {side.shown(path)}:{error}; btq compares the rest", file=sys.stderr)
 
 
 def _first_error(file: File) -> str | None:

@@ -34,7 +34,7 @@ def run(options: Namespace) -> int:
         unknown = [name for name, found in by_name.items() if not found]
     for name in unknown:
         likely = _likely(name)
-        meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all there is"
+        meant = f"; did you mean {', '.join(likely)}?" if likely else "; `btq explain` lists all names"
         print(f"btq explain: unknown name `{name}`{meant}", file=sys.stderr)
     bold = options.color == "always" or (options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ))
     for number, text in enumerate(pages):
@@ -73,9 +73,7 @@ def _node(kind: NodeKind) -> Iterator[str]:
     yield ""
     yield f"written:  {'  '.join(spellings(kind))}"
     least, most = kind.children
-    children = (
-        "any number, one at least" if most is None and least == 1 else f"{least} or more" if most is None else None
-    )
+    children = "one or more" if most is None and least == 1 else f"{least} or more" if most is None else None
     yield f"children: {children or (least if least == most else f'{least} to {most}')}"
     yield f"since:    BehaviorTree.CPP {kind.since}"
     for port in kind.ports:
@@ -128,7 +126,7 @@ def _type(name: str) -> Iterator[str]:
     if name and name[0].isalpha() and is_known_type(plain_type(name)):
         yield (
             f"# {name} (type of a port)\n\n    input x : {name if is_name(name.replace('::', '')) else quote(name)}\n\n"
-            f"A type of C++ that the engine reads from a text, so values of such a port are checked."
+            f"A C++ type that the engine converts from a string, so btq checks the values of such a port."
         )
 
 

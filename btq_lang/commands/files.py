@@ -47,7 +47,7 @@ def nothing_below(paths: Iterable[str], groups: Iterable[Group]) -> str | None:
     folders = [path.rstrip("/") + "/" for path in paths if os.path.isdir(path)]
     if not folders or any(group.given for group in groups):
         return None
-    return f"no .btq below {', '.join(folders)}"
+    return f"no .btq file below {', '.join(folders)}"
 
 
 def write_stdout(text: str) -> None:

@@ -26,7 +26,11 @@ def run(options: Namespace) -> int:
     for group in groups:
         for path in group.given:
             if group.workspace.files[path].origin is not None:
-                trouble.append(LoadProblem(path, "this is XML, which `btq format` leaves alone: see `btq import`"))
+                trouble.append(
+                    LoadProblem(
+                        path, "this is XML, which `btq format` does not change; `btq import` converts it to .btq"
+                    )
+                )
                 continue
             text = group.workspace.files[path].text
             done = format_text(text)
@@ -78,7 +82,7 @@ def _sum_up(count: int, changed: int, refused: int, only_tell: bool) -> None:
     verb = "would be formatted" if only_tell else "formatted"
     parts = [f"{files(changed)} {verb}"] if changed else []
     if refused:
-        parts.append(f"{files(refused)} that cannot be formatted left alone")
+        parts.append(f"{files(refused)} not formatted")
     if count - changed - refused or not parts:
-        parts.append(f"{files(count - changed - refused)} left as {'they are' if count != 1 else 'it is'}")
+        parts.append(f"{files(count - changed - refused)} unchanged")
     print(", ".join(parts), file=sys.stderr)

@@ -25,7 +25,7 @@ def _run(options: Namespace) -> int:
     groups, problems = Files().groups(options.paths, options.stdin_filename)
     given = [(group.workspace, path) for group in groups for path in group.given]
     if len(given) > 1:
-        problems += (LoadProblem(given[1][1], "one file at a time is drawn"),)
+        problems += (LoadProblem(given[1][1], "expected one file to draw, found more"),)
     for each in problems:
         print(f"btq: {each}", file=sys.stderr)
     if nothing := nothing_below(options.paths, groups):

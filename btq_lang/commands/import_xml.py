@@ -109,7 +109,9 @@ def _with_side_file(job: _Job, target: str, force: bool, problems: list[LoadProb
 
     mission = restored(job.xml, job.done.text, text)
     if mission is None:
-        return _without_side_file(job, f"{shown(side)} is not the one that the build wrote beside the XML")
+        return _without_side_file(
+            job, f"{shown(side)} belongs to another build; put the one of this build there to keep them"
+        )
     if mission.is_whole:
         from btq_lang.commands.unpacking import place_of_mission, unpacked
 
@@ -132,7 +134,7 @@ def _without_side_file(job: _Job, advice: str) -> _Job:
     if not number:
         return job
     nodes = "1 node" if number == 1 else f"{number} nodes"
-    return replace(job, losses=(f"{nodes} carried requirements or qualities: {advice}",))
+    return replace(job, losses=(f"the requirements or qualities of {nodes} are lost: {advice}",))
 
 
 def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> bool:
@@ -142,7 +144,7 @@ def _is_second(job: _Job, jobs: Iterable[_Job], problems: list[LoadProblem]) -> 
     first = next(other for other in jobs if other.target == job.target)
     if first is job:
         return False
-    problems.append(LoadProblem(job.path, f"not imported: {shown(first.path)} becomes {shown(job.target)}, too"))
+    problems.append(LoadProblem(job.path, f"not imported: {shown(first.path)} would also become {shown(job.target)}"))
     return True
 
 
@@ -158,7 +160,12 @@ def _clashes(job: _Job, jobs: Iterable[_Job], force: bool, problems: list[LoadPr
         }
         for path, text in job.others:
             if known.get(path, text) != text:
-                problems.append(LoadProblem(job.path, f"not imported: {shown(other.path)} has another {shown(path)}"))
+                problems.append(
+                    LoadProblem(
+                        job.path,
+                        f"not imported: the bundle {shown(other.path)} contains another version of {shown(path)}",
+                    )
+                )
                 return True
     if os.path.lexists(job.target) and not force:
         problems.append(LoadProblem(job.target, "already exists; --force overwrites it"))
@@ -212,10 +219,10 @@ def _sum_up(written: list[_Job], refused: int) -> None:
     others = sum(len(job.others) for job in written)
     parts = [f"{files(len(written) + others)} imported{told}"]
     if refused:
-        parts.append(f"{files(refused)} that cannot be read left alone")
+        parts.append(f"{files(refused)} not imported")
     print(", ".join(parts), file=sys.stderr)
     for command in dict.fromkeys(command for job in written for command in _missing(job)):
-        print(f"also: {command}", file=sys.stderr)
+        print(f"To import an included file: {command}", file=sys.stderr)
     if len(written) == 1 and written[0].target is not None:
         print(f"Next: btq check {quote(shown(written[0].target))}", file=sys.stderr)
 

@@ -63,7 +63,7 @@ def run(options: Namespace) -> int:
     folder = options.folder
     there = [name for name in FILES if os.path.lexists(os.path.join(folder, name))]
     if there:
-        print(f"btq init: {', '.join(there)} already in {folder}: nothing written", file=sys.stderr)
+        print(f"btq init: {folder} already contains {', '.join(there)}; nothing was written", file=sys.stderr)
         return 2
     try:
         os.makedirs(folder, exist_ok=True)

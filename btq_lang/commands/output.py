@@ -23,10 +23,10 @@ def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
     is asked for."""
     ending = _ending(options)
     if ending in (*SUFFIXES, ".xml"):
-        return f"{options.output} has the name of a mission, which this would overwrite; choose another one for -o"
+        return f"-o {options.output} may overwrite a mission; choose another file name"
     if options.format or ending not in _OTHERS:
         return None
-    return f"no {ending} is written, but {', '.join(forms)}: --format says which, whatever the name"
+    return f"cannot write {ending}; choose one of {', '.join(forms)} with --format, or another file name"
 
 
 def write_output(command: str, path: str | None, text: str) -> int:

@@ -37,7 +37,7 @@ def run(options: Namespace) -> int:
     if options.follow:
         Thread(target=_follow, args=(mission, preview, ended), daemon=True).start()
     else:
-        print("Watching for changes; Ctrl+C ends it", file=sys.stderr)
+        print("Watching for changes; press Ctrl+C to stop", file=sys.stderr)
     if options.open:
         import webbrowser
 
@@ -59,7 +59,11 @@ def run(options: Namespace) -> int:
 
 
 def _no_file(path: str) -> str | None:
-    return None if os.path.isfile(path) else f"{path}: {'a folder' if os.path.isdir(path) else 'no such file'}"
+    return (
+        None
+        if os.path.isfile(path)
+        else f"{path}: {'expected a file, found a folder' if os.path.isdir(path) else 'no such file'}"
+    )
 
 
 def _follow(mission: _Mission, preview: Preview, ended: Event) -> None:

@@ -49,7 +49,7 @@ def _run(options: Namespace) -> int:
         return code
     if errors:
         what = "an error" if errors == 1 else f"{errors} errors"
-        print(f"btq trace: the missions have {what}, so something may be missing: see btq check", file=sys.stderr)
+        print(f"btq trace: the missions have {what}, so the overview may be incomplete; run btq check", file=sys.stderr)
     return int(errors > 0)
 
 
@@ -65,7 +65,7 @@ def overview_of(parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool 
 
     def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
         if not broken.isdisjoint(workspace.closure(path)):
-            return declared_ways(workspace, path, found, "nothing is built of a mission with errors")
+            return declared_ways(workspace, path, found, "btq build writes nothing for a mission with errors")
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 

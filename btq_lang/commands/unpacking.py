@@ -54,9 +54,13 @@ def unpacked(
     for name, text in others:
         path = _below(root, folder, name)
         if path is None:
-            problems.append(LoadProblem(target, f"its bundle holds `{name}`, which is not a .btq or XML file below it"))
+            problems.append(
+                LoadProblem(
+                    target, f"its bundle contains `{name}`, which is not a .btq or XML file below the output folder"
+                )
+            )
         elif path in (target, *taken):
-            problems.append(LoadProblem(target, f"its bundle holds `{name}`, too, which would be written over"))
+            problems.append(LoadProblem(target, f"its bundle contains `{name}`, which the import would overwrite"))
         elif not os.path.lexists(path):
             found[path] = text
         elif not _says(path, text):

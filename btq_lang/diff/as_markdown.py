@@ -17,7 +17,7 @@ def render(comparisons: Iterable[Comparison]) -> Iterator[str]:
     """The lines of the document."""
     comparisons = tuple(each for each in comparisons if each.changes)
     if not comparisons:
-        yield "The missions say the same."
+        yield "The missions are the same."
     for number, comparison in enumerate(comparisons):
         if number:
             yield ""

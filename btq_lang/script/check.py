@@ -48,9 +48,13 @@ def _value_problems(node: Expression, text: str) -> list[Diagnostic]:
         return _value_problems(node.then, text) + _value_problems(node.otherwise, text)
     span = Span(node.start, node.end)
     if isinstance(node, Text):
-        return [mistakes.error(span, "a condition must give 0 or 1: the engine fails when it meets a text")]
+        return [
+            mistakes.error(span, "a condition must evaluate to 0 or 1: with a string, the engine fails at the tick")
+        ]
     if isinstance(node, Number) and node.value not in (0, 1):
-        return [mistakes.error(span, f"a condition must give 0 or 1: the engine fails when it meets {node.raw}")]
+        return [
+            mistakes.error(span, f"a condition must evaluate to 0 or 1: with {node.raw}, the engine fails at the tick")
+        ]
     if isinstance(node, Assign):
         return [_assignment_as_condition(node, text)]
     return []
@@ -60,7 +64,7 @@ def _assignment_as_condition(node: Assign, text: str) -> Diagnostic:
     start = text.index(node.operator, node.target.end)
     span = Span(start, start + len(node.operator))
     fixes: tuple[Fix, ...] = (replace_fix("Compare with `==`", span, "=="),) if node.operator == "=" else ()
-    message = f"a condition that ends in an assignment: `{node.operator}` changes the entry"
+    message = f"this condition ends in an assignment: `{node.operator}` changes the entry"
     if node.operator == "=":
         message += "; to compare, write `==`"
     return Diagnostic("script-error", span, message, fixes=fixes, severity=Severity.WARNING)

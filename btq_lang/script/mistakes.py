@@ -48,7 +48,7 @@ _NO_SUCH: Final = {
     ">>": "scripts have no shifts; divide by a power of two",
     "%": "scripts have no remainder operator",
     ",": "unexpected `,` in a script; statements are separated by `;`, and the decimal sign is `.`",
-    ".": "unexpected `.`: only numbers contain it, `..` joins texts, and names of entries have none",
+    ".": "unexpected `.`: only numbers contain it, `..` joins strings, and names of entries have none",
     "[": "scripts have no lists",
     "]": "scripts have no lists",
     "{": "braces belong to ports; in a script, write the entry without them",
@@ -56,10 +56,10 @@ _NO_SUCH: Final = {
     "$": "in a script, write the entry without `$`",
     "#": "scripts have no comments",
     "@": "`@` must be followed at once by the name of an entry of the root blackboard",
-    "'": "missing closing quote for this text",
-    '"': "missing closing quote for this text; text in a script goes in single quotes: '…'",
+    "'": "missing closing quote for this string",
+    '"': "missing closing quote for this string; strings in scripts go in single quotes: '…'",
     "not": "`not` is written `!` in a script, which binds more tightly: put what it negates in brackets, `!(a == b)`",
-    "\\": "scripts have no escapes; text may contain anything but a single quote",
+    "\\": "scripts have no escapes; a string may contain anything but a single quote",
 }
 
 _OPERATOR_CHARACTERS: Final = frozenset("=<>!&|*/+-:.")
@@ -89,9 +89,9 @@ def misspelt(text: str, span: Span) -> Diagnostic:
 
 
 def wrong_quotes(span: Span, content: str) -> Diagnostic:
-    message = "text in a script goes in single quotes: '…'"
+    message = "strings in scripts go in single quotes: '…'"
     if "'" in content:
-        return error(span, f"{message}; text cannot contain a single quote")
+        return error(span, f"{message}; a string cannot contain a single quote")
     return error(span, message, _write(f"'{content}'", span))
 
 

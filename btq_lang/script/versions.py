@@ -87,7 +87,7 @@ def _node(node: Expression, parent: Expression | None, text: str, targets: _Targ
     elif isinstance(node, Name) and node.name.startswith(("true", "false")):
         yield _refused(None, node, "a name that begins with `true` or `false`", targets.old, targets)
     elif isinstance(node, Text) and not node.value.isascii():
-        yield _refused(None, node, "a text with characters outside ASCII", targets.old, targets)
+        yield _refused(None, node, "a string with characters outside ASCII", targets.old, targets)
 
 
 # ---- operators that older engines rank in another way ----

@@ -400,7 +400,7 @@ def _totals(
         if id_ is None and not mine and not concerns:
             continue
         known = get(id_, edition) if id_ is not None else None
-        name = known.name if known is not None else id_ or "of no characteristic"
+        name = known.name if known is not None else id_ or "without a characteristic"
         ways = [clause.way for clause in clauses]
         totals.append(
             TotalRow(

@@ -303,7 +303,8 @@ def test_an_entry_with_its_readers_and_writers() -> None:
         ),
         (
             "BehaviorTree Main\n    Pick (<hover>_skip$0If</hover> = x)\n",
-            "`_skipIf`: SKIPPED without a tick, if true when the node starts; not checked while it runs",
+            "`_skipIf`: if true when the node starts, the node returns SKIPPED without a tick; "
+            "not checked while it runs",
         ),
         (
             "signal <hover>spe$0ed</hover> : m/s from {v}\n",
