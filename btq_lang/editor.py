@@ -43,6 +43,7 @@ class Refused(JsonRpcException):
     CODE = -32803  # RequestFailed
 
 
+NOT_JSON = json.JSONDecodeError, UnicodeDecodeError
 NO_ITEMS = Json("[]")
 NOTHING = Json('{"kind": "full", "items": []}')
 TO_ASK = 0.01  # seconds, in which an editor that was told what is wrong with a file asks for more about it
@@ -110,6 +111,13 @@ class Server(LanguageServer):
             pass
         finally:
             self.shutdown()  # type: ignore[no-untyped-call]  # pygls has no types there
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """As in pygls, which shows the user that a message is not JSON, and does not answer it."""
+        if isinstance(error, NOT_JSON):
+            self.protocol.refuse(types.ErrorCodes.ParseError, f"a message is not JSON: {error}")
+        else:
+            super().report_server_error(error, source)
 
     # ---- the end ----
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -37,6 +38,12 @@ class Protocol(LanguageServerProtocol):
     """
 
     log_failure: Callable[[BaseException], tuple[str, bool]]
+
+    def _run_generator(self, future: Future[Any] | None, *, gen: Any, result_future: Future[Any]) -> None:
+        """As in pygls, which logs a handler that is cancelled because the server ends."""
+        if future is not None and future.cancelled():
+            result_future.cancel()
+        super()._run_generator(future, gen=gen, result_future=result_future)
 
     def _check_handler_result(self, future: Future[Any]) -> None:
         kept = {} if future.cancelled() else self._request_futures  # pygls goes through them when it cancels all
@@ -74,11 +81,19 @@ class Protocol(LanguageServerProtocol):
 
     def handle_message(self, message: Any) -> None:
         """As in pygls, which leaves requests after `shutdown` without an answer and takes a second `initialize`."""
+        if not hasattr(message, "jsonrpc"):
+            self.refuse(types.ErrorCodes.InvalidRequest, "a message is not JSON-RPC: it has no `jsonrpc`")
+            return
         refusal = self._refusal(getattr(message, "method", ""))
         if refusal is None or not (hasattr(message, "id") and hasattr(message, "method")):
             super().handle_message(message)
         else:
             self._send_response(message.id, error=refusal.to_response_error())
+
+    def refuse(self, code: types.ErrorCodes, why: str) -> None:
+        """Answer a message that cannot be read, not even whether it is a request."""
+        logging.getLogger(__name__).error(why)
+        self._send_data({"jsonrpc": self.VERSION, "id": None, "error": {"code": code.value, "message": why}})
 
     def _refusal(self, method: str) -> JsonRpcException | None:
         """Why a request cannot be answered at this point of the server's life."""

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 from btq_lang import __version__
 from btq_lang.commands.options import add_server_options
-from btq_lang.editor import Refused, Server, Traced
+from btq_lang.editor import NOT_JSON, Refused, Server, Traced
 from btq_lang.handlers import register
 
 
@@ -36,7 +36,7 @@ def serve(options: argparse.Namespace) -> int:
     server = make_server()
     logging.getLogger().addHandler(Traced(server))
     for handler in logging.getLogger().handlers:
-        handler.addFilter(_is_no_refusal)
+        handler.addFilter(_is_worth_a_line)
     if options.tcp is not None:
         return _serve_tcp(server, options.tcp)
     output, sys.stdout = sys.stdout.buffer, sys.stderr  # nothing that is printed may get into the protocol
@@ -71,9 +71,11 @@ _LAST_PORT = 65_535
 _DESCRIPTION = "The language server of btq, for editors."
 
 
-def _is_no_refusal(record: logging.LogRecord) -> bool:
-    """Whether a record is worth a line: that a request was refused is told to the user, not to the log."""
-    return not (record.exc_info and isinstance(record.exc_info[1], Refused))
+def _is_worth_a_line(record: logging.LogRecord) -> bool:
+    """Whether a record says something new: a refusal is told to the user, and what is not JSON is logged shorter."""
+    error = record.exc_info[1] if record.exc_info else None
+    is_not_json = isinstance(error, NOT_JSON) and record.name.startswith("pygls.")
+    return not (is_not_json or isinstance(error, Refused))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from lsp_editor import SERVER, Editor, Message
 
 from btq_lang import editor as btq_editor
 
-NOT_INITIALIZED, INVALID_REQUEST = -32002, -32600
+NOT_INITIALIZED, INVALID_REQUEST, PARSE_ERROR = -32002, -32600, -32700
 
 
 @pytest.fixture
@@ -67,6 +67,44 @@ def test_before_initialize_every_request_is_refused(tmp_path: Path) -> None:
             return super().request(method, **params)
 
     assert Hasty(tmp_path).close() == ""
+
+
+@pytest.mark.parametrize("is_told", [False, True])
+def test_it_ends_quietly_while_it_begins(is_told: bool, tmp_path: Path) -> None:
+    (tmp_path / "main.btq").write_text("BehaviorTree Main\n    Pick\n", encoding="utf-8")
+    editor = Editor(tmp_path)
+    if is_told:
+        editor.notify("exit")
+    _, log = editor.process.communicate(timeout=20)
+    assert (log.decode(), editor.process.returncode) == ("", 1)
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "message"),
+    [
+        (
+            b"{bad}",
+            PARSE_ERROR,
+            "a message is not JSON: Expecting property name enclosed in double quotes: line 1 column 2 (char 1)",
+        ),
+        (
+            b'"\xff"',
+            PARSE_ERROR,
+            "a message is not JSON: 'utf-8' codec can't decode byte 0xff in position 1: invalid start byte",
+        ),
+        (b"[1]", INVALID_REQUEST, "a message is not JSON-RPC: it has no `jsonrpc`"),
+        (b'{"id": 1}', INVALID_REQUEST, "a message is not JSON-RPC: it has no `jsonrpc`"),
+    ],
+)
+def test_what_is_no_message_is_refused_in_one_line(body: bytes, code: int, message: str, editor: Editor) -> None:
+    assert editor.process.stdin is not None
+    editor.process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+    editor.process.stdin.flush()
+    answer = editor.wait_for(lambda each: "id" in each)
+    assert (answer["id"], *refusal(answer)) == (None, code, message)
+    assert editor.request("textDocument/documentSymbol", **editor.document("main.btq"))[0]["name"] == "Main"
+    assert editor.close().splitlines() == [f"ERROR:btq_lang.protocol:{message}"]
+    assert not any(each.get("method") == "window/showMessage" for each in editor.kept)
 
 
 @pytest.mark.parametrize("is_shut_down", [False, True])
