@@ -14,7 +14,7 @@ import stat
 
 from btq_lang.file import SUFFIXES, File, Origin
 from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
-from btq_lang.record import Record, replace
+from btq_lang.record import Record
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import Workspace
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
+IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 _BOM = "\ufeff"
 
 
@@ -117,15 +118,14 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
     for root in _upwards(folder):
         for kind in PROJECT_FILES:
             path = absolute(os.path.join(root, kind))
-            if path not in known and not os.path.isfile(path):
+            if path not in known and not os.path.exists(path):  # a folder of that name is a mistake worth telling
                 continue
             text, problem = (known[path], None) if path in known else read(path)
             if kind == "pyproject.toml" and not has_btq_table(text or ""):
                 continue
-            project, problems = parse_project(text or "", kind, root)
+            project, problems = parse_project(text or "", kind, root, os.path.isdir)
             told = tuple(LoadProblem(path, found.message, found.position) for found in problems)
-            lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
-            return Found(replace(project, lost_paths=lost), path, (problem, *told) if problem else told)
+            return Found(project, path, (problem, *told) if problem else told)
     return Found(Project(folder), None)
 
 
@@ -197,24 +197,37 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
     """The text of a file without its byte order mark, and what is wrong with it.
 
     Bytes that are no UTF-8 become U+FFFD, and the problem says where the first one is; UTF-16 is a problem and is read
-    as what it is, for nothing in it would be worth telling else.  Without a text there is always a problem.  Line ends
-    stay as they are.
+    as what it is, for nothing in it would be worth telling else.  Without a text there is always a problem: so it is
+    for bytes among which there is a NUL.  Line ends stay as they are.
     """
+    if is_special(path):
+        return None, LoadProblem(path, IS_SPECIAL)
     try:
         with open(path, "rb") as file:
             data = file.read()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         return None, LoadProblem(path, f"cannot be read: {_reason(error)}")
     problem = None
+    is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in data and not is_utf16:
+        return None, LoadProblem(path, "this is not a text file")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8").removeprefix(_BOM)
-        is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         found = "this is UTF-16; save it as UTF-8" if is_utf16 else f"this is not UTF-8: byte 0x{data[error.start]:02x}"
         problem = LoadProblem(path, found, LineIndex(before).position(len(before)))
         text = data.decode("utf-16" if is_utf16 else "utf-8", "replace")
     return text.removeprefix(_BOM), problem
+
+
+def is_special(path: str) -> bool:
+    """Whether a path is a pipe or a device: to read one might take for ever."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):  # ValueError: a NUL in the path
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
 
 def write_whole(path: str, text: str) -> None:

@@ -27,7 +27,7 @@ from btq_lang.text import LineIndex, Position
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from typing import Any, Literal, TypeAlias
 
     from btq_lang.diagnostics import Diagnostic
@@ -90,12 +90,15 @@ class ProjectProblem(Record):
     position: Position | None = None
 
 
-def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[Project, tuple[ProjectProblem, ...]]:
+def parse_project(
+    text: str, kind: Kind = "btq.toml", root: str = ".", is_folder: Callable[[str], bool] = lambda path: True
+) -> tuple[Project, tuple[ProjectProblem, ...]]:
     """The project that a file describes, and what is wrong with the file.
 
     Args:
         kind: which of the two files it is; of a pyproject.toml only `[tool.btq]` is looked at.
         root: the folder of the file, before which relative include paths count.
+        is_folder: whether there is a folder at a path.
     """
     try:
         table: object = _toml(text)
@@ -120,13 +123,18 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
             at = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, at))
     given = {field: value for field, value in fields.items() if value is not None}
-    if "include_paths" in given:
-        given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
+    folders = {path: _joined(root, path) for path in given.get("include_paths", ())}
+    if folders:
+        given["include_paths"] = (*folders.values(),)
+    for path in [path for path, folder in folders.items() if not is_folder(folder)]:
+        given["lost_paths"] = (*given.get("lost_paths", ()), folders[path])
+        at = _find(text, (*above, "include-paths"), path)
+        problems.append(ProjectProblem(f"`include-paths` names `{path}`, which is not a folder", at))
     return Project(**given), tuple(problems)
 
 
 def has_btq_table(text: str) -> bool:
-    """Whether a pyproject.toml has a table `[tool.btq]`, or one below it; seen without reading it as TOML."""
+    """Whether a pyproject.toml has a `tool.btq`, table or not; seen without reading it as TOML."""
     return _BTQ_TABLE.search(text) is not None
 
 
@@ -175,11 +183,18 @@ def _engines(key: str, value: object) -> _Read:
     known = tuple(filter(_is_engine, wanted))
     supported = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
     complaints = [
-        _Complaint(f"unknown engine version `{version}`{_meant(version, VERSIONS) or ';'} {supported}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {supported}", value=version)
         for version in wanted
         if version not in known
     ]
+    if not wanted:
+        complaints = [_Complaint(f"`{key}` must name at least one version; {supported}")]
     return tuple(sorted(set(known), key=lambda version: int(version[2:]))) or None, complaints
+
+
+def _meant_engine(version: str) -> str:
+    """The near version, of the same major one: `3.8` is not a slip for 4.8."""
+    return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
 def _is_engine(version: str) -> bool:
@@ -258,7 +273,11 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 
 # ---- patterns ----
 
-_BTQ_TABLE = regex(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
+_BTQ_TABLE = regex(
+    r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]"""  # [tool.btq]
+    r"""|^[ \t]*\[[ \t]*tool[ \t]*\](?:(?!\n[ \t]*\[)[^\n]*\n)*?[ \t]*["']?btq["']?[ \t]*[=.]"""  # [tool], btq = …
+    r"""|\A(?:(?![ \t]*\[)[^\n]*\n)*?[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[=.]"""  # tool.btq.engine = …
+)
 _RELEASE_LINE = regex(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = regex(r"\d+")
 

@@ -397,7 +397,7 @@ def test_a_file_that_is_no_utf8_is_checked_but_never_written(btq: Run, tmp_path:
 
 def test_bytes_that_are_no_text_are_told_once(btq: Run, tmp_path: Path) -> None:
     (tmp_path / "latin.btq").write_bytes(b"BehaviorTree M\xfc\n    SequenceStar\n        A\n")
-    (tmp_path / "program.btq").write_bytes(b"\x7fELF\xff\xfe\x00(\n")
+    (tmp_path / "program.btq").write_bytes(b"\x7fELF\xff\xfe\x01(\n")
     done = btq("check", "--output-format", "concise")
     assert done.returncode == 2
     assert done.stderr == (
@@ -406,6 +406,13 @@ def test_bytes_that_are_no_text_are_told_once(btq: Run, tmp_path: Path) -> None:
     assert [line.split(" ", 1)[1].split("]")[0] for line in done.stdout.splitlines()[:-1]] == [
         "warning[not-an-engine-node"
     ]
+
+
+def test_a_binary_file_is_one_error(btq: Run, tmp_path: Path) -> None:
+    (tmp_path / "program.btq").write_bytes(b"\x7fELF\0SequenceStar\0a ( b\n\0 \0->")
+    done = btq("check", "--fix", "program.btq")
+    expected = ("No files were checked\n", "btq: program.btq: this is not a text file\n", 2)
+    assert (done.stdout, done.stderr, done.returncode) == expected
 
 
 def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> None:

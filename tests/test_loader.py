@@ -195,12 +195,15 @@ def test_what_cannot_be_read_is_a_problem(folder: Path) -> None:
 
 
 @given(st.binary(max_size=50))
-def test_every_file_has_a_text(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+def test_every_file_has_a_text_but_for_binary_ones(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
     path = tmp_path_factory.getbasetemp() / "any.btq"
     path.write_bytes(data)
     text, problem = read(str(path))
-    assert text is not None
-    assert (problem is None) == (data in (text.encode(), b"\xef\xbb\xbf" + text.encode()))
+    if text is None:
+        assert problem == LoadProblem(str(path), "this is not a text file")
+        assert b"\0" in data
+    else:
+        assert (problem is None) == (data in (text.encode(), b"\xef\xbb\xbf" + text.encode()))
 
 
 # ---- loading with includes ----
@@ -218,8 +221,9 @@ def test_included_files_are_loaded_too(folder: Path) -> None:
 
 
 def test_files_that_are_missing(folder: Path) -> None:
-    make(folder, "a.btq: include lost.btq include sub include nul\0", "sub/x")
-    loaded = load(["a.btq", "gone.btq"], Project(include_paths=(f"{folder}/lib",)), includes_of)
+    make(folder, "sub/x")
+    known = {f"{folder}/a.btq": "include lost.btq include sub include nul\0"}
+    loaded = load(["gone.btq"], Project(include_paths=(f"{folder}/lib",)), includes_of, known)
     assert names(loaded.given) == ["a.btq"]
     assert list(map(str, loaded.problems)) == ["gone.btq: cannot be read: No such file or directory"]
     assert names(loaded.absent) == ["lost.btq", "lib/lost.btq", "sub", "lib/sub", "nul\0", "lib/nul\0"]
@@ -257,6 +261,14 @@ def test_an_included_pipe_is_not_waited_for(folder: Path) -> None:
 
 
 # ---- writing ----
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_pipe_is_not_waited_for(folder: Path) -> None:
+    os.mkfifo("pipe.btq")
+    why = "cannot be read: expected a regular file, found a pipe or a device"
+    assert read("pipe.btq") == (None, LoadProblem("pipe.btq", why))
+    assert [each.message for each in load(["pipe.btq"], Project(), includes_of).problems] == [why]
 
 
 def test_writing_a_new_file_and_over_an_old_one(folder: Path) -> None:

@@ -9,9 +9,17 @@ from hypothesis import strategies as st
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.project import Project, configured, has_btq_table, include_candidates, parse_project, unknown_rule
+from btq_lang.project import (
+    Project,
+    ProjectProblem,
+    configured,
+    has_btq_table,
+    include_candidates,
+    parse_project,
+    unknown_rule,
+)
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import LineIndex, Span
+from btq_lang.text import LineIndex, Position, Span
 
 WHOLE = """\
 engine = "4.8"
@@ -63,7 +71,7 @@ def test_nothing_said_is_the_default(text: str, kind: str) -> None:
 
 @pytest.mark.parametrize(
     ("engine", "engines"),
-    [('"4.10"', ("4.10",)), ('["4.10", "4.6", "4.9", "4.6"]', ("4.6", "4.9", "4.10")), ("[]", VERSIONS)],
+    [('"4.10"', ("4.10",)), ('["4.10", "4.6", "4.9", "4.6"]', ("4.6", "4.9", "4.10")), ("'4.6'", ("4.6",))],
 )
 def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -> None:
     project, found = parse_project(f"engine = {engine}")
@@ -88,6 +96,8 @@ def test_engines_are_sorted_as_versions(engine: str, engines: tuple[str, ...]) -
             'engine = ["4.6",\n  "4.5"]',
             ["2:3: unknown engine version `4.5`; did you mean `4.6`? btq supports 4.6 to 4.10"],
         ),
+        ('engine = "3.8"', ["1:10: unknown engine version `3.8`; btq supports 4.6 to 4.10"]),
+        ("engine = []", ["1:1: `engine` must name at least one version; btq supports 4.6 to 4.10"]),
         ('engine = "4.09"', ["1:10: unknown engine version `4.09`; btq supports 4.6 to 4.10"]),
         ("qualities = 2023", ['1:1: `qualities` must be "iso25010-2023" or "iso25010-2011"']),
         ('exclude = "x"', ["1:1: `exclude` must be a list of strings"]),
@@ -139,6 +149,13 @@ def test_problems_in_a_pyproject(text: str, expected: list[str]) -> None:
     assert problems(text, "pyproject.toml") == expected
 
 
+def test_include_paths_that_are_not_there() -> None:
+    text = '[tool.btq]\ninclude-paths = ["lib", "src"]'
+    project, (found,) = parse_project(text, "pyproject.toml", "/p", lambda path: path == "/p/src")
+    assert (project.include_paths, project.lost_paths) == (("/p/lib", "/p/src"), ("/p/lib",))
+    assert found == ProjectProblem("`include-paths` names `lib`, which is not a folder", Position(1, 17))
+
+
 def test_what_is_right_holds_beside_what_is_wrong() -> None:
     text = 'engine = ["4.6", "5.0"]\nselect = ["zebra", "unused-tree"]\n[rules]\nzebra = "off"\nunused-tree = "hint"\n'
     project, found = parse_project(text)
@@ -173,6 +190,12 @@ def test_unknown_rules_of_the_command_line() -> None:
         ("[tool.btq]", True),
         ("x = 1\n [ tool . 'btq' ]\n", True),
         ("[tool.btq.rules]", True),
+        ("[tool]\nx = 1\nbtq = 3", True),
+        ("[tool]\n'btq'.engine = '4.8'", True),
+        ("x = 1\ntool.btq.engine = '4.8'", True),
+        ("tool = { btq = 3 }", False),  # nobody writes so
+        ("[tool]\n[x]\nbtq = 3", False),
+        ("[x]\ntool.btq = 3", False),
         ("[tool.btqx]", False),
         ("# [tool.btq]", False),
         ("", False),

@@ -25,6 +25,8 @@ MISTAKES = [
         (0, 9, 15),
         "unknown engine version `4.11`; did you mean `4.10`? btq supports 4.6 to 4.10",
     ),
+    ("engine = []\n", (0, 0, 6), "`engine` must name at least one version; btq supports 4.6 to 4.10"),
+    ('include-paths = [".", "lib"]\n', (0, 22, 27), "`include-paths` names `lib`, which is not a folder"),
     ('engine = "5.0"\n', (0, 9, 14), "unknown engine version `5.0`; btq supports 4.6 to 4.10"),
     ('[rules]\nunknwn-node = "off"\n', (1, 0, 11), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
     ("ignore = [\n  'unknwn-node']\n", (1, 2, 15), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
@@ -117,6 +119,17 @@ def test_of_pyproject_the_table_of_btq_is_looked_at(editor: Editor) -> None:
     assert editor.published("robot/pyproject.toml")["diagnostics"] == []
 
 
+def test_a_folder_with_its_name_is_told(folder: Path) -> None:
+    (folder / "robot" / "btq.toml").mkdir()
+    editor = Editor(folder)
+    found = said(editor.published("robot/btq.toml")["diagnostics"])
+    assert found == [((0, 0, 0), "cannot be read: Is a directory")]
+    (folder / "robot" / "btq.toml").rmdir()
+    editor.notify("workspace/didChangeWatchedFiles", changes=[{"uri": editor.uri("robot/btq.toml"), "type": 3}])
+    assert editor.published("robot/btq.toml")["diagnostics"] == []
+    assert editor.close() == ""
+
+
 def test_what_is_typed_counts_before_it_is_saved(editor: Editor) -> None:
     unknown = "BehaviorTree Main\n    Sequnce\n        Pick\n"
     editor.open("robot/main.btq", unknown)
@@ -165,7 +178,7 @@ def test_the_diagnostics_of_a_project_file_are_pulled(folder: Path) -> None:
     assert pulled() == {"btq.toml": 2}
     editor.shut("robot/btq.toml")
     assert pulled() == {"btq.toml": 1}
-    editor.write("robot/btq.toml", "engine = []\n")
+    editor.write("robot/btq.toml", "exclude = []\n")
     assert pulled() == {"btq.toml": 0}
     assert editor.close() == ""
 

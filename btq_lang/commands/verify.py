@@ -18,7 +18,7 @@ from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
-from btq_lang.loader import absolute, collect, find_project, read, shown
+from btq_lang.loader import IS_SPECIAL, absolute, collect, find_project, is_special, read, shown
 from btq_lang.record import Record
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
@@ -62,8 +62,10 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     problems += map(str, unreachable)
     if not logs and not unreachable:
         problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(options.logs)}")
+    special = [path for path in (*logs, *filter(None, [options.signals])) if is_special(path)]
+    problems += [f"{shown(path)}: {IS_SPECIAL}" for path in special]
     samples: dict[str, Series] = {}
-    if options.signals is not None:
+    if options.signals is not None and options.signals not in special:
         try:
             samples = read_samples(options.signals)
         except NoSamples as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,9 @@ HERE = Path(__file__).parent
 SCHEMA = json.loads((HERE.parents[1] / "btq_lang" / "evidence" / "verdicts.schema.json").read_text(encoding="utf-8"))
 LOGS = ("lab.btlog", "lab.db3")
 PICKS, PLACES = (10, 18), (11, 19)  # the uids of the two instances
+
+
+SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 
 
 @pytest.fixture
@@ -269,11 +273,13 @@ def test_exit_codes(demands: str, more: tuple[str, ...], code: int, lab: Path) -
         (("lab.btlog", "--mission", "none.btq"), "btq verify: none.btq: cannot be read: No such file or directory\n"),
         (("lab.btlog", "--signals", "none.csv"), "btq verify: none.csv: cannot be read: No such file or directory\n"),
         (("lab.btlog", "--mission", "folder"), "btq verify: no mission found; name one with --mission FILE\n"),
+        (("pipe", "--signals", "pipe"), f"btq verify: pipe: {SPECIAL}\n" * 2),
         (("empty.btlog",), "btq verify: no run in any log, so there is nothing to judge\n"),
     ],
 )
 def test_what_cannot_be_done(arguments: tuple[str, ...], error: str, lab: Path) -> None:
     (lab / "folder").mkdir()
+    os.mkfifo(lab / "pipe")
     whole = (lab / "lab.btlog").read_bytes()
     (lab / "empty.btlog").write_bytes(whole[: 31 + int.from_bytes(whole[19:23], "little")])
     code, _, errors = btq(lab, "verify", *arguments)
