@@ -453,3 +453,6 @@ def test_a_file_with_nothing_in_it_is_told(btq: Btq) -> None:
     told = "btq build: empty.btq has no tree to run\n"
     code, _, messages = btq.build(".")
     assert (code, messages) == (0, told + GUESSED.format("A (Action)"))
+    Path("empty.xml").unlink()
+    assert btq.build("empty.btq") == (1, "", told + "nothing was written\n")
+    assert not Path("empty.xml").exists()

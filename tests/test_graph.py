@@ -325,6 +325,21 @@ def test_what_the_command_cannot_draw(tmp_path: Path, capfd: pytest.CaptureFixtu
     assert "cannot be written" in capfd.readouterr().err
 
 
+def test_what_cannot_be_read_is_told_and_the_rest_is_drawn(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    mission = tmp_path / "a.btq"
+    mission.write_text("BehaviorTree A\n    -> ((\n        B\n    C satisfies none\n", encoding="utf-8")
+    assert main(["graph", str(mission)]) == 1
+    printed = capfd.readouterr()
+    assert printed.out.startswith("<svg")
+    assert printed.err == (
+        f"{mission}:2:8: error[unclosed-bracket] missing `)` for this `(`\n"
+        "Found 1 error\n"
+        "btq graph: the picture shows only what could be read\n"
+    )
+    mission.write_text("BehaviorTree A\n    C satisfies none\n", encoding="utf-8")  # understood, whatever it lacks
+    assert main(["graph", str(mission)]) == 0
+
+
 def test_every_prefix_of_a_mission_can_be_drawn() -> None:
     ends = random.Random(1).sample(range(len(MISSION)), 40)
     for end in ends:

@@ -105,6 +105,12 @@ def build(options: Namespace, files: Files) -> Outcome:
         return Outcome(2, watched)
     if _has_errors(groups, options):
         return Outcome(1, watched)
+    empty = [path for group in groups for path in _without_tree(group)]
+    for path in empty:
+        print(f"btq build: {shown(path)} has no tree to run", file=sys.stderr)
+    if empty and len(empty) == sum(len(group.given) for group in groups):
+        print("nothing was written", file=sys.stderr)
+        return Outcome(1, watched)
     sources = {path: None for group in groups for path in _sources(group)}
     places = _Places(options.output, tuple(sources))
     made = [
@@ -123,9 +129,6 @@ def build(options: Namespace, files: Files) -> Outcome:
         return Outcome(1, watched)
     for _, _, done in made:
         _tell(done.export.repairs, "repaired", groups)
-    for group in groups:
-        for path in _without_tree(group):
-            print(f"btq build: {shown(path)} has no tree to run", file=sys.stderr)
     _tell_clauses([done for _, _, done in made], groups, options.verbose)
     if not options.check:
         _tell_guessed([done.export for _, _, done in made])

@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
+from btq_lang.checks import check
 from btq_lang.commands.files import Files, nothing_below, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.garbage import collecting_seldom
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.loader import LoadProblem, shown
+from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.rules import UNREADABLE
 
 
 def run(options: Namespace) -> int:
@@ -37,4 +40,12 @@ def _run(options: Namespace) -> int:
     if not found:
         print(f"btq graph: {shown(path)} has no trees", file=sys.stderr)
         return 2
-    return write_output("graph", options.output, draw(found, form_of(options, FORMATS), options.direction))
+    if code := write_output("graph", options.output, draw(found, form_of(options, FORMATS), options.direction)):
+        return code
+    unread = [each for each in check(workspace, path) if each.rule in UNREADABLE]
+    if unread:
+        text = workspace.files[path].source
+        report = Report(tuple([Finding(path, text, each) for each in unread]), {path: text}, (path,))
+        sys.stderr.writelines(render("concise", with_paths(report, shown), colour=False, width=120))
+        print("btq graph: the picture shows only what could be read", file=sys.stderr)
+    return int(bool(unread))
