@@ -60,7 +60,7 @@ def test_a_limit_is_told_as_one() -> None:
     assert_problems(
         f'QualityReq r "t"\n    takes at most 0 s\n    on violation fail\n{NODE}',
         "2:5 error limit-too-small «takes at most 0 s» the engine cannot enforce `0 s`: it counts whole "
-        "milliseconds, and 0 disables the limit",
+        "milliseconds, and 0 disables the limit; write at least 1 ms",
     )
 
 

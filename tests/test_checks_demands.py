@@ -408,7 +408,7 @@ def test_an_input_writes_nothing() -> None:
 
 def test_a_first_value() -> None:
     tree = "BehaviorTree Main\n    ->\n        Condition S (out = {level})\n        Action A\n"
-    message = "`n` has no initial value: a guard that reads it before anything writes it ends the mission"
+    message = "`n` has no initial value: the mission ends if a guard reads it before anything writes it"
     assert findings(GUARD.replace("{initially}", "") + tree, "signal-may-be-unset") == [f"1 warning «n» {message}"]
     assert findings(GUARD.replace("{initially}", "").replace("halt", "warn") + tree, "signal-may-be-unset") == []
     through = GUARD.replace("{initially}", "").replace("A keeps n <= 3", "A takes at most 3 s\n    A needs high")

@@ -140,7 +140,8 @@ def test_an_id_where_the_engine_takes_none() -> None:
 def test_a_script_without_code_is_a_placeholder_unless_code_is_misspelt() -> None:
     assert_problems(
         tree("ScriptAction Move (speed = 1)"),
-        "3:9 hint classic-placeholder «ScriptAction» `ScriptAction` without code is a placeholder of the action `Move`",
+        "3:9 hint classic-placeholder «ScriptAction» "
+        "`ScriptAction` without code is a placeholder for the action `Move`",
     )
     assert_problems(
         tree('Script Reset (cod = "a := 1")'),

@@ -25,10 +25,10 @@ COUNT = "count-of-nothing"
 @pytest.mark.parametrize(
     ("node", "problem"),
     [
-        ("Repeat (num_cycles = 0)", "«0» with `0` `Repeat` never runs its child"),
-        ("Repeat (num_cycles = -2)", "«-2» with `-2` `Repeat` never runs its child"),
-        ('Retry (num_attempts = "0")', '«"0"» with `"0"` `Retry` never runs its child'),
-        ("RetryUntilSuccessful (num_attempts = -5)", "«-5» with `-5` `RetryUntilSuccessful` never runs its child"),
+        ("Repeat (num_cycles = 0)", "«0» `Repeat` never runs its child with `0`"),
+        ("Repeat (num_cycles = -2)", "«-2» `Repeat` never runs its child with `-2`"),
+        ('Retry (num_attempts = "0")', '«"0"» `Retry` never runs its child with `"0"`'),
+        ("RetryUntilSuccessful (num_attempts = -5)", "«-5» `RetryUntilSuccessful` never runs its child with `-5`"),
         ("Timeout (msec = 0)", "«0» a Timeout of `0` is disabled: it never halts its child"),
         ("Timeout (msec = 0 s)", "«0 s» a Timeout of `0 s` is disabled: it never halts its child"),
         ("Repeat (num_cycles = -1)", None),
@@ -202,5 +202,5 @@ def test_a_signal_that_is_a_number_and_an_entry_that_is_a_text(unit: str, type_:
         f'QualityReq q : safety "Q"\n    leaves battery == {value}\n'
         "BehaviorTree Main\n    Read (battery = {=}) satisfies q\n"
     )
-    message = "«battery» `battery` is a number, but `battery` of `Read` writes text"
+    message = "«battery» the signal `battery` is a number, but the port `battery` of `Read` writes a string"
     assert findings(text, "unit-mismatch") == ([f"1 warning {message}"] if told else [])

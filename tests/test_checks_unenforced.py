@@ -89,7 +89,7 @@ def test_what_to_do_about_a_claim_that_is_not_enforced() -> None:
     text = "QualityReq q\n    A takes at least 5 s\n    on violation halt\nBehaviorTree Main\n    Action A\n"
     (found,) = problems(text, RULE)
     assert found.notes == (
-        "nothing stops the robot, `btq verify` can only check it in the logs afterwards: "
+        "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`",
     )
 

@@ -18,7 +18,8 @@ from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[1]
 AVOIDED = re.compile(
-    r"\b(?:is no (?!longer\b)|is none\b|speaks? of\b|behind\b|stands?\b|told\b|makes no\b|who asks\b|slip(?:s|ped)?\b)"
+    r"\b(?:is no (?!longer\b)|is none\b|speaks? of\b|behind\b|stands?\b|told\b|makes no\b|who asks\b|slip(?:s|ped)?\b|"
+    r"left (?:over|alone|as)\b|taken out\b|anew\b|knows? no\b|all there is\b|has it that\b|rests? on\b|brings?\b)"
 )
 TEXTS = (
     "README.md",

@@ -434,7 +434,7 @@ SIGNS: Final = (
     ("{ }", "MoveBase (goal = {pose})", "an entry of the blackboard: `{pose}` is the entry `pose` of this tree"),
     ("{=}", "MoveBase (goal = {=})", "the entry with the name of the port"),
     ("{@ }", "Sensors (battery = {@battery_level})", "an entry of the root blackboard, which all trees share"),
-    ('" "', '"3 Waypoints"', "a text, or a name with spaces; a quoted word is never a keyword"),
+    ('" "', '"3 Waypoints"', "a string, or a name with spaces; a quoted word is never a keyword"),
     ("( )", 'MoveBase (station = "charger")', "the ports, attributes and clauses of the node before it"),
     ("#", "Charge  # until it is full", "a comment, to the end of the line, as `//`"),
     ("//", "Charge  // until it is full", "a comment, to the end of the line, as `#`"),

@@ -47,15 +47,19 @@ _WORDS: Final = (
         "TestNode",
         "TestNode is the engine's substitution placeholder and is not registered: register an action TestNode",
     ),
-    _custom("ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: name your own action"),
-    _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: name your own action"),
+    _custom(
+        "ThreadedAction", "Action", "ThreadedAction is a C++ base class, not a node: write the name of your own action"
+    ),
+    _custom("CoroAction", "Action", "CoroAction is a C++ base class, not a node: write the name of your own action"),
     _custom("ManualSelector", "Control", "ManualSelector was a node of version 3; version 4 does not build it"),
     _custom("ConsumeQueue", "Decorator", "ConsumeQueue is a C++ template that a program must register; see LoopDouble"),
     _custom("PopFromQueue", "Action", "PopFromQueue is a C++ template that a program must register; see LoopDouble"),
     # C++ names that people take for nodes.
     _custom("QueueSize", "Action", "QueueSize is a C++ template that a program must register"),
-    _custom("StatefulAction", "Action", "StatefulAction is a C++ base class, not a node: name your own action"),
-    _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: name your own action"),
+    _custom(
+        "StatefulAction", "Action", "StatefulAction is a C++ base class, not a node: write the name of your own action"
+    ),
+    _custom("SyncAction", "Action", "SyncAction is a C++ base class, not a node: write the name of your own action"),
     # Older engines'.
     _old(
         "SequenceStar",

@@ -40,7 +40,7 @@ def _loop(seen: SeenNode, value: Word, number: float) -> Diagnostic:
     return Diagnostic(
         "count-of-nothing",
         value.span,
-        f"with `{value.raw}` {seen.shown} never runs its child",
+        f"{seen.shown} never runs its child with `{value.raw}`",
         notes=("-1 means endless, other numbers below 1 mean never",),
         fixes=fixes,
     )

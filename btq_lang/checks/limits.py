@@ -34,7 +34,8 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
             Diagnostic(
                 "limit-too-small",
                 place.span,
-                f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit",
+                f"the engine cannot enforce `{most[1]}`: it counts whole milliseconds, and 0 disables the limit; "
+                "write at least 1 ms",
             ),
         )
 
@@ -54,7 +55,8 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
                 f"{node.shown} completes within one tick, so the engine cannot stop it after {_typed(claim)}",
                 related=(Related(node.place, "never returns RUNNING"),),
                 notes=(
-                    "`btq verify` can only check it in the logs afterwards; remove `on violation`, or limit an action",
+                    "`btq verify` can only check it in the logs afterwards; "
+                    "remove `on violation`, or limit a node that returns RUNNING",
                 ),
             ),
         )

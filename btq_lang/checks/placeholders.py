@@ -43,7 +43,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "classic-placeholder",
             seen.node.kind.span,
-            f"`{seen.node.kind.text}` without code is a placeholder of {what} `{name}`",
+            f"`{seen.node.kind.text}` without code is a placeholder for {what} `{name}`",
             fixes=(fix,) if fix is not None else (),
         )
 

@@ -126,8 +126,7 @@ def _never_gets_further(seen: SeenNode, first: Node, child: Node, surely: bool) 
         message,
         related=(Related(Place(first.head.span), "restarts"),),
         notes=(
-            f"{seen.shown} starts with its first child at every tick; when a child returns RUNNING, it halts all "
-            "others",
+            f"{seen.shown} starts with its first child at every tick, and halts all others when one returns RUNNING",
             f"only the last child of {seen.shown} should run over several ticks; put the steps of a plan into a `->`",
         ),
         severity=None if surely else Severity.HINT,
@@ -177,7 +176,7 @@ def _not_asked_again(seen: SeenNode, guard: SeenNode, branch: Node, *, fixable: 
         ),
         notes=(
             f"{seen.shown} resumes the running child; `R?` starts with the first child at every tick",
-            "keep it if the choice is to be made only once",
+            f"keep {seen.shown} if the choice is to be made only once",
         ),
         fixes=(replace_fix("Check at every tick: `R?`", kind.span, _reactive(kind)),) if fixable else (),
     )

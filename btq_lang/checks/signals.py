@@ -111,9 +111,10 @@ def _of_text(demanded: Demanded, here: list[Signal], entries: list[Entries]) -> 
             port = declared_port(demanded, node, pair.key.text)
             if port is None or port.type is None or port.direction.raw == "input" or not is_text(port.type.text):
                 continue
-            message = f"`{signal.name}` is a number, but `{pair.key.text}` of `{node.node.head.text}` writes text"
+            port_of_node = f"the port `{pair.key.text}` of `{node.node.head.text}`"
+            message = f"the signal `{signal.name}` is a number, but {port_of_node} writes a string"
             related = (Related(node.place, "written here"),)
-            notes = ("the engine reads a number from the text, and ends the mission if the text contains none",)
+            notes = ("the engine converts the string to a number; if that fails, the mission ends",)
             yield (
                 signal.place,
                 Diagnostic("unit-mismatch", signal.place.span, message, related, notes, severity=Severity.WARNING),
@@ -139,7 +140,7 @@ def _may_be_unset(demanded: Demanded, guards: Iterable[Guard]) -> Iterator[Found
             Diagnostic(
                 "signal-may-be-unset",
                 place.span,
-                f"`{name}` has no initial value: a guard that reads it before anything writes it ends the mission",
+                f"`{name}` has no initial value: the mission ends if a guard reads it before anything writes it",
                 related=tuple(related[:3]),
                 notes=("add an initial value: `initially …`",),
             ),

@@ -210,13 +210,13 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     name = entry.item.name
     model = view.scope.find(Kind.MODEL, name.text)
     if name.text in BUILTINS:
-        message = f"a tree cannot have the name `{name.text}`, which is a built-in node"
+        message = f"a tree cannot have the name `{name.text}`: a built-in node has it"
         yield Diagnostic("tree-named-like-node", name.span, message)
     elif model is not None and not _is_subtree_model(model):
         yield Diagnostic(
             "tree-named-like-node",
             name.span,
-            f"a tree cannot have the name `{name.text}`, which is a node",
+            f"a tree cannot have the name `{name.text}`: a node has it",
             related=(view.defined_at(model, "node declared here"),),
         )
 

@@ -50,7 +50,7 @@ def _found(
     requirement = applied.requirement
     asked = "this" if requirement.classic else f"`on violation {requirement.action}`"  # classic ones are hard unasked
     note = (
-        "nothing stops the robot, `btq verify` can only check it in the logs afterwards: "
+        "nothing stops the robot, and `btq verify` can only check it in the logs afterwards; "
         "remove `on violation`, or write `on violation warn`"
     )
     return Diagnostic(

@@ -256,7 +256,7 @@ async function newProject(context: vscode.ExtensionContext): Promise<void> {
     await vscode.window.showTextDocument(mission);
     return;
   }
-  // The window of the folder starts this extension anew: it opens the mission there.
+  // The window of the folder starts this extension again: it opens the mission there.
   await context.globalState.update(NEW_MISSION, mission.toString());
   const isFree = !vscode.workspace.workspaceFolders?.length;
   await vscode.commands.executeCommand("vscode.openFolder", folder, { forceReuseWindow: isFree, forceNewWindow: !isFree });
