@@ -28,12 +28,14 @@ class Instance(Record):
         path: as the engine's `fullPath`.
         element: the element that it is made from; one element may be many nodes.
         callers: the SubTree elements that it is inside of, the outermost first.
+        parent: the number of the node above it; 0 for the root, None where nobody knows it.
     """
 
     uid: int | None
     path: str
     element: Element
     callers: tuple[Element, ...]
+    parent: int | None
 
 
 def instances(trees: Mapping[str, Element], main: str) -> Iterator[Instance]:
@@ -46,22 +48,23 @@ def instances(trees: Mapping[str, Element], main: str) -> Iterator[Instance]:
     uid: int | None = 0
     top = trees.get(main)
     callers: tuple[Element, ...] = ()
-    waiting = [(child, "", callers) for child in _children(top)] if top is not None else []
+    parent: int | None = 0
+    waiting = [(child, "", callers, parent) for child in _children(top)] if top is not None else []
     while waiting:
-        element, prefix, callers = waiting.pop()
+        element, prefix, callers, parent = waiting.pop()
         if uid is not None:
             uid = uid + 1 if uid < _MOST else None
         path = prefix + _own_path(element, uid)
-        yield Instance(uid, path, element, callers)
+        yield Instance(uid, path, element, callers, parent)
         if element.tag != "SubTree":
-            waiting += [(child, prefix, callers) for child in _children(element)]
+            waiting += [(child, prefix, callers, uid) for child in _children(element)]
             continue
         name = element.get("ID") or ""
         tree = trees.get(name)
         if uid is None or tree is None or name == main or any(name == caller.get("ID") for caller in callers):
             uid = None
         else:
-            waiting += [(child, f"{path}/", (*callers, element)) for child in _children(tree)]
+            waiting += [(child, f"{path}/", (*callers, element), uid) for child in _children(tree)]
 
 
 def _own_path(element: Element, uid: int | None) -> str:

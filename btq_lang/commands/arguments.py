@@ -202,10 +202,14 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "2 usage, I/O, or nothing to read\n\n"
         "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
         "  btq verify run.db3 --mission mission.btq           or named\n"
+        "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
         "  btq verify run.db3 --signals battery.csv           with samples of signals\n",
     )
     parser.add_argument(
-        "logs", nargs="+", metavar="LOG", help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), and folders"
+        "logs",
+        nargs="+",
+        metavar="LOG",
+        help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), ROS 2 bags (.mcap, .db3, folders), folders",
     )
     parser.add_argument(
         "--mission",

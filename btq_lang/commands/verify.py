@@ -14,7 +14,8 @@ from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.evidence import FORMATS, verify, write
 from btq_lang.evidence.identity import Candidate
-from btq_lang.evidence.readers import SUFFIXES
+from btq_lang.evidence.readers import SUFFIXES, whole_bags
+from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
@@ -40,7 +41,7 @@ def run(options: Namespace) -> int:
         problems += (*report.problems, *_without_verdicts(report), *_with_errors(report, missions))
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
-            print(f"btq verify: {each.file}: {runs} of another mission, not judged", file=sys.stderr)
+            print(f"btq verify: {each.file}: {runs} {each.of}, not judged", file=sys.stderr)
         colour = options.color == "always" or (
             options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ)
         )
@@ -58,7 +59,8 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     if problem := usage_problem([*options.logs, *options.mission]):
         problems.append(problem)
         return (), (), {}
-    logs, unreachable = collect(options.logs, find_project(".").project, SUFFIXES)
+    files, unreachable = collect(options.logs, find_project(".").project, (*SUFFIXES, METADATA))
+    logs = whole_bags(files)
     problems += map(str, unreachable)
     if not logs and not unreachable:
         problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(options.logs)}")

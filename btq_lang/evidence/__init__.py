@@ -6,6 +6,7 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     model.py       what a log says: the tree that ran, transitions, activations, samples
     runs.py        transitions to activations and runs
     identity.py    which node of a log is which written node
+    named_runs.py  the same of a log that has no tree, run by run
     signals.py, conditions.py   what signals were at a moment, and whether conditions held
     guards.py      what the nodes did that a build has put around others
     verbs/         a module a verb: what an activation came to
@@ -45,29 +46,29 @@ def verify(
         shown: a path as people read it.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
-    from btq_lang.evidence.identity import join
+    from btq_lang.evidence.named_runs import joined_sessions
     from btq_lang.evidence.readers import NotALog, read
     from btq_lang.evidence.runs import count_runs
     from btq_lang.evidence.verdicts import Foreign, Report
 
     evaluations = {mission.path: MissionEvaluation(mission) for mission in missions}
-    foreign: list[Foreign] = []
+    foreign: dict[tuple[str, str], int] = {}
     problems: list[str] = []
     runs = 0
     for log in logs:
         try:
-            for session in read(log):
-                joined = join(missions, session.tree)
-                if joined is None:
-                    foreign.append(Foreign(shown(log), count_runs(session)))
+            for source, session, joined in joined_sessions(read(log), missions, shown(log)):
+                if isinstance(joined, str):
+                    foreign[source, joined] = foreign.get((source, joined), 0) + count_runs(session)
                 else:
-                    runs += evaluations[joined.mission.path].read(session, joined, samples, runs + 1, shown(log))
+                    runs += evaluations[joined.mission.path].read(session, joined, samples, runs + 1, source)
         except NotALog as error:
             problems.append(f"{shown(log)}: {error}")
         except OSError as error:
             problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
+    others = [Foreign(source, number, of) for (source, of), number in foreign.items()]
     results = tuple(each.result() for each in evaluations.values())
-    return Report(tuple(each for each in results if each.sources), tuple(foreign), tuple(problems))
+    return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))
 
 
 def write(report: Report, form: str, *, colour: bool = False) -> str:

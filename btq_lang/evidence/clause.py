@@ -52,7 +52,7 @@ class JudgedClause:
             if uid is not None:
                 found.append(uid)
             else:
-                self._missing = self._missing or f"`{path}` was not found in a log of another version of the mission"
+                self._missing = self._missing or f"`{path}` {joined.lacking}"
         return found
 
     def judge(self, activation: Activation, guard: Guard | None, signals: Signals, path: str) -> None:

@@ -11,6 +11,7 @@ from btq_lang.btcpp.export import export, is_mission
 from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.evidence.model import LoggedTree
 from btq_lang.record import Record, replace
 from btq_lang.requirements import requirements
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
-    from btq_lang.evidence.model import LoggedTree
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.model import Target
     from btq_lang.workspace import Workspace
@@ -41,10 +41,10 @@ class Candidate:
         self.name: Final = name
         self.side: Final = side
         self.requirements: Final[Requirements] = requirements(workspace, path)
-        self._builds: Final[list[_Build]] = []
+        self._builds: Final[list[Build]] = []
         self._unmade: Final = _builds(self)
 
-    def builds(self) -> Iterator[_Build]:
+    def builds(self) -> Iterator[Build]:
         """What `btq build` makes of it: as it does without options first."""
         yield from self._builds
         for build in self._unmade:
@@ -60,6 +60,7 @@ class Joined(Record):
         how: how they were found.
         uids: of the nodes that were found, by the number that they have in the build.
         number: how many of the log's nodes were found.
+        lacking: why the others were not.
     """
 
     mission: Candidate
@@ -67,7 +68,8 @@ class Joined(Record):
     how: str
     uids: Mapping[int, int]
     number: int
-    build: _Build
+    build: Build
+    lacking: str = "was not found in a log of another version of the mission"
 
     def instances(self, target: Target) -> list[tuple[str, int | None]]:
         """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
@@ -84,11 +86,21 @@ class Joined(Record):
         return found
 
 
-class _Build(Record):
+class Build(Record):
     """What a build makes of a mission; how: with which options, in words."""
 
     how: str
     running: RunningTree
+
+    def tree(self) -> LoggedTree:
+        """As a log has it, as far as its nodes have numbers."""
+        return LoggedTree(
+            [
+                (each.uid, _kind(each.element), each.path, each.parent or 0)
+                for each, _ in self.running.all
+                if each.uid is not None
+            ]
+        )
 
 
 def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
@@ -104,7 +116,12 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
     return best if best is not None and best.number * 2 >= len(wanted) else None
 
 
-def _same(mission: Candidate, build: _Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
+def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:
+    """All nodes, where a log's tree is just the one that a build makes."""
+    return _same(mission, build, tree, [(node.uid, node.kind, node.path) for node in tree.nodes.values()])
+
+
+def _same(mission: Candidate, build: Build, tree: LoggedTree, wanted: list[tuple[int, str, str]]) -> Joined | None:
     """All nodes, where the tree is just the one that a build makes."""
     made = [(_number(each), _kind(each.element), each.path) for each, _ in build.running.all]
     if made != wanted:
@@ -114,7 +131,7 @@ def _same(mission: Candidate, build: _Build, tree: LoggedTree, wanted: list[tupl
     return Joined(mission, tree, how, {uid: uid for uid, *_ in wanted}, len(wanted), build)
 
 
-def _by_path(mission: Candidate, build: _Build, tree: LoggedTree) -> Joined:
+def _by_path(mission: Candidate, build: Build, tree: LoggedTree) -> Joined:
     """The nodes whose path is the same, and no other node's on either side."""
     logged = _unique([((node.kind, _without_number(node.path)), node.uid) for node in tree.nodes.values()])
     made = _unique(
@@ -124,7 +141,7 @@ def _by_path(mission: Candidate, build: _Build, tree: LoggedTree) -> Joined:
     return Joined(mission, tree, "built from another version", uids, len(uids), build)
 
 
-def _builds(mission: Candidate) -> Iterator[_Build]:
+def _builds(mission: Candidate) -> Iterator[Build]:
     """The trees that builds with different options make, without those that cannot be made."""
     workspace = mission.workspace
     targets = [workspace.project.target, *(each for each in VERSIONS if each != workspace.project.target)]
@@ -134,7 +151,7 @@ def _builds(mission: Candidate) -> Iterator[_Build]:
             running = _running(mission, workspace.with_project(project), is_enforced)
             if running is not None:
                 how = "as built now" if target == targets[0] else f"as built for {target}"
-                yield _Build(how if is_enforced else f"{how} with --no-enforce", running)
+                yield Build(how if is_enforced else f"{how} with --no-enforce", running)
 
 
 def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:

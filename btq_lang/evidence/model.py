@@ -44,14 +44,26 @@ class LoggedNode(Record):
     parent: int
     last: int
 
+    @property
+    def name(self) -> str:
+        """As the engine calls it: its own name, or else its kind."""
+        own = self.path.rpartition("/")[2]
+        return self.kind if own == f"{self.kind}::{self.uid}" else own
+
 
 class LoggedTree:
     """The tree in a log, with its nodes by uid."""
 
-    def __init__(self, nodes: Sequence[LoggedNode]) -> None:
-        self.nodes: Final = {node.uid: node for node in nodes}
-        self.parent: Final = {node.uid: node.parent for node in nodes}
-        self.last: Final = {node.uid: node.last for node in nodes}
+    def __init__(self, nodes: Sequence[tuple[int, str, str, int]]) -> None:
+        """Make it of uid, kind, path and parent of each node, in the order of the uids."""
+        self.parent: Final = {uid: parent for uid, _, _, parent in nodes}
+        self.last: Final = {uid: uid for uid, *_ in nodes}
+        for uid, _, _, parent in reversed(nodes):
+            if parent:
+                self.last[parent] = max(self.last[parent], self.last[uid])
+        self.nodes: Final = {
+            uid: LoggedNode(uid, kind, path, parent, self.last[uid]) for uid, kind, path, parent in nodes
+        }
 
 
 class Activation:
@@ -136,6 +148,26 @@ class Session:
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
         self.remarks: Final = [] if remarks is None else remarks
+
+
+class NamedLog(Record):
+    """A log that says which nodes changed and not what tree they are of, and that may mix runs of several trees.
+
+    Attributes:
+        topic: where it was published; empty where the file has no other one.
+        nodes: uid and name of each node; the uid is 0 where the log has none.
+        times, changed, statuses: of each status change its time, the index of its node, and its new status.
+        trees: those that the file has beside the changes, in their order.
+        remarks: what is to be said of the file.
+    """
+
+    topic: str
+    nodes: Sequence[tuple[int, str]]
+    times: array[int]
+    changed: array[int]
+    statuses: array[int]
+    trees: Sequence[LoggedTree]
+    remarks: Sequence[str]
 
 
 _LARGEST: Final = 1e200

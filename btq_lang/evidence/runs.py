@@ -44,7 +44,7 @@ def activations(session: Session) -> Iterator[Activation]:
         if idle is not None:
             halted, halted_at = idle
             idle = None
-            if not (halted == uid and completes and time - halted_at <= _ONE_COMPLETION):
+            if not (halted == uid and completes and time - halted_at <= ONE_COMPLETION):
                 yield from nodes.end(halted, halted_at, "H")
         if status == RUNNING:
             if uid in running:
@@ -151,6 +151,6 @@ class _Oddities:
             self._session.remarks.append(f"{what}: {number}, the first at {timestamp(first)}")
 
 
-_ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
+ONE_COMPLETION: Final = 1000  # µs between a node's IDLE and its own result
 _UNWRITTEN: Final = "halts without a row of their own, so only the latest possible end is known"
 _STATUSES: Final = range(SKIPPED + 1)

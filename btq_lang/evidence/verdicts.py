@@ -203,10 +203,11 @@ class MissionVerdicts(Record):
 
 
 class Foreign(Record):
-    """Runs of a tree that is of no mission: counted, and left alone."""
+    """Runs that are not judged, and what they are of: another mission, or one of several."""
 
     file: str
     runs: int
+    of: str
 
 
 class Report(Record):

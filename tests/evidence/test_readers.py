@@ -24,7 +24,10 @@ TEXT = f"signal battery : % from {{battery}}\n{DEMANDS}{MAIN}"
 MISSION = Candidate(Workspace.of({"main.btq": TEXT}), "main.btq", "main", None)
 
 
-FOREIGN = "expected a BehaviorTree.CPP log: .btlog from FileLogger2, .db3 or .btdb from SqliteLogger"
+FOREIGN = (
+    "expected a BehaviorTree.CPP log (.btlog from FileLogger2, .db3 or .btdb from SqliteLogger) or a ROS 2 bag (.mcap,"
+    " .db3, or a folder with metadata.yaml)"
+)
 UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them"
 
 

@@ -12,7 +12,7 @@ from evidence_logs import MAIN_XML, START, btlog, rows, write_db3
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.evidence.model import Activation, LoggedNode, LoggedTree, Session
+from btq_lang.evidence.model import Activation, LoggedTree, Session
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
 
@@ -144,9 +144,7 @@ def test_durations_across_a_clock_that_was_set_back_are_unknown(tmp_path: Path) 
 
 
 # 1 has the children 2 and 4, 2 has the child 3.
-TREE = LoggedTree(
-    [LoggedNode(uid, "N", f"N::{uid}", *around) for uid, around in enumerate(((0, 4), (1, 3), (2, 3), (1, 4)), 1)]
-)
+TREE = LoggedTree([(uid, "N", f"N::{uid}", parent) for uid, parent in enumerate((0, 1, 2, 1), 1)])
 ANY_ROWS = st.lists(st.tuples(st.integers(0, 3000), st.integers(1, 4), st.integers(0, 3)), max_size=40)
 
 

@@ -269,7 +269,7 @@ def test_exit_codes(demands: str, more: tuple[str, ...], code: int, lab: Path) -
     [
         (("none.btlog",), "btq verify: none.btlog: cannot be read: No such file or directory\n"),
         (("",), "btq verify: empty path; `.` is this folder\n"),
-        (("folder",), "btq verify: no .btlog, .db3 or .btdb below folder\n"),
+        (("folder",), "btq verify: no .btlog, .db3, .btdb or .mcap below folder\n"),
         (("lab.btlog", "--mission", "none.btq"), "btq verify: none.btq: cannot be read: No such file or directory\n"),
         (("lab.btlog", "--signals", "none.csv"), "btq verify: none.csv: cannot be read: No such file or directory\n"),
         (("lab.btlog", "--mission", "folder"), "btq verify: no mission found; name one with --mission FILE\n"),

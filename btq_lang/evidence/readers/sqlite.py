@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from contextlib import contextmanager
 from urllib.request import pathname2url
 
 from btq_lang.evidence.model import Series, Session, is_sample
@@ -30,22 +31,42 @@ def read(path: str) -> Iterator[Session]:
         NotALog: it is not a database of SqliteLogger.
         OSError: it cannot be read.
     """
+    with _opened(path) as database:
+        yield from _sessions(database)
+
+
+def is_bag(path: str) -> bool:
+    """Whether a database is a ROS 2 bag, by its tables.
+
+    Raises:
+        NotALog: it cannot be read as a database.
+        OSError: it cannot be read.
+    """
+    with _opened(path) as database:
+        return {"topics", "messages"} <= _tables(database)
+
+
+@contextmanager
+def _opened(path: str) -> Iterator[sqlite3.Connection]:
     with open(path, "rb") as file:  # for the reason, which SQLite does not give
         if file.read(len(MAGIC)) != MAGIC:
             raise NotALog("expected a SQLite database, as SqliteLogger writes it")
     database = sqlite3.connect(f"file:{pathname2url(path)}?mode=ro", uri=True)
     try:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
-        yield from _sessions(database)
+        yield database
     except _DAMAGED as error:
         raise NotALog(f"the database cannot be read: {error}") from error
     finally:
         database.close()
 
 
+def _tables(database: sqlite3.Connection) -> set[str]:
+    return {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+
+
 def _sessions(database: sqlite3.Connection) -> Iterator[Session]:
-    tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
-    if missing := sorted({"Definitions", "Transitions"} - tables):
+    if missing := sorted({"Definitions", "Transitions"} - _tables(database)):
         raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
     for number, xml in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id").fetchall():
         samples: dict[str, Series] = {}

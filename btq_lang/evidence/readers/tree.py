@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.reader import read as read_xml
-from btq_lang.evidence.model import ROOT, LoggedNode, LoggedTree
+from btq_lang.evidence.model import ROOT, LoggedTree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -42,11 +42,7 @@ def read_tree(xml: bytes | str) -> LoggedTree:
     nodes = _numbered(tops)
     if [uid for uid, *_ in nodes] != [*range(1, len(nodes) + 1)]:
         raise NotALog("the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them")
-    last = {uid: uid for uid, *_ in nodes}
-    for uid, _, _, parent in reversed(nodes):
-        if parent:
-            last[parent] = max(last[parent], last[uid])
-    return LoggedTree([LoggedNode(uid, kind, path, parent, last[uid]) for uid, kind, path, parent in nodes])
+    return LoggedTree(nodes)
 
 
 def _numbered(tops: dict[int, tuple[Element, str]]) -> list[tuple[int, str, str, int]]:

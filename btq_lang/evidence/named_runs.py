@@ -1,0 +1,201 @@
+"""Which mission each run is of in a log that names nodes and has no tree of its own.
+
+One invariant: a run is judged only where every node that it names is in one tree and in no tree of another mission; a
+run that fits none, or several, is counted and left alone.
+
+Nav2's two navigators number the nodes of their trees from 1 each and log to one topic, and a goal may bring a tree of
+its own.  So the log is cut before the first change after the root has ended, and each piece is joined by itself;
+neighbours of one mission are put together again.
+"""
+
+from __future__ import annotations
+
+from btq_lang.caches import cached_property
+from btq_lang.evidence.identity import join, join_build
+from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session
+from btq_lang.evidence.runs import ONE_COMPLETION
+from btq_lang.record import replace
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence, Set
+    from typing import Final
+
+    from btq_lang.evidence.identity import Build, Candidate, Joined
+    from btq_lang.evidence.model import Transition
+
+
+OTHER: Final = "of another mission"
+SEVERAL: Final = "of one of several missions that fit"
+
+
+def joined_sessions(
+    read: Iterable[Session | NamedLog], missions: Sequence[Candidate], source: str
+) -> Iterator[tuple[str, Session, Joined | str]]:
+    """What a log holds, each session with the mission that it is of, or with words for what it is of instead.
+
+    Args:
+        source: the file, as people read it; it comes with each session, with the topic where there are several.
+    """
+    for each in read:
+        if isinstance(each, Session):
+            yield source, each, join(missions, each.tree) or OTHER
+        else:
+            name = f"{source} {each.topic}" if each.topic else source
+            yield from ((name, session, joined) for session, joined in _sessions(each, missions))
+
+
+def _sessions(log: NamedLog, missions: Sequence[Candidate]) -> Iterator[tuple[Session, Joined | str]]:
+    trees = _Trees(log, missions)
+    pieces = [(*piece, frozenset(log.changed[slice(*piece)])) for piece in _pieces(log, trees.roots)]
+    joined_by = trees.joined({nodes for *_, nodes in pieces})
+    at = 0
+    while at < len(pieces):
+        begin, end, nodes = pieces[at]
+        joined = joined_by[nodes]
+        at += 1
+        while at < len(pieces) and joined_by[pieces[at][2]] is joined:
+            end = pieces[at][1]
+            at += 1
+        if isinstance(joined, str):
+            uids = dict.fromkeys((trees.roots & nodes) or {log.changed[begin]}, ROOT)
+            tree = LoggedTree([(ROOT, "", "", 0)])
+        else:
+            uids = trees.uids(joined.tree)
+            tree = joined.tree
+        yield Session(tree, _transitions(log, begin, end, uids), {}, [*log.remarks]), joined
+
+
+def _pieces(log: NamedLog, roots: Set[int]) -> Iterator[tuple[int, int]]:
+    """The stretches of a log that may be of different trees: each ends before the first change to another status than
+    IDLE after a root has ended."""
+    begin = 0
+    is_open = True  # what is before the first row of a root belongs to its run
+    idle_at: int | None = None  # when the root was halted, if that is the row before
+    for index, (time, node, status) in enumerate(zip(log.times, log.changed, log.statuses, strict=True)):
+        is_root = node in roots
+        completes = is_root and status in (SUCCESS, FAILURE)
+        if not is_open and status != IDLE:
+            if not (completes and idle_at is not None and time - idle_at <= ONE_COMPLETION):
+                yield begin, index
+                begin = index
+            is_open = True
+        if is_root and status != RUNNING:
+            is_open = False
+        idle_at = time if is_root and status == IDLE else None
+    if begin < len(log.times):
+        yield begin, len(log.times)
+
+
+def _transitions(log: NamedLog, begin: int, end: int, uids: dict[int, int]) -> Iterator[Transition]:
+    """The changes of the nodes that have a uid."""
+    for time, node, status in zip(log.times[begin:end], log.changed[begin:end], log.statuses[begin:end], strict=True):
+        if node in uids:
+            yield time, uids[node], status
+
+
+class _Trees:
+    """The trees that the runs of a log may be of: those in its file, else what builds make of the missions."""
+
+    def __init__(self, log: NamedLog, missions: Sequence[Candidate]) -> None:
+        self._log: Final = log
+        self._has_uids: Final = any(uid for uid, _ in log.nodes)
+        self._missions: Final = missions
+        self._given: Final = [(_Names(tree), join(missions, tree)) for tree in reversed(log.trees)]
+        self._made: Final[dict[int, tuple[_Names, Joined] | None]] = {}
+
+    @cached_property
+    def roots(self) -> Set[int]:
+        """The nodes that are the root of some tree, by their index."""
+        nodes = self._log.nodes
+        if self._has_uids:
+            return {index for index, (uid, _) in enumerate(nodes) if uid == ROOT}
+        trees = [tree for tree, _ in self._given]
+        trees += [tree for mission in self._missions for tree, _ in self._builds(mission)]
+        names = {tree.root for tree in trees if tree.is_unique(ROOT)}
+        return {index for index, (_, name) in enumerate(nodes) if name in names}
+
+    def joined(self, runs: Set[frozenset[int]]) -> dict[frozenset[int], Joined | str]:
+        """The mission of each run, of which the nodes are given, or what it is of instead."""
+        named = {run: {self._log.nodes[each] for each in run} for run in runs}
+        found: dict[frozenset[int], Joined | str] = {}
+        for run, nodes in named.items():
+            for tree, joined in self._given:
+                if tree.has(nodes):
+                    found[run] = joined or OTHER
+                    break
+        left = {run: nodes for run, nodes in named.items() if run not in found}
+        fitting: dict[frozenset[int], list[Joined]] = {run: [] for run in left}
+        for mission in self._missions if left else ():
+            builds: list[tuple[Set[frozenset[int]], Joined]] = []
+            for tree, joined in self._builds(mission):
+                builds.append(({run for run, nodes in left.items() if tree.has(nodes)}, joined))
+                if len(builds[-1][0]) == len(left):
+                    break
+            builds.sort(key=lambda each: -len(each[0]))  # a short run may fit builds that the others do not
+            for run in left:
+                fitting[run] += [joined for runs, joined in builds if run in runs][:1]
+        return found | {run: each[0] if len(each) == 1 else SEVERAL if each else OTHER for run, each in fitting.items()}
+
+    def uids(self, tree: LoggedTree) -> dict[int, int]:
+        """The uids of the log's nodes in a tree, by their index."""
+        names = _Names(tree)
+        found = ((index, names.uid(*node)) for index, node in enumerate(self._log.nodes))
+        return {index: uid for index, uid in found if uid is not None}
+
+    def _builds(self, mission: Candidate) -> Iterator[tuple[_Names, Joined]]:
+        for build in mission.builds():
+            if id(build) not in self._made:
+                self._made[id(build)] = self._joined_build(mission, build)
+            if (made := self._made[id(build)]) is not None:
+                yield made
+
+    def _joined_build(self, mission: Candidate, build: Build) -> tuple[_Names, Joined] | None:
+        tree = build.tree()
+        joined = join_build(mission, build, tree)
+        names = _Names(tree)
+        if joined is None:  # some of its nodes have no number
+            return None
+        return names, joined if self._has_uids else _by_name(joined, names)
+
+
+def _by_name(joined: Joined, names: _Names) -> Joined:
+    """Only the nodes whose name no other node of the tree has."""
+    uids = {uid: uid for uid in joined.uids if names.is_unique(uid)}
+    return replace(
+        joined,
+        how="by name, for the log has no uids",
+        uids=uids,
+        number=len(uids),
+        lacking="has a name that another node has too, and the log has no uids",
+    )
+
+
+class _Names:
+    """The names of a tree's nodes.
+
+    Attributes:
+        root: of the root.
+    """
+
+    def __init__(self, tree: LoggedTree) -> None:
+        self._names: Final = {uid: node.name for uid, node in tree.nodes.items()}
+        self._named: Final[dict[str, list[int]]] = {}
+        for uid, name in self._names.items():
+            self._named.setdefault(name, []).append(uid)
+        self.root: Final = self._names.get(ROOT, "")
+
+    def has(self, nodes: Set[tuple[int, str]]) -> bool:
+        """Whether all of some nodes are in the tree."""
+        return all(self._names.get(uid) == name if uid else name in self._named for uid, name in nodes)
+
+    def is_unique(self, uid: int) -> bool:
+        """Whether no other node has the name of this one."""
+        return len(self._named.get(self._names.get(uid, ""), ())) == 1
+
+    def uid(self, uid: int, name: str) -> int | None:
+        """The uid of a node, which may lack one; None where it is not known."""
+        if uid:
+            return uid if self._names.get(uid) == name else None
+        named = self._named.get(name, ())
+        return named[0] if len(named) == 1 else None

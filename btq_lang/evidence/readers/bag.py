@@ -1,0 +1,290 @@
+"""ROS 2 bags, read by `rosbags`: folders with a metadata.yaml, MCAP files and rosbag2's SQLite files.
+
+One invariant: whatever `rosbags` trips over in a file is one NotALog, or, once messages have come, one remark; of a
+recording that was cut off, what is whole is read.
+
+Only the definitions of the types that are asked for are looked at, so a type that `rosbags` cannot read spoils nothing
+else in its bag.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from io import BufferedReader, RawIOBase
+from pathlib import Path
+
+from btq_lang.evidence.readers.tree import NotALog
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator
+    from typing import Any, BinaryIO, Final
+
+    from rosbags.interfaces import Connection
+
+MCAP: Final = b"\x89MCAP0\r\n"
+METADATA: Final = "metadata.yaml"
+TREE_LOG: Final = "nav2_msgs/msg/BehaviorTreeLog"
+TEXT: Final = "std_msgs/msg/String"
+
+
+class Bag:
+    """An open bag.
+
+    Attributes:
+        connections: each topic with its type.
+        remarks: what is to be said of the file, complete when the messages have been read.
+    """
+
+    def __init__(self, storages: list[Any], remarks: list[str]) -> None:
+        self.connections: Final[list[Connection]] = [each for storage in storages for each in storage.connections]
+        self.remarks: Final = remarks
+        self._storages: Final = storages
+
+    def of_type(self, name: str) -> list[Connection]:
+        """The topics of a type."""
+        return [each for each in self.connections if each.msgtype == name]
+
+    def messages(self, connections: Collection[Connection]) -> Iterator[tuple[str, int, Any]]:
+        """The messages of topics in the order in which they were received: topic, time of reception in ns, message."""
+        decoders = {each.msgtype: _decoder(each) for each in connections}
+        unread = 0
+        for storage in self._storages:
+            raw = storage.messages([each for each in storage.connections if each in connections])
+            while True:
+                try:
+                    connection, received, data = next(raw)
+                except StopIteration:
+                    break
+                except Exception as error:  # `rosbags` lets through what its parts raise
+                    self.remarks.append(
+                        f"the bag is damaged, and what comes after the damage is left out: {_said(error)}"
+                    )
+                    break
+                try:
+                    message = decoders[connection.msgtype](data)
+                except Exception:
+                    unread += 1
+                else:
+                    yield connection.topic, received, message
+        if unread:
+            self.remarks.append(f"messages that cannot be decoded, left out: {unread}")
+
+
+@contextmanager
+def opened(path: str) -> Iterator[Bag]:
+    """A bag, open while the context lasts.
+
+    Args:
+        path: of a folder or a file.
+
+    Raises:
+        NotALog: `rosbags` is missing, or cannot read it.
+        OSError: it cannot be read.
+    """
+    try:
+        from rosbags.rosbag2 import Reader
+    except ImportError as error:
+        raise NotALog("a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'") from error
+    remarks: list[str] = []
+    if os.path.isdir(path):
+        storages = [Reader.STORAGE_PLUGINS["dir"](Path(path))]
+    else:
+        with open(path, "rb") as file:
+            is_mcap = file.read(len(MCAP)) == MCAP
+        whole = _WholeFile(path, remarks) if is_mcap else Path(path)
+        storages = [Reader.STORAGE_PLUGINS[".mcap" if is_mcap else ".db3"](whole)]  # type: ignore[arg-type]
+    try:
+        for storage in storages:
+            storage.open()
+    except OSError:
+        raise
+    except Exception as error:
+        raise NotALog(f"the bag cannot be read: {_said(error)}") from error
+    try:
+        yield Bag(storages, remarks)
+    finally:
+        for storage in storages:
+            storage.close()
+
+
+def files_in(folder: str) -> tuple[str, ...]:
+    """The paths of the files of a bag and of its metadata; empty where the folder is not that of a bag."""
+    metadata = os.path.join(folder, METADATA)
+    try:
+        with open(metadata, encoding="utf-8", errors="replace") as file:
+            text = file.read()
+        names = os.listdir(folder)
+    except OSError:
+        return ()
+    if "rosbag2_bagfile_information" not in text:
+        return ()
+    return metadata, *(os.path.join(folder, name) for name in names if name in text)
+
+
+def _said(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+# ---- messages ----
+
+
+def _decoder(connection: Connection) -> Callable[[bytes], Any]:
+    """What makes a message of bytes, by the definition in the bag, else by a known one.
+
+    Raises:
+        NotALog: there is no definition of its type.
+    """
+    from rosbags.interfaces import MessageDefinitionFormat
+    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+    name = connection.msgtype
+    text = connection.msgdef.data
+    store = get_typestore(Stores.EMPTY)
+    try:
+        if connection.msgdef.format == MessageDefinitionFormat.MSG:
+            store.register(get_types_from_msg(text, name))
+        elif connection.msgdef.format == MessageDefinitionFormat.IDL:
+            for part in text.split(_IDL_RULE):
+                store.register(get_types_from_idl(part.partition("\n")[2] if part.startswith("IDL: ") else part))
+        else:
+            store = get_typestore(Stores.LATEST)
+            if name == TREE_LOG:
+                return _either(*(_decoder(connection._replace(msgdef=each)) for each in _tree_log_definitions()))
+        store.get_msgdef(name)
+    except Exception as error:
+        raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
+    return lambda data: store.deserialize_cdr(data, name)
+
+
+def _tree_log_definitions() -> Iterator[Any]:
+    """Nav2's type since Jazzy, and before, when changes of status had no uid."""
+    from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
+
+    for uid in ("uint16 uid\n", ""):
+        yield MessageDefinition(MessageDefinitionFormat.MSG, _TREE_LOG_DEFINITION.format(uid=uid))
+
+
+def _either(first: Callable[[bytes], Any], second: Callable[[bytes], Any]) -> Callable[[bytes], Any]:
+    def decode(data: bytes) -> Any:
+        try:
+            return first(data)
+        except Exception:
+            return second(data)
+
+    return decode
+
+
+_TREE_LOG_DEFINITION: Final = """\
+builtin_interfaces/Time timestamp
+nav2_msgs/BehaviorTreeStatusChange[] event_log
+================================================================================
+MSG: nav2_msgs/BehaviorTreeStatusChange
+builtin_interfaces/Time timestamp
+string node_name
+{uid}string previous_status
+string current_status
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+_IDL_RULE: Final = f"{'=' * 80}\n"
+
+
+# ---- recordings that were cut off ----
+
+
+class _WholeFile:
+    """An MCAP file as `rosbags` opens it; of one that was cut off, its whole records, and an end."""
+
+    def __init__(self, path: str, remarks: list[str]) -> None:
+        self._path: Final = path
+        self._remarks: Final = remarks
+
+    def open(self, _: str) -> BinaryIO:
+        file = open(self._path, "rb")  # noqa: SIM115  # `rosbags` closes it
+        size = os.fstat(file.fileno()).st_size
+        if _has_end(file, size):
+            file.seek(0)
+            return file
+        parts = _whole_records(file, size)
+        self._remarks.append(f"cut off: the last {size - parts[-1][1]} bytes are not a whole record and are left out")
+        return BufferedReader(_Parts(file, parts))
+
+    def __str__(self) -> str:
+        return self._path
+
+
+def _has_end(file: BinaryIO, size: int) -> bool:
+    file.seek(max(0, size - len(MCAP)))
+    return file.read() == MCAP and size > len(MCAP)
+
+
+def _whole_records(file: BinaryIO, size: int) -> list[tuple[int, int]]:
+    """Where the whole records are: those before the cut, and those inside a chunk that was cut, if it is not packed."""
+    end, kind = _records(file, len(MCAP), size)
+    parts = [(0, min(end, size))]
+    if kind == _CHUNK:
+        file.seek(end + _RECORD_HEAD + 28)  # after two times, a size and a checksum
+        compression = int.from_bytes(file.read(4), "little")
+        begin = end + _RECORD_HEAD + 28 + 4 + 8
+        if compression == 0 and begin <= size:
+            inside, _ = _records(file, begin, size)
+            parts.append((begin, inside))
+    return parts
+
+
+def _records(file: BinaryIO, begin: int, size: int) -> tuple[int, bytes]:
+    """Where the last whole record ends, and what the record after it is, if any."""
+    while True:
+        file.seek(begin)
+        head = file.read(_RECORD_HEAD)
+        after = begin + _RECORD_HEAD + int.from_bytes(head[1:], "little")
+        if len(head) < _RECORD_HEAD or after > size:
+            return begin, head[:1]
+        begin = after
+
+
+class _Parts(RawIOBase):
+    """Parts of a file in a row, followed by the end of an MCAP file without an index."""
+
+    def __init__(self, file: BinaryIO, parts: list[tuple[int, int]]) -> None:
+        self._file: Final = file
+        self._parts: Final = parts
+        self._size: Final = sum(end - begin for begin, end in parts) + len(_NO_INDEX)
+        self._position = 0
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        self._position = {os.SEEK_CUR: self._position, os.SEEK_END: self._size}.get(whence, 0) + offset
+        return self._position
+
+    def readinto(self, buffer: Any) -> int:
+        data = self._at(self._position, len(buffer))
+        buffer[: len(data)] = data
+        self._position += len(data)
+        return len(data)
+
+    def _at(self, position: int, wanted: int) -> bytes:
+        for begin, end in self._parts:
+            if position < end - begin:
+                self._file.seek(begin + position)
+                return self._file.read(min(wanted, end - begin - position))
+            position -= end - begin
+        return _NO_INDEX[position : position + wanted]
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+
+_CHUNK: Final = b"\x06"
+_RECORD_HEAD: Final = 9  # what it is, and how long it is in 64 bits
+_NO_INDEX: Final = b"\x02" + (20).to_bytes(8, "little") + bytes(20) + MCAP
