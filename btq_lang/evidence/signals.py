@@ -64,9 +64,11 @@ class Signals:
                 continue
             times = series.between(begin, end)
             found.update(times)
-            if signal.fresh is not None and (before := series.at(begin)) is not None:
+            if signal.fresh is not None:
                 age = round(signal.fresh * 1e6) + 1
-                found.update([time + age for time in (before[0], *times) if begin < time + age <= end])
+                before = series.at(begin)
+                sampled = [*times] if before is None else [before[0], *times]
+                found.update([time + age for time in sampled if begin < time + age <= end])
         return sorted(found)
 
     def forget_before(self, time: int) -> None:

@@ -167,6 +167,10 @@ def test_a_signal_has_its_first_value_before_its_first_sample(verify: Verify) ->
     assert count(verify.clause("Move needs battery == 80 %", LONG, samples("battery", {-1: 5}), before=first)) == (
         "violated 1/1"
     )
+    grows_old = verify.clause(
+        "Move keeps battery > 20 %", LONG, samples("battery", {5: 50}), before=f"{FRESH} initially 80 %"
+    )
+    assert count(grows_old) == "unknown 0/0 ?1"
 
 
 @pytest.mark.parametrize(
