@@ -24,6 +24,7 @@ FAILED = "0 1R 2R 30 2F 1F"
 OPEN = "0 1R 2R 30 3I"
 UNWRITTEN = "0 1R 2R 30 1F"  # Move was halted at some time before
 BACK = "40 1R 2R 10 2S 1S"
+BACK_HALTED = "40 1R 2R 10 2I 1I"
 
 
 def count(clause: dict[str, Any]) -> str:
@@ -52,7 +53,8 @@ def count(clause: dict[str, Any]) -> str:
         ("Move takes at least 31 ms", FAILED, "violated 1/1"),
         ("Move takes at least 31 ms", HALTED, "never exercised 0/0"),
         ("Move takes at least 30 ms", HALTED, "never exercised 0/0"),
-        ("Move takes at least 30 ms", OPEN, "satisfied 0/1"),
+        ("Move takes at least 30 ms", BACK_HALTED, "never exercised 0/0"),
+        ("Move takes at least 30 ms", OPEN, "never exercised 0/0 |1"),
         ("Move takes between 10 ms and 30 ms", LONG, "satisfied 0/1"),
         ("Move takes between 10 ms and 20 ms", LONG, "violated 1/1"),
         ("Move takes between 40 ms and 50 ms", LONG, "violated 1/1"),

@@ -20,17 +20,18 @@ if TYPE_CHECKING:
 def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
     """Whether an activation is as long as it should be."""
     assert claim.limit is not None, "a time has a bound"
+    completed = activation.outcome in ("S", "F")
+    if not completed and claim.limit.relation in (">=", ">"):
+        return None
     found = measure(claim.limit, activation, signals)
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
     is_upper, duration = found
-    completed = activation.outcome in ("S", "F")
     if duration.excess > 0 and (is_upper or completed):
         if activation.timing == "latest":
             return Judgement(None, activation.end, UNKNOWN_END)
         return Judgement(False, activation.end, VERBS["takes"].said, duration)
-    is_open_ended = claim.limit.relation in (">=", ">")
-    if not completed and (duration.excess > 0 or activation.outcome == "H" or not is_open_ended):
+    if not completed:
         return None
     return Judgement(True, activation.end, VERBS["takes"].said, duration)
 
