@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from btq_lang.evidence.conditions import signals_in, truth
 from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs.takes import UNKNOWN_END
 from btq_lang.record import replace
 from btq_lang.requirements.model import All, Any, Not
 
@@ -39,8 +40,11 @@ def in_scope(scopes: Sequence[Scope], verb: str, activation: Activation, signals
         else:
             times = signals.moments(signals_in(scope.condition), activation.begin, activation.end)
         found = [truth(scope.condition, signals, time) for time in times]
+        is_some_enough = scope.word == "while" and verb in ("keeps", "never")  # some of its time counts
+        if activation.timing == "latest":  # at any moment but its start it may have been halted already
+            found[1:] = [Unknown(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
         unknown = next((each for each in found if isinstance(each, Unknown)), None)
-        if scope.word == "while" and verb in ("keeps", "never"):  # some of its time counts
+        if is_some_enough:
             if True in found:
                 continue
             counts = unknown or False

@@ -224,6 +224,22 @@ def test_scopes(demand: str, expected: str, verify: Verify) -> None:
     assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=before)) == expected
 
 
+@pytest.mark.parametrize(
+    ("demand", "expected"),
+    [
+        ("Move succeeds within 1 ms\nwhile battery >= 30 %", "unknown 0/0 ?1"),
+        ("Move needs battery > 50 %\nwhile battery >= 30 %", "unknown 0/0 ?1"),
+        ("Move needs battery > 50 %\nwhile battery >= 5 %", "violated 1/1"),
+        ("Move needs battery > 50 %\nwhile battery < 50 %", "never exercised 0/0"),
+        ("Move keeps battery < 99 %\nwhile battery < 50 %", "unknown 0/0 ?1"),
+        ("Move keeps battery < 99 %\nwhile battery >= 50 %", "satisfied 0/1"),
+        ("Move keeps battery < 99 %\nwhile battery < 5 %", "never exercised 0/0"),
+    ],
+)
+def test_a_scope_may_end_after_a_halt_that_was_not_logged(demand: str, expected: str, verify: Verify) -> None:
+    assert count(verify.clause(demand, UNWRITTEN, samples("battery", SAMPLES), before=LEVEL)) == expected
+
+
 # ---- odds ----
 
 GOOD, BAD, IDLE_RUN = "1R 2S 1S", "1R 2F 1F", "1R 3S 1S"
