@@ -66,15 +66,17 @@ class JudgedClause:
             said = f"stopped by its own guard after {duration(activation.seconds)}"
             self.tally.add(Judgement(False, activation.end, said), path)
             return
-        judgement = self._judge(self._judged, activation, signals)
-        if judgement is None:
-            self.tally.cut_off += activation.outcome == "O"
-            return
         counts = in_scope(self.requirement.scopes, self.claim.verb, activation, signals)
+        if counts is False:
+            return
+        judgement = self._judge(self._judged, activation, signals)
+        is_open = activation.outcome == "O"
+        if judgement is None or (is_open and judgement.holds):
+            self.tally.cut_off += is_open
+            return
         if isinstance(counts, Unknown):
             judgement = Judgement(None, judgement.at, counts.why)
-        if counts:
-            self.tally.add(judgement, path)
+        self.tally.add(judgement, path)
 
     def refuse(self, refusal: Refusal, path: str) -> None:
         """Count a start that was refused for what a requirement needs: that breaks what it needs, and no node succeeds

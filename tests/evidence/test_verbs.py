@@ -105,7 +105,7 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move needs battery > 50 %", LONG, "violated 1/1"),
         ("Move needs battery > 50 %", HALTED, "violated 1/1"),
         ("Move needs battery > 50 %", OPEN, "violated 1/1"),
-        ("Move needs battery >= 50 %", OPEN, "satisfied 0/1"),
+        ("Move needs battery >= 50 %", OPEN, "never exercised 0/0 |1"),
         ("Move needs 20 % < battery and battery < 60 %", LONG, "satisfied 0/1"),
         ("Move needs 20 % < battery < 40 %", LONG, "violated 1/1"),
         ("Move needs not battery < 20 %", LONG, "satisfied 0/1"),
@@ -119,6 +119,8 @@ SAMPLES = {-5: 50, 10: 30, 20: 5, 25: 30, 31: 1}
         ("Move keeps battery >= 6 %", LONG, "violated 1/1"),
         ("Move keeps battery >= 6 %", HALTED, "violated 1/1"),
         ("Move keeps battery >= 6 %", UNWRITTEN, "unknown 0/0 ?1"),
+        ("Move keeps battery >= 6 %", OPEN, "violated 1/1"),
+        ("Move keeps battery >= 5 %", OPEN, "never exercised 0/0 |1"),
         ("Move keeps battery < 50 %", LONG, "violated 1/1"),
         ("Move never battery < 5 %", LONG, "satisfied 0/1"),
         ("Move never battery < 6 %", LONG, "violated 1/1"),
@@ -238,6 +240,18 @@ def test_scopes(demand: str, expected: str, verify: Verify) -> None:
 )
 def test_a_scope_may_end_after_a_halt_that_was_not_logged(demand: str, expected: str, verify: Verify) -> None:
     assert count(verify.clause(demand, UNWRITTEN, samples("battery", SAMPLES), before=LEVEL)) == expected
+
+
+@pytest.mark.parametrize(
+    ("demand", "expected"),
+    [
+        ("Move succeeds\nwhile battery >= 5 %", "never exercised 0/0 |1"),
+        ("Move succeeds\nwhile battery >= 6 %", "never exercised 0/0"),
+        ("Move succeeds\nwhen battery < 50 %", "never exercised 0/0"),
+    ],
+)
+def test_what_does_not_count_is_not_cut_off(demand: str, expected: str, verify: Verify) -> None:
+    assert count(verify.clause(demand, OPEN, samples("battery", SAMPLES), before=LEVEL)) == expected
 
 
 # ---- odds ----
