@@ -12,7 +12,7 @@ from collections.abc import Callable
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import SourceNode, Value
 
-SUCCESS, FAILURE, SKIPPED, RUNNING = "success", "failure", "skip", "running"
+SUCCESS, FAILURE, SKIPPED, RUNNING, IDLE = "success", "failure", "skip", "running", "idle"
 Report = Callable[[SourceNode, str, float], None]
 
 
@@ -31,6 +31,19 @@ class Run:
         self.wakes = False  # something asks to be ticked again at once
         self.report = report
         self.root = make(self, root)
+
+    def change(self, node: Sim, status: str) -> None:
+        """A node's status changes: nothing is done with it here."""
+
+    def drawn(self, leaf: SourceNode) -> float:
+        """A duration that the leaf's `takes between` allows, often one of the ends."""
+        (applied,) = self.found.of(leaf)
+        limit = applied.requirement.claims[0].limit
+        assert limit is not None
+        assert isinstance(limit.value, Value)
+        assert isinstance(limit.upper, Value)
+        low, high = limit.value.si, limit.upper.si
+        return self.chance.choice([low, high, self.chance.randint(int(low * 4), int(high * 4)) / 4])
 
     def mission(self) -> None:
         """One run, from the first tick to the end.
@@ -67,7 +80,8 @@ class Sim:
 
     def execute(self) -> str:
         chance = self.run.chance
-        if self.started is None:
+        is_new = self.started is None
+        if is_new:
             self.started = self.run.now
             if "_failureIf" in self.keys and chance.random() < 0.3:
                 return self.end(FAILURE)
@@ -80,12 +94,17 @@ class Sim:
                 child.halt()
             self.halted()
             return self.end(SKIPPED)
+        if is_new and self.children:
+            self.run.change(self, RUNNING)
         status = self.tick()
+        if is_new and not self.children and status == RUNNING:
+            self.run.change(self, RUNNING)
         return status if status == RUNNING else self.end(status)
 
     def end(self, status: str) -> str:
         assert self.started is not None
         self.run.report(self.source, status, self.run.now - self.started)
+        self.run.change(self, status)
         self.started = None
         if status != SKIPPED:
             self.begin()
@@ -97,6 +116,7 @@ class Sim:
                 child.halt()
             self.started = None
             self.halted()
+            self.run.change(self, IDLE)
 
     def halted(self) -> None:
         self.begin()
@@ -133,7 +153,7 @@ class Leaf(Sim):
             return chance.choice([SUCCESS, SUCCESS, SUCCESS, FAILURE])
         assert self.started is not None
         if self.length is None:
-            self.length = self.number("msec", 0) / 1000 if self.source.tag == "Sleep" else self.drawn()
+            self.length = self.number("msec", 0) / 1000 if self.source.tag == "Sleep" else self.run.drawn(self.source)
         if self.run.now < self.started + self.length:
             self.run.alarms.append(self.started + self.length)
             return RUNNING
@@ -141,16 +161,6 @@ class Leaf(Sim):
 
     def begin(self) -> None:
         self.length: float | None = None
-
-    def drawn(self) -> float:
-        """A duration that its `takes between` allows, often one of the ends."""
-        (applied,) = self.run.found.of(self.source)
-        limit = applied.requirement.claims[0].limit
-        assert limit is not None
-        assert isinstance(limit.value, Value)
-        assert isinstance(limit.upper, Value)
-        low, high = limit.value.si, limit.upper.si
-        return self.run.chance.choice([low, high, self.run.chance.randint(int(low * 4), int(high * 4)) / 4])
 
 
 class InOrder(Sim):

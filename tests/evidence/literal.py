@@ -1,0 +1,98 @@
+"""What clauses mean, once more: word for word as the design tells it, slow, over lists of a whole session.
+
+What `btq_lang.evidence` says of a log is held against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from literal_log import micros
+from literal_over_runs import OverRuns, all_of
+from literal_verbs import OPEN, OUT, Judged
+
+from btq_lang.evidence.odds import lower_limit, upper_limit
+from btq_lang.requirements.model import Span, Total
+
+if TYPE_CHECKING:
+    from literal_verbs import Verdict
+
+    from btq_lang.requirements.model import Applied, Claim, Requirement
+
+
+@dataclass(frozen=True)
+class ClauseResult:
+    """A clause at a node.
+
+    Attributes:
+        judged: all of its activations.
+        experiments: what the odds speak of: these, or what they come to in each run.
+    """
+
+    verdict: str
+    judged: tuple[Judged, ...]
+    experiments: tuple[Verdict, ...]
+
+
+class Literal(OverRuns):
+    """A session, judged."""
+
+    def clause(self, applied: Applied, claim: Claim) -> ClauseResult:
+        """A claim of an applied requirement, with its scopes, odds and window."""
+        requirement = applied.requirement
+        if isinstance(applied.subject, Span):
+            judged = self.span(applied.subject, claim)
+        elif isinstance(applied.subject, Total):
+            judged = self.total(applied.subject, claim)
+        else:
+            judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
+            judged = [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
+        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.begin)))
+        experiments = [each.verdict for each in judged]
+        if requirement.odds is not None and requirement.odds.experiments == "runs":
+            of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
+            experiments = [all_of(verdicts) for verdicts in of_runs]
+        return ClauseResult(self.verdict(requirement, experiments), tuple(judged), tuple(experiments))
+
+    def verdict(self, requirement: Requirement, experiments: Sequence[Verdict]) -> str:
+        """What experiments come to together."""
+        odds = requirement.odds
+        yes, no, maybe = (sum(each is truth for each in experiments) for truth in (True, False, None))
+        if yes + no + maybe == 0:
+            return "never exercised"
+        if odds is None:
+            return "violated" if no else "unknown" if maybe else "satisfied"
+
+        def judge(k: int, n: int) -> str:
+            confidence = requirement.confidence
+            if confidence is None:
+                share = k / n
+                is_enough = share > odds.probability if odds.relation == ">" else share >= odds.probability
+                return "satisfied" if is_enough else "violated"
+            if lower_limit(k, n, confidence) >= odds.probability:
+                return "satisfied"
+            return "violated" if upper_limit(k, n, confidence) < odds.probability else "undecided"
+
+        if yes + no == 0:  # more runs like these decide nothing, so it is not undecided
+            return "unknown"
+        verdicts = {judge(yes, yes + no + maybe), judge(yes + maybe, yes + no + maybe)}
+        return verdicts.pop() if len(verdicts) == 1 else "unknown"
+
+    def last(self, requirement: Requirement, judged: list[Judged]) -> list[Judged]:
+        """Those in the window."""
+        window = requirement.window
+        if window is None:
+            return judged
+        if window.seconds is not None:
+            since = max((run.end for run in self.runs), default=0) - micros(window.seconds)
+            return [each for each in judged if each.begin >= since]
+        assert window.count is not None
+        if window.experiments == "runs":
+            return [each for each in judged if each.run >= len(self.runs) - window.count]
+        counted = [each for each in judged if each.verdict not in (OPEN, OUT)]
+        return counted[-window.count :]
+
+
+_OVER_RUNS = ("tries", "runs", "starts", "ends", "follows")

@@ -1,0 +1,184 @@
+"""Random runs by the number, judged twice: `python tests/evidence/literal_hunt.py --cases 10000 --seed 1`.
+
+What `btq_lang.evidence` and the literal judge differ in is printed, with the mission and the seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+if __name__ == "__main__":  # as pytest has it for tests
+    sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+
+from literal import ClauseResult, Literal
+from literal_verbs import OPEN
+from random_runs import Case, case
+
+from btq_lang.evidence.evaluate import MissionEvaluation
+from btq_lang.evidence.model import Session
+from btq_lang.evidence.odds import lower_limit, upper_limit
+from btq_lang.evidence.verdicts import ClauseVerdict
+from btq_lang.requirements.model import Aggregate, Applied, Claim, Requirement, Running, Span, Total
+from btq_lang.units import to_si
+
+# What btq_lang.evidence says of itself that it does not judge yet: not compared, and no more than this.
+NOT_JUDGED = frozenset(
+    ("uses", "tries", "runs", "starts", "ends", "follows", "from … to", "sum of", "over last", "node", "aggregates")
+)
+
+
+class Hunt:
+    """Cases that were judged twice.
+
+    Attributes:
+        compared: how many clauses have which verdict.
+        not_judged: how many clauses were left out, and why.
+        differences: what the two differ in, a text each.
+    """
+
+    def __init__(self) -> None:
+        self.compared: Counter[str] = Counter()
+        self.not_judged: Counter[str] = Counter()
+        self.differences: list[str] = []
+
+    def judge(self, seed: int) -> None:
+        """Judge the case of a seed twice."""
+        made = case(seed)
+        evaluation = MissionEvaluation(made.mission)
+        evaluation.read(Session(made.joined.tree, iter(made.rows)), made.joined, made.series, 1, "log")
+        literal = literal_of(made)
+        found = made.mission.requirements
+        for requirement in evaluation.result().requirements:
+            held = [each for each in found.applied if each.requirement.name == requirement.id]
+            clauses = [(each, claim) for each in held for claim in each.requirement.claims]
+            streamed = [each for each in requirement.clauses if each.why != "the clause applies to no node"]
+            assert len(clauses) == len(streamed), f"seed {seed}: {requirement}"
+            for (applied, claim), verdict in zip(clauses, streamed, strict=True):
+                assert verdict.text.startswith(claim.text)
+                self.compare(made, seed, literal, applied, claim, verdict)
+
+    def compare(
+        self, made: Case, seed: int, literal: Literal, applied: Applied, claim: Claim, streamed: ClauseVerdict
+    ) -> None:
+        if left_out := features(applied, claim) & NOT_JUDGED:
+            if len(left_out) == 1 and streamed.why.endswith(" not judged yet"):
+                self.not_judged.update(left_out)
+            return
+        judged = literal.clause(applied, claim)
+        self.compared[f"{claim.verb}: {judged.verdict}"] += 1
+        expected, got = expected_of(made, applied.requirement, judged), got_of(streamed)
+        if expected != got:
+            of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]
+            self.differences.append(
+                "\n".join(
+                    [
+                        f"seed {seed}: {applied.requirement.name} {streamed.text} at {streamed.path}",
+                        f"  literal:        {expected}",
+                        f"  btq_lang:       {got}",
+                        *(f"  {each}" for each in judged.judged),
+                        *(f"  {each}" for each in of_node),
+                        made.text,
+                    ]
+                )
+            )
+
+
+def features(applied: Applied, claim: Claim) -> set[str]:
+    """What a clause is made of, of what may not be judged yet."""
+    requirement = applied.requirement
+    kinds = {type(each) for each in parts((claim, requirement.scopes))}
+    found = {Running: "node", Aggregate: "aggregates"}
+    subjects = {Span: "from … to", Total: "sum of"}
+    return {
+        subjects.get(type(applied.subject), claim.verb),
+        *(name for kind, name in found.items() if kind in kinds),
+        *(["over last"] if requirement.window is not None else []),
+    }
+
+
+def parts(part: object) -> Iterator[object]:
+    """A part of a requirement, and all in it."""
+    yield part
+    if isinstance(part, tuple):
+        inner = part
+    elif hasattr(part, "__match_args__"):
+        inner = tuple(getattr(part, name) for name in part.__match_args__ if name != "place")
+    else:
+        inner = ()
+    for each in inner:
+        yield from parts(each)
+
+
+def literal_of(made: Case) -> Literal:
+    """The literal judge of a case."""
+    signals = made.mission.requirements.signals
+    samples = {
+        name: [(time, value if (unit := signals[name].unit) is None else to_si(value, unit)) for time, value in values]
+        for name, values in made.samples.items()
+    }
+    return Literal(
+        made.joined.tree,
+        made.subtrees,
+        made.rows,
+        samples,
+        signals,
+        lambda target: [uid for _, uid in made.joined.instances(target) if uid is not None],
+    )
+
+
+def expected_of(made: Case, requirement: Requirement, judged: ClauseResult) -> dict[str, object]:
+    """What a clause came to, by the literal judge."""
+    yes, no, maybe = (sum(each is truth for each in judged.experiments) for truth in (True, False, None))
+    confidence = requirement.confidence or 0.95
+    limits = (lower_limit(yes, yes + no, confidence), upper_limit(yes, yes + no, confidence)) if yes + no else None
+    broken = [(each.run + 1, made.joined.tree.nodes[each.uid].path) for each in judged.judged if each.verdict is False]
+    if requirement.odds is not None and requirement.odds.experiments == "runs":
+        broken = [*{run: (run, "") for run, _ in broken}.values()]  # the first one of each run
+    return {
+        "verdict": judged.verdict,
+        "counted": yes + no,
+        "violated": no,
+        "unknown": maybe,
+        "cut off": sum(each.verdict is OPEN for each in judged.judged),
+        "violations": sorted(broken),
+        "interval": limits if requirement.odds is not None and not maybe else None,
+    }
+
+
+def got_of(clause: ClauseVerdict) -> dict[str, object]:
+    """The same by `btq_lang.evidence`."""
+    return {
+        "verdict": clause.verdict,
+        "counted": clause.counted,
+        "violated": clause.violated,
+        "unknown": clause.unknown,
+        "cut off": clause.cut_off,
+        "violations": sorted((each.run, each.path if clause.unit != "runs" else "") for each in clause.violations),
+        "interval": clause.interval if clause.counted and not clause.unknown else None,
+    }
+
+
+def main() -> None:
+    """Judge many cases, and say what was found."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1, help="of the first case; the next ones follow it")
+    parser.add_argument("--shown", type=int, default=3, help="how many differences are printed")
+    options = parser.parse_args()
+    hunt = Hunt()
+    for seed in range(options.seed, options.seed + options.cases):
+        hunt.judge(seed)
+    for difference in hunt.differences[: options.shown]:
+        print(difference)
+    for counts in (hunt.compared, hunt.not_judged):
+        print("\n".join(f"{number:8} {what}" for what, number in sorted(counts.items())))
+    print(f"{options.cases} cases, {hunt.compared.total()} clauses compared, {len(hunt.differences)} differ")
+    sys.exit(bool(hunt.differences))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,409 @@
+"""Random missions with requirements of all kinds, and logs of them: what the model of the engine does, as rows.
+
+A log may be one of control nodes like Nav2's, which do not reset their children and write their rows late, twice or not
+at all; it may lack all rows to IDLE, be cut off, and have runs that nobody ended.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import engine_simulator as engine
+from check_asserts import workspace_of
+
+from btq_lang.evidence.identity import Candidate, Joined, join
+from btq_lang.evidence.model import (
+    FAILURE,
+    IDLE,
+    ROOT,
+    RUNNING,
+    SUCCESS,
+    LoggedTree,
+    Series,
+)
+from btq_lang.requirements.model import SourceNode
+from btq_lang.rules import Severity
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import SampleValue, Transition
+
+STATUS = {engine.IDLE: IDLE, engine.RUNNING: RUNNING, engine.SUCCESS: SUCCESS, engine.FAILURE: FAILURE}
+ACTIONS = ("Move", "Pick", "Look")
+START = 1_795_209_740_000_000  # µs since the epoch
+MOST_NODES = 25
+MOST_ROWS = 300
+
+
+@dataclass(frozen=True)
+class Case:
+    """A mission, and a log of some runs of it.
+
+    Attributes:
+        subtrees: the uids of SubTree nodes.
+        samples: by signal, in its own unit.
+    """
+
+    text: str
+    mission: Candidate
+    joined: Joined
+    subtrees: frozenset[int]
+    rows: list[Transition]
+    samples: dict[str, list[tuple[int, SampleValue]]]
+
+    @property
+    def series(self) -> dict[str, Series]:
+        """The samples as a file of them gives them."""
+        found = {name: Series() for name in self.samples}
+        for name, values in self.samples.items():
+            for time, value in values:
+                found[name].add(time, value)
+        return found
+
+
+def case(seed: int) -> Case:
+    """The case of a seed: the same in every process."""
+    chance = random.Random(seed)
+    while True:
+        text = mission(chance)
+        candidate = Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
+        problems = [each.diagnostic for each in candidate.requirements.problems]
+        assert not any(each.severity == Severity.ERROR for each in problems), (text, problems)
+        nodes = [*next(candidate.builds()).running.all]
+        if len(nodes) <= MOST_NODES:
+            break
+    root = candidate.requirements.mission
+    assert root is not None
+    run, rows = runs(candidate, root, chance)
+    logged = [
+        (uid, each.element.get("ID") or each.element.tag, each.path, run.parent[uid])
+        for uid, (each, _) in enumerate(nodes, 1)
+    ]
+    joined = join([candidate], LoggedTree(logged))
+    assert joined is not None
+    assert joined.how == "as built now", text
+    subtrees = frozenset(uid for uid, (each, _) in enumerate(nodes, 1) if each.element.tag == "SubTree")
+    return Case(text, candidate, joined, subtrees, rows, samples(chance, rows))
+
+
+# ---- Missions -------------------------------------------------------------------------------------------------------
+
+
+def mission(chance: random.Random) -> str:
+    """The text of a mission."""
+    tree = Trees(chance)
+    main = [f"BehaviorTree {name}\n" + "\n".join(lines) for name, lines in tree.all().items()]
+    demands = [requirement(chance, f"r{number}", tree.labels) for number in range(chance.randint(2, 6))]
+    return "\n".join(["Root Main", *declarations(chance), *demands, *main]) + "\n"
+
+
+class Trees:
+    """Two trees, the second of which may be used several times, and the labels of their nodes."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self.chance = chance
+        self.labels: list[str] = []
+        self.subtrees = 0
+
+    def all(self) -> dict[str, list[str]]:
+        main = self.node(1, 3, sub=True)
+        return {"Main": main, "Part": self.node(1, 2, sub=False)}
+
+    def node(self, indent: int, depth: int, *, sub: bool) -> list[str]:
+        chance = self.chance
+        kinds = [*"LLL", "S" if sub else "L", "C"] if indent > 1 else []
+        kinds += [*_CONTROLS, *_CONTROLS, *_DECORATORS] if depth else []
+        kind = chance.choice(kinds)
+        blank = "    " * indent
+        if kind == "S":
+            self.subtrees += 1
+            return [f"{blank}SubTree Part part{self.subtrees}"]
+        label = f"n{len(self.labels)}"
+        self.labels.append(label)
+        if kind in ("L", "C"):
+            return [f"{blank}{f'Action {chance.choice(ACTIONS)}' if kind == 'L' else 'Condition Seen'} {label}"]
+        few, many, port = (_CONTROLS | _DECORATORS)[kind]
+        attributes = f" ({port} = {chance.randint(1, 4) * (500 if port == 'msec' else 1)})" if port else ""
+        children = [self.node(indent + 1, depth - 1, sub=sub) for _ in range(chance.randint(few, many))]
+        return [f"{blank}{kind} {label}{attributes}", *(line for child in children for line in child)]
+
+
+_CONTROLS = {
+    "->": (1, 3, ""),
+    "?": (2, 2, ""),
+    "R->": (2, 2, ""),
+    "R?": (2, 2, ""),
+    "M->": (2, 2, ""),
+    "||": (2, 2, ""),
+    "IfThenElse": (3, 3, ""),
+    "WhileDoElse": (3, 3, ""),
+}
+_DECORATORS = {
+    "Timeout": (1, 1, "msec"),
+    "Retry": (1, 1, "num_attempts"),
+    "Repeat": (1, 1, "num_cycles"),
+    "Inverter": (1, 1, ""),
+    "ForceSuccess": (1, 1, ""),
+}
+
+
+def declarations(chance: random.Random) -> list[str]:
+    """Signals and contexts."""
+
+    def perhaps(word: str) -> str:
+        return f" {word}" if chance.random() < 0.4 else ""
+
+    fresh = f"fresh within {chance.choice(['250 ms', '1 s', '3 s'])}"
+    return [
+        f"signal battery : % from {{battery}} level{perhaps(fresh)}{perhaps('initially 50 %')}",
+        f"signal energy : Wh from {{energy}} counter{perhaps(fresh)}{perhaps('initially 0 Wh')}",
+        f"signal speed : m/s from {{speed}}{perhaps(fresh)}{perhaps('initially 0 m/s')}",
+        f"signal near : bool from {{near}}{perhaps(fresh)}{perhaps('initially false')}",
+        f"signal state : text from {{state}}{perhaps(fresh)}",
+        "context close : near",
+        "context fast : speed > 0.5 m/s",
+        "context careful : close or fast and not (battery >= 50 %)",
+    ]
+
+
+def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
+    """A requirement with a clause or two; its subject is a node, the mission, or all of an ID."""
+    lines = []
+    head = f"QualityReq {name} : reliability"
+    apply = ""
+    if chance.random() < 0.15:
+        head = f"QualityReq {name}(limit : s = {seconds(chance)}) : reliability"
+        lines.append("takes at most limit")
+        given = chance.choice(["", f"(limit = {seconds(chance)})"])
+        other = f" except {chance.choice(labels)}" if chance.random() < 0.3 else ""
+        apply = f"\napply {name}{given} to every {chance.choice(ACTIONS)}{other}"
+    else:
+        lines += [claim(chance, labels) for _ in range(chance.choice([1, 1, 1, 2]))]
+    for word in ("while", "when"):
+        if chance.random() < 0.2:
+            lines.append(f"{word} {condition(chance, labels)}")
+    if chance.random() < 0.35:
+        share = chance.choice(["50 %", "80 %", "100 %"])
+        of = chance.choice(["activations", "runs"])
+        lines.append(chance.choice([f"in at least {share} of {of}", f"with probability > {share} of {of}"]))
+        if chance.random() < 0.6:
+            lines.append(f"confidence {chance.choice(['60 %', '90 %', '95 %'])}")
+        if chance.random() < 0.2:
+            lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
+    return "\n    ".join([head, *lines]) + apply
+
+
+def claim(chance: random.Random, labels: list[str]) -> str:
+    """A subject and a verb."""
+    subject = chance.choice([*labels, *labels, "mission", "Part", *(f"every {action}" for action in ACTIONS)])
+    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum"])
+    if verb == "span":
+        return f"from {event(chance, labels)} to {event(chance, labels)} takes at most {seconds(chance)}"
+    if verb == "sum":
+        return f"sum of {chance.choice(labels)}, {chance.choice(labels)} takes at most {seconds(chance)}"
+    operand = {
+        "takes": lambda: bound(chance, labels, lambda: seconds(chance)),
+        "succeeds": lambda: f"within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.6 else "",
+        "uses": lambda: uses(chance, labels),
+        "tries": lambda: f"at most {chance.randint(0, 3)}" + chance.choice(["", f" per {chance.choice(labels)}"]),
+        "runs": lambda: chance.choice(
+            [f"every {seconds(chance)}", f"at least {chance.randint(1, 3)} per {seconds(chance)}"]
+        ),
+        "starts": lambda: f"within {seconds(chance)} after {event(chance, labels)}",
+        "ends": lambda: f"within {seconds(chance)} after {event(chance, labels)}",
+        "follows": lambda: event(chance, labels),
+    }.get(verb, lambda: condition(chance, labels))()
+    return f"{subject} {verb} {operand}".rstrip()
+
+
+_VERBS = (
+    "takes",
+    "succeeds",
+    "needs",
+    "keeps",
+    "never",
+    "leaves",
+    "uses",
+    "tries",
+    "runs",
+    "starts",
+    "ends",
+    "follows",
+)
+
+
+def uses(chance: random.Random, labels: list[str]) -> str:
+    """What `uses` is followed by."""
+    name, unit = chance.choice([("battery", "%"), ("energy", "Wh")])
+    return f"{bound(chance, labels, lambda: f'{chance.randint(0, 6) * 5} {unit}')} of {name}"
+
+
+def bound(chance: random.Random, labels: list[str], simple: Callable[[], str]) -> str:
+    """A bound of values as `simple` draws them; one end may depend on the situation."""
+    words = chance.choice(["at most", "at most", "less than", "at least", "more than", "between"])
+    if words != "between":
+        return f"{words} {value(chance, labels, simple)}"
+    low, high = sorted([simple(), simple()], key=lambda text: float(text.split()[0]))
+    return f"between {low} and {high}"
+
+
+def value(chance: random.Random, labels: list[str], simple: Callable[[], str]) -> str:
+    """A value, or one for each situation."""
+    if chance.random() < 0.75:
+        return simple()
+    cases = [f"{simple()} if {condition(chance, labels)}" for _ in range(chance.randint(1, 2))]
+    return f"{', '.join(cases)} else {simple()}"
+
+
+def seconds(chance: random.Random) -> str:
+    return f"{chance.randint(1, 16) / 4:g} s"
+
+
+def event(chance: random.Random, labels: list[str]) -> str:
+    if chance.random() < 0.2:
+        return f"when {condition(chance, labels)}"
+    return f"{chance.choice(labels)} {chance.choice(['starts', 'succeeds', 'fails', 'finishes', 'halts'])}"
+
+
+def condition(chance: random.Random, labels: list[str], depth: int = 2) -> str:
+    """A condition on signals, contexts, and now and then on nodes that run."""
+    if depth and chance.random() < 0.35:
+        one, other = (condition(chance, labels, depth - 1) for _ in range(2))
+        return chance.choice([f"({one} and {other})", f"({one} or {other})", f"not ({one})"])
+    if chance.random() < 0.05:
+        return f"node {chance.choice(labels)}"
+    if chance.random() < 0.05:
+        function = chance.choice(["max", "min", "mean", "p95", "stddev", "change"])
+        return f"{function}(energy) <= {chance.randint(0, 8) * 5} Wh"
+    return chance.choice(
+        [
+            *("near", "close", "fast", "careful", "not careful", 'state == "up"', 'state != "down"', "speed > 0 m/s"),
+            f"battery >= {chance.randint(0, 20) * 5} %",
+            f"{chance.randint(0, 10) * 5} % < battery <= {chance.randint(10, 20) * 5} %",
+            f"speed <= {chance.randint(0, 4) / 4:g} m/s",
+            f"battery + {chance.randint(0, 4) * 5} % > 60 %",
+        ]
+    )
+
+
+# ---- Logs -----------------------------------------------------------------------------------------------------------
+
+
+class LoggedRun(engine.Run):
+    """A run whose changes of status are written down.
+
+    Attributes:
+        uids: of its nodes, numbered as the engine does: depth first.
+        parent, last: by uid, the node above and the last one below.
+    """
+
+    def __init__(
+        self, mission: Candidate, root: SourceNode, chance: random.Random, rows: list[Transition], resets: bool
+    ) -> None:
+        super().__init__(mission.requirements, root, chance.randrange(1 << 30), lambda *_: None)
+        self.rows = rows
+        self.resets = resets
+        self.uids: dict[engine.Sim, int] = {}
+        self.parent: dict[int, int] = {}
+        self.last: dict[int, int] = {}
+        self.status: dict[engine.Sim, str] = {}
+        self.number(self.root, 0)
+
+    def number(self, node: engine.Sim, parent: int) -> None:
+        uid = self.uids[node] = len(self.uids) + 1
+        self.parent[uid] = parent
+        for child in node.children:
+            self.number(child, uid)
+        self.last[uid] = len(self.uids)
+
+    def drawn(self, leaf: SourceNode) -> float:
+        return self.chance.choice([0.0, 0.25, 0.5, 1.0, 1.0, 2.0, 3.5])
+
+    def change(self, node: engine.Sim, status: str) -> None:
+        for each in node.children if status != engine.RUNNING and self.resets else ():
+            self.write(each, engine.IDLE)
+        self.write(node, engine.IDLE if status == engine.SKIPPED else status)
+
+    def write(self, node: engine.Sim, status: str) -> None:
+        if status != self.status.get(node, engine.IDLE):
+            self.status[node] = status
+            self.rows.append((START + round(self.now * 1e6), self.uids[node], STATUS[status]))
+
+
+def runs(mission: Candidate, root: SourceNode, chance: random.Random) -> tuple[LoggedRun, list[Transition]]:
+    """The last one of some runs, and the rows of all of them."""
+    resets = chance.random() < 0.7
+    rows: list[Transition] = []
+    now = 0.0
+    for _ in range(chance.randint(1, 8)):
+        run = LoggedRun(mission, root, chance, rows, resets)
+        run.now = now
+        first = len(rows)
+        try:
+            run.mission()
+        except engine.Endless:
+            if chance.random() < 0.5:
+                run.root.halt()
+        if len(rows) - first > MOST_ROWS or chance.random() < 0.15:
+            del rows[first + chance.randint(0, min(len(rows) - first, MOST_ROWS)) :]
+        elif resets:
+            run.write(run.root, engine.IDLE)
+        now = run.now + chance.choice([0.0, 0.25, 1.0])
+    return run, as_logged(chance, run, rows)
+
+
+def as_logged(chance: random.Random, run: LoggedRun, rows: list[Transition]) -> list[Transition]:
+    """Rows as control nodes like Nav2's write them, some or all to IDLE left out, cut off, and with pauses."""
+    habits = {}
+    if chance.random() < 0.4:
+        inner = [uid for uid, last in run.last.items() if last > uid]
+        habits = {uid: chance.choice(["late", "only its result", "IDLE first"]) for uid in inner}
+        habits[ROOT] = chance.choice(["late", "IDLE first"])  # a run whose end nobody writes would be part of the next
+    found: list[Transition] = []
+    open_: set[int] = set()
+    late: Transition | None = None
+    for row in rows:
+        time, uid, status = row
+        habit = habits.get(uid)
+        if late is not None:
+            _, parent, _ = late
+            found += [row, late] if parent < uid <= run.last[parent] else [late, row]
+            late = None
+        elif habit == "late" and status == RUNNING:
+            late = row
+        elif habit == "IDLE first" and uid in open_ and status in (SUCCESS, FAILURE):
+            found += [(time, uid, IDLE), row]
+        elif habit != "only its result" or status in (SUCCESS, FAILURE):
+            found.append(row)
+        (open_.add if status == RUNNING else open_.discard)(uid)
+    without = chance.choice([0.0, 0.0, 0.0, 0.1, 1.0])
+    found = [row for row in found if row[2] != IDLE or chance.random() >= without]
+    if chance.random() < 0.3:
+        del found[chance.randint(0, len(found)) :]
+    pause, last = chance.choice([0, 0, 3]), 0
+    for index, (time, uid, status) in enumerate(found):
+        last = max(time, last + chance.randint(0, pause))
+        found[index] = last, uid, status
+    return found
+
+
+def samples(chance: random.Random, rows: list[Transition]) -> dict[str, list[tuple[int, SampleValue]]]:
+    """Samples of some of the signals: at any time, often just that of a row."""
+    begin, end = (rows[0][0], rows[-1][0]) if rows else (START, START)
+    times = [time for time, *_ in rows] or [START]
+    values = {
+        "battery": lambda: chance.randint(0, 20) * 5,
+        "energy": lambda: chance.randint(0, 10) * 5,
+        "speed": lambda: chance.randint(-1, 4) / 4,
+        "near": lambda: chance.random() < 0.5,
+        "state": lambda: chance.choice(["up", "down"]),
+    }
+    found: dict[str, list[tuple[int, SampleValue]]] = {}
+    for name, draw in values.items():
+        if chance.random() < 0.9:
+            at = [chance.choice(times) + chance.choice([0, 0, 1, -1]) for _ in range(chance.choice([0, 3, 12]))]
+            at += [chance.randint(begin - 1_000_000, end) for _ in range(chance.choice([1, 4, 12]))]
+            found[name] = [(time, draw()) for time in sorted(at)]
+    return found
