@@ -8,7 +8,7 @@ from argparse import ArgumentParser, ArgumentTypeError, Namespace, RawDescriptio
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
-from btq_lang.evidence import FORMATS as EVIDENCE_FORMATS
+from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.near import near
@@ -203,7 +203,8 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         "examples:\n  btq verify logs/*.btlog                            the mission is found by its nodes\n"
         "  btq verify run.db3 --mission mission.btq           or named\n"
         "  btq verify bag/ --mission nav.btq                  a ROS 2 bag with /behavior_tree_log of Nav2\n"
-        "  btq verify run.db3 --signals battery.csv           with samples of signals\n",
+        "  btq verify run.db3 --signals battery.csv           with samples of signals\n"
+        "  btq verify logs/ --format junit -o verdicts.xml    for CI\n",
     )
     parser.add_argument(
         "logs",
@@ -223,7 +224,9 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
         metavar="FILE",
         help="samples as CSV: seconds since the epoch, then one column for each signal or entry",
     )
-    parser.add_argument("--format", choices=EVIDENCE_FORMATS, help="default: table")
+    parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
+    parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
+    parser.add_argument("--verbose", action="store_true", help="in the table, explain more violations of each clause")
     parser.add_argument("--strict", action="store_true", help="exit 1 unless every requirement is satisfied")
     _add_color(parser)
 

@@ -22,7 +22,7 @@ def form_problem(options: Namespace, forms: Sequence[str]) -> str | None:
     """What is wrong with the file's name: a mission's, or one that ends in a form that btq does not write, where none
     is asked for."""
     ending = _ending(options)
-    if ending in (*SUFFIXES, ".xml"):
+    if ending in SUFFIXES or (ending == ".xml" and options.format != "junit"):
         return f"-o {options.output} may overwrite a mission; choose another file name"
     if options.format or ending not in _OTHERS:
         return None

@@ -11,8 +11,10 @@ from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path, xml_path
 from btq_lang.checks import check
 from btq_lang.commands.as_built import Disk, as_built
-from btq_lang.commands.files import Files, usage_problem, write_stdout
-from btq_lang.evidence import FORMATS, verify, write
+from btq_lang.commands.files import Files, usage_problem
+from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.verdict_formats import FORMATS, WRITERS, Judged
+from btq_lang.evidence import verify
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import SUFFIXES, whole_bags
 from btq_lang.evidence.readers.bag import METADATA
@@ -42,10 +44,11 @@ def run(options: Namespace) -> int:
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
             print(f"btq verify: {each.file}: {runs} {each.of}, not judged", file=sys.stderr)
-        colour = options.color == "always" or (
-            options.color == "auto" and wants_colour(sys.stdout.isatty(), os.environ)
-        )
-        write_stdout(write(report, options.format or FORMATS[0], colour=colour))
+        to_terminal = options.output is None and sys.stdout.isatty()
+        colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
+        text = WRITERS[form_of(options, FORMATS)](Judged(report, options.verbose, colour))
+        if code := write_output("verify", options.output, text):
+            return code
     for problem in problems:
         print(f"btq verify: {problem}", file=sys.stderr)
     if problems:
@@ -56,7 +59,7 @@ def run(options: Namespace) -> int:
 
 def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequence[Candidate], dict[str, Series]]:
     """The logs, missions and samples of a command line; what is wrong with them is added to the problems."""
-    if problem := usage_problem([*options.logs, *options.mission]):
+    if problem := usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS):
         problems.append(problem)
         return (), (), {}
     files, unreachable = collect(options.logs, find_project(".").project, (*SUFFIXES, METADATA))

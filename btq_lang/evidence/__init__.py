@@ -16,8 +16,8 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     explain.py     what led to a violation
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data
-    headline.py    the line that says what to look at
-    table.py, json_document.py   the writers
+    sentences.py   what a clause came to, and what to look at
+    table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; the HTML page is drawn by `trace/`
 """
 
 from __future__ import annotations
@@ -25,14 +25,10 @@ from __future__ import annotations
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from typing import Final
 
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
-
-# The command line asks for them whatever it is to do, so nothing else is imported here.
-FORMATS: Final = ("table", "json")
 
 
 def verify(
@@ -69,23 +65,3 @@ def verify(
     others = [Foreign(source, number, of) for (source, of), number in foreign.items()]
     results = tuple(each.result() for each in evaluations.values())
     return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))
-
-
-def write(report: Report, form: str, *, colour: bool = False) -> str:
-    """The report in one of FORMATS.
-
-    Args:
-        colour: ANSI colours, for `table`.
-
-    Raises:
-        ValueError: there is no such format.
-    """
-    if form == "table":
-        from btq_lang.evidence.table import table
-
-        return table(report, colour)
-    if form == "json":
-        from btq_lang.evidence.json_document import json_text
-
-        return json_text(report)
-    raise ValueError(f"unknown format {form!r}; the formats are {', '.join(FORMATS)}")

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from btq_lang.evidence.headline import headline
+from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
-from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
-from btq_lang.evidence.wording import counted, duration, moment, share
+from btq_lang.evidence.wording import counted, duration, moment
 from btq_lang.render.cells import laid_out, printable
 from btq_lang.render.colour import painter
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from typing import Final
 
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source, Verdict
     from btq_lang.render.colour import Paint
 
 
-def table(report: Report, colour: bool = False) -> str:
-    """The verdicts of all missions, the ones to look at first."""
+def table(report: Report, colour: bool = False, verbose: bool = False) -> str:
+    """The verdicts of all missions, the ones to look at first.
+
+    Args:
+        verbose: with all that led to the worst violation of a clause, and further violations.
+    """
     paint = painter(colour)
     lines: list[str] = []
     for mission in report.missions:
-        lines += [*_heading(mission), "", *_rows(mission, paint), "", *_summary(mission), ""]
+        lines += [*_heading(mission), "", *_rows(mission, paint, verbose), "", *_summary(mission), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 
@@ -52,24 +55,24 @@ def _period(source: Source) -> str:
     return f"{since} UTC" if since.endswith(until) else f"{since}–{until} UTC"
 
 
-def _rows(mission: MissionVerdicts, paint: Paint) -> Iterator[str]:
-    rows: list[tuple[Verdict, list[str], str]] = []
-    medians = {each.path: each.p50 for each in mission.nodes if each.p50 is not None}
+def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool) -> Iterator[str]:
+    rows: list[tuple[Verdict, list[str], Sequence[str]]] = []
     for requirement in sorted(mission.requirements, key=lambda each: _ORDER.index(each.verdict)):
         title = requirement.title
         name = requirement.id
         for clause in sorted(requirement.clauses, key=lambda each: _ORDER.index(each.verdict)):
-            texts = [name, title, _clause(clause, requirement), *_result(clause)]
-            below = headline(clause, medians) if clause.verdict == VIOLATED else ""
-            rows.append((clause.verdict, [printable(text) for text in texts], printable(below)))
+            texts = [name, title, _clause(clause, requirement), result(clause), _hint(clause)]
+            below: Sequence[str] = (
+                [*_explanation(clause, mission.medians, verbose)] if clause.verdict == VIOLATED else []
+            )
+            rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # once is enough
     widths = [max(_cells(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
     for verdict, row, below in rows:
         cells = [text + " " * (width - _cells(text)) for text, width in zip(row, widths, strict=False) if width]
         word = verdict + " " * (len(NEVER) - len(verdict))
         yield f"  {paint(_STYLES[verdict], word)}  {'  '.join([*cells, *row[4:]])}".rstrip()
-        if below:
-            yield f"{' ' * (len(NEVER) + 4)}{below}"
+        yield from (f"{' ' * (len(NEVER) + 4)}{printable(line)}" for line in below)
     if not rows:
         yield "  the mission has no requirement to judge"
 
@@ -80,40 +83,21 @@ def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
     return clause.text if is_lone or not clause.path else f"{clause.text} at {clause.path}"
 
 
-def _result(clause: ClauseVerdict) -> Sequence[str]:
-    """What was counted, and what to do about it."""
-    said = [_counted(clause)]
-    if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
-        said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
-    if clause.cut_off and clause.verdict != NEVER:
-        said.append(f"{clause.cut_off} cut off by the end of a log")
-    hint = "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
-    return ", ".join(said), hint
+def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: bool) -> Iterator[str]:
+    """What to look at."""
+    yield headline(clause, medians)
+    if verbose:
+        worst = worst_violation(clause)
+        yield from (f"  - {link.text}" for link in worst.chain)
+        others = [each for each in clause.violations if each is not worst]
+        yield from (explained(each, medians) for each in others[:_FURTHER])
+        if clause.violated - 1 > _FURTHER:
+            yield f"… {clause.violated - 1 - _FURTHER} more; --format json has them"
 
 
-def _counted(clause: ClauseVerdict) -> str:
-    if clause.verdict == UNKNOWN:
-        others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
-        return f"{clause.why}{others}"
-    if clause.verdict == NEVER:
-        return clause.why
-    unknown = f", {clause.unknown} unknown" if clause.unknown else ""
-    if clause.interval is None:
-        number = counted(clause.counted, clause.unit.removesuffix("s"))
-        return f"{clause.violated} of {number}{unknown}" if clause.verdict == VIOLATED else f"held so far in {number}"
-    held = clause.counted - clause.violated
-    of = f"{held} of {clause.counted}{unknown}"
-    if clause.verdict == UNDECIDED:
-        decided = f"no number of further {clause.unit} can decide it"
-        if clause.more is not None:
-            decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
-        return f"{of}; {decided}"
-    low, high = clause.interval
-    if clause.confidence is None:
-        limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)} each"
-        return f"{of}, {share(held / clause.counted)}; limits {limits}"
-    limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
-    return f"{of}, {limit} with confidence {share(clause.confidence)}"
+def _hint(clause: ClauseVerdict) -> str:
+    """What to do about it."""
+    return "give them with --signals FILE" if clause.why.startswith(NO_SAMPLES) else ""
 
 
 def _summary(mission: MissionVerdicts) -> Iterator[str]:
@@ -142,6 +126,7 @@ def _cells(text: str) -> int:
     return laid_out(text)[1][-1]
 
 
+_FURTHER: Final = 4  # violations that are explained beside the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees
 _ORDER: Final = (VIOLATED, SATISFIED, UNDECIDED, UNKNOWN, NEVER)

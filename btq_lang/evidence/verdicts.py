@@ -19,7 +19,7 @@ UNKNOWN: Final = "unknown"
 UNDECIDED: Final = "undecided"
 SATISFIED: Final = "satisfied"
 NEVER: Final = "never exercised"
-_WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
+WORST_FIRST: Final[tuple[Verdict, ...]] = (VIOLATED, UNKNOWN, UNDECIDED, SATISFIED, NEVER)
 
 
 class Link(Record):
@@ -201,6 +201,11 @@ class MissionVerdicts(Record):
         """How many runs were judged."""
         return sum(source.runs for source in self.sources)
 
+    @property
+    def medians(self) -> dict[str, float]:
+        """How long nodes take to a result, in seconds by path."""
+        return {each.path: each.p50 for each in self.nodes if each.p50 is not None}
+
 
 class Foreign(Record):
     """Runs that are not judged, and what they are of: another mission, or one of several."""
@@ -230,4 +235,4 @@ class Report(Record):
 
 def worst_of(verdicts: Iterable[Verdict]) -> Verdict:
     """The verdict of several together: `never exercised` only where all of them are."""
-    return min(verdicts, key=_WORST_FIRST.index, default=NEVER)
+    return min(verdicts, key=WORST_FIRST.index, default=NEVER)

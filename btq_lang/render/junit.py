@@ -41,14 +41,14 @@ def _case(report: Report, path: str, findings: list[Finding], troubles: list[Tro
     """A test case; beside an `<error>` what was found is no `<failure>`, for a test case has one result."""
     failures = [finding for finding in findings if not troubles and _fails(finding)]
     others = [finding for finding in findings if troubles or not _fails(finding)]
-    start = f'    <testcase classname="btq" name="{_escaped(path)}" file="{_escaped(path)}" time="0"'
+    start = f'    <testcase classname="btq" name="{escaped(path)}" file="{escaped(path)}" time="0"'
     if not findings and not troubles:
         yield start + "/>\n"
         return
     yield start + ">\n"
     if troubles:
-        yield f'      <error type="io-error" message="{_escaped(troubles[0].message)}">'
-        yield "\n".join(_escaped(str(trouble)) for trouble in troubles) + "</error>\n"
+        yield f'      <error type="io-error" message="{escaped(troubles[0].message)}">'
+        yield "\n".join(escaped(str(trouble)) for trouble in troubles) + "</error>\n"
     if failures:
         worst = next(severity for severity in _FAILURES if _has(failures, severity))
         yield f'      <failure type="{worst.value}" message="{counted(failures)}">'
@@ -70,11 +70,11 @@ def _lines(report: Report, findings: Iterable[Finding]) -> Iterator[str]:
     for finding in findings:
         at, diagnostic = location(report, finding), finding.diagnostic
         severity = diagnostic.effective_severity.value
-        yield _escaped(f"{at.path}:{at.line}:{at.column}: {severity}[{diagnostic.rule}] {diagnostic.message}")
+        yield escaped(f"{at.path}:{at.line}:{at.column}: {severity}[{diagnostic.rule}] {diagnostic.message}")
         for note in diagnostic.notes:
-            yield from (_escaped(f"  {line}") for line in note.split("\n"))
+            yield from (escaped(f"  {line}") for line in note.split("\n"))
 
 
-def _escaped(text: str) -> str:
+def escaped(text: str) -> str:
     """What XML 1.0 can carry in content and attributes: `printable` leaves no control character and no surrogate."""
     return printable(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

@@ -23,6 +23,7 @@ import csv
 import io
 from collections.abc import Iterator
 
+from btq_lang.render.spreadsheet import plain
 from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -35,12 +36,8 @@ def csv_text(overview: Overview) -> str:
     out = io.StringIO()
     writer = csv.DictWriter(out, COLUMNS, restval="")
     writer.writeheader()
-    writer.writerows({key: _plain(value) for key, value in row.items()} for row in _rows(overview))
+    writer.writerows({key: plain(value) for key, value in row.items()} for row in _rows(overview))
     return out.getvalue()
-
-
-def _plain(value: str | int) -> str | int:
-    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
 
 
 def _rows(overview: Overview) -> Iterator[dict[str, str | int]]:
@@ -99,7 +96,6 @@ def _source(at: At) -> dict[str, str | int]:
     return {"source": at.path, "line": at.line}
 
 
-_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r")
 COLUMNS: Final = (
     *("kind", "requirement", "title", "quality", "characteristic", "holds_for", "tree", "clause", "how", "why"),
     *("attached_by", "source", "line", "defined", "defined_line"),

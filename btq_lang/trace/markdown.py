@@ -1,12 +1,10 @@
-"""Markdown, for pull requests: GitHub's tables, in which a line end is `<br>`.
-
-The format: https://github.github.com/gfm/#tables-extension-
-"""
+"""Markdown, for pull requests: GitHub's tables, in which a line end is `<br>`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 
+from btq_lang.render.gfm import code, escaped, table
 from btq_lang.trace.overview import Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, shown_quality, summary, told
 
@@ -19,35 +17,35 @@ def markdown(overview: Overview) -> str:
 def _lines(overview: Overview) -> Iterator[str]:
     yield "## Requirements and qualities"
     yield ""
-    yield _escaped(summary(overview))
+    yield escaped(summary(overview))
     if overview.requirements:
         yield ""
         heading = ("Requirement", "Quality", "Holds for", "How", "Defined")
-        yield from _table(heading, (_requirement(each) for each in overview.requirements))
+        yield from table(heading, (_requirement(each) for each in overview.requirements))
     nodes = {node.key: node for node in overview.nodes}
     concerns = [quality for quality in overview.qualities if quality.concerns]
     if concerns:
         yield from ("", "### Concerns", "")
         rows = [
-            (_escaped(shown_quality(each)), "<br>".join(_node(nodes[key].name, nodes[key].at) for key in each.concerns))
+            (escaped(shown_quality(each)), "<br>".join(_node(nodes[key].name, nodes[key].at) for key in each.concerns))
             for each in concerns
         ]
-        yield from _table(("Quality", "Nodes"), rows)
+        yield from table(("Quality", "Nodes"), rows)
     yield from _gaps(overview)
     yield from ("", f"### Totals, ISO/IEC 25010:{overview.edition}", "")
     totals = [
         (
-            _escaped(each.name),
+            escaped(each.name),
             *map(str, (each.concerns, each.requirements, each.enforced, each.monitored, each.reviewed)),
         )
         for each in overview.totals
     ]
-    yield from _table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
+    yield from table(("Characteristic", "Concerns", "Requirements", "Enforced", "Monitored", "Reviewed"), totals, 1)
 
 
 def _requirement(each: RequirementRow) -> tuple[str, ...]:
-    said = [f"**{_escaped(each.name)}**", *([_escaped(each.title)] if each.title else [])]
-    said += [_code(clause) for clause in each.clauses]
+    said = [f"**{escaped(each.name)}**", *([escaped(each.title)] if each.title else [])]
+    said += [code(clause) for clause in each.clauses]
     subjects = []
     for use in each.uses:
         how = told(each, use)
@@ -55,19 +53,19 @@ def _requirement(each: RequirementRow) -> tuple[str, ...]:
     how = "<br>".join((each.way, *each.whys))
     return (
         "<br>".join(said),
-        _escaped(each.quality or ""),
+        escaped(each.quality or ""),
         "<br>".join(subjects) or "nothing",
         how,
-        _escaped(str(each.at)),
+        escaped(str(each.at)),
     )
 
 
 def _gaps(overview: Overview) -> Iterator[str]:
     found = {
-        "unenforced": [f"{_escaped(each.name)} ({each.at})" for each in overview.unenforced],
-        "unmeasured": [f"{_escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
-        "unattached": [f"{_escaped(each.name)} ({each.at})" for each in overview.unattached],
-        "loose": [f"{_escaped(each.name)} ({each.at}): {_code(clause)}" for each, clause in overview.loose],
+        "unenforced": [f"{escaped(each.name)} ({each.at})" for each in overview.unenforced],
+        "unmeasured": [f"{escaped(shown_quality(each))} ({each.at})" for each in overview.unmeasured],
+        "unattached": [f"{escaped(each.name)} ({each.at})" for each in overview.unattached],
+        "loose": [f"{escaped(each.name)} ({each.at}): {code(clause)}" for each, clause in overview.loose],
         "bare_trees": [_node(each.name, each.at) for each in overview.bare_trees],
         "bare_nodes": [_node(each.name, each.at) for each in overview.bare_nodes],
     }
@@ -79,26 +77,5 @@ def _gaps(overview: Overview) -> Iterator[str]:
             yield f"* {GAPS[gap]}: {', '.join(lines)}"
 
 
-def _table(heading: Sequence[str], rows: Iterable[Sequence[str]], numbers_from: int = 99) -> Iterator[str]:
-    yield f"| {' | '.join(heading)} |"
-    yield "|" + "|".join("---:" if at >= numbers_from else "---" for at in range(len(heading))) + "|"
-    for row in rows:
-        yield f"| {' | '.join(row)} |"
-
-
 def _node(name: str, at: object) -> str:
-    return f"{_code(name)} ({_escaped(str(at))})"
-
-
-def _code(text: str) -> str:
-    """A code span in a table: a bar would end the cell, and backticks need more of them around."""
-    text = " ".join(text.split()).replace("|", "\\|")
-    ticks = "`"
-    while ticks in text:
-        ticks += "`"
-    return f"{ticks} {text} {ticks}" if len(ticks) > 1 else f"`{text}`"
-
-
-def _escaped(text: str) -> str:
-    found = "".join(f"\\{character}" if character in "\\`*_[]|~" else character for character in " ".join(text.split()))
-    return found.replace("&", "&amp;").replace("<", "&lt;").replace("@", "&#64;")
+    return f"{code(name)} ({escaped(str(at))})"

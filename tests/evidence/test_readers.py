@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
 
+from btq_lang.commands.verdict_formats import WRITERS, Judged
 from btq_lang.evidence import verify as verify_logs
-from btq_lang.evidence import write
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
@@ -32,10 +32,10 @@ UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree
 
 
 def problems(path: Path) -> tuple[str, ...]:
-    """What cannot be read of a log; the rest is judged, and written in both forms."""
+    """What cannot be read of a log; the rest is judged, and written in every form."""
     report = verify_logs([str(path)], [MISSION], {}, lambda each: Path(each).name)
-    for form in ("table", "json"):
-        write(report, form)
+    for write in WRITERS.values():
+        write(Judged(report, verbose=True))
     return report.problems
 
 

@@ -1,20 +1,35 @@
-"""The one line that says what to look at: which node, what happened, why, in which run and when."""
+"""What a clause came to in a sentence, and the one that says what to look at."""
 
 from __future__ import annotations
 
 from collections import Counter
 
-from btq_lang.evidence.verdicts import ClauseVerdict, Violation
-from btq_lang.evidence.wording import duration, moment
+from btq_lang.evidence.tally import USUAL_CONFIDENCE
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
+from btq_lang.evidence.wording import counted, duration, moment, share
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from typing import Final
 
+    from btq_lang.evidence.verdicts import ClauseVerdict, Violation
+
+
+def result(clause: ClauseVerdict) -> str:
+    """What was counted, and how far from its bound the worst is."""
+    said = [_counted(clause)]
+    if clause.worst is not None and clause.interval is None and clause.verdict != UNKNOWN:
+        said.append(f"worst {clause.worst.text} in run {clause.worst.run}")
+    if clause.cut_off and clause.verdict != NEVER:
+        said.append(f"{clause.cut_off} cut off by the end of a log")
+    return ", ".join(said)
+
 
 def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
-    """Of a clause that is violated; with odds, all violations are summed up.
+    """What to look at for a clause that is violated: the node, what happened, why, in which run and when.
+
+    With odds, all violations are summed up.
 
     Args:
         medians: how long nodes take, in seconds by path.
@@ -52,6 +67,31 @@ def worst_violation(clause: ClauseVerdict) -> Violation:
     worst = clause.worst
     found = (each for each in clause.violations if worst and (each.run, each.measured) == (worst.run, worst.text))
     return next(found, clause.violations[0])
+
+
+def _counted(clause: ClauseVerdict) -> str:
+    if clause.verdict == UNKNOWN:
+        others = f" ({clause.unknown} of {clause.counted + clause.unknown} {clause.unit})" if clause.unknown else ""
+        return f"{clause.why}{others}"
+    if clause.verdict == NEVER:
+        return clause.why
+    unknown = f", {clause.unknown} unknown" if clause.unknown else ""
+    if clause.interval is None:
+        number = counted(clause.counted, clause.unit.removesuffix("s"))
+        return f"{clause.violated} of {number}{unknown}" if clause.verdict == VIOLATED else f"held so far in {number}"
+    held = clause.counted - clause.violated
+    of = f"{held} of {clause.counted}{unknown}"
+    if clause.verdict == UNDECIDED:
+        decided = f"no number of further {clause.unit} can decide it"
+        if clause.more is not None:
+            decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
+        return f"{of}; {decided}"
+    low, high = clause.interval
+    if clause.confidence is None:
+        limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)} each"
+        return f"{of}, {share(held / clause.counted)}; limits {limits}"
+    limit = f"at least {share(low)}" if clause.verdict == SATISFIED else f"at most {share(high)}"
+    return f"{of}, {limit} with confidence {share(clause.confidence)}"
 
 
 def _where(violation: Violation) -> str:

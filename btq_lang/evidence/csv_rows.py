@@ -1,0 +1,73 @@
+"""CSV, a line for each clause at each node that it holds for (RFC 4180, lines end with CR LF).
+
+The columns, which later versions add to but do not change:
+
+    requirement, title, mission, clause, path
+    verdict         violated | unknown | undecided | satisfied | never exercised
+    unit            activations | runs
+    counted, violated, unknown, cut_off
+    worst, worst_si, worst_run
+    low, high       limits of the probability
+    more            how many more without a violation decide
+    result          in words
+    look_at         what to look at, of a violated clause
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from btq_lang.evidence.sentences import headline, result
+from btq_lang.evidence.verdicts import VIOLATED
+from btq_lang.render.spreadsheet import plain
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Final
+
+    from btq_lang.evidence.verdicts import Report
+
+
+def csv_text(report: Report) -> str:
+    """The verdicts, with a heading."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, _COLUMNS)
+    writer.writeheader()
+    writer.writerows({key: plain(value) for key, value in row.items()} for row in _rows(report))
+    return out.getvalue()
+
+
+def _rows(report: Report) -> Iterator[dict[str, str | float]]:
+    for mission in report.missions:
+        for requirement in mission.requirements:
+            for clause in requirement.clauses:
+                worst, (low, high) = clause.worst, clause.interval or ("", "")
+                yield {
+                    "requirement": requirement.id,
+                    "title": requirement.title,
+                    "mission": mission.name,
+                    "clause": clause.text,
+                    "path": clause.path,
+                    "verdict": clause.verdict,
+                    "unit": clause.unit,
+                    "counted": clause.counted,
+                    "violated": clause.violated,
+                    "unknown": clause.unknown,
+                    "cut_off": clause.cut_off,
+                    "worst": worst.text if worst is not None else "",
+                    "worst_si": worst.si if worst is not None else "",
+                    "worst_run": worst.run if worst is not None else "",
+                    "low": low,
+                    "high": high,
+                    "more": clause.more if clause.more is not None else "",
+                    "result": result(clause),
+                    "look_at": headline(clause, mission.medians) if clause.verdict == VIOLATED else "",
+                }
+
+
+_COLUMNS: Final = (
+    *("requirement", "title", "mission", "clause", "path", "verdict", "unit", "counted", "violated", "unknown"),
+    *("cut_off", "worst", "worst_si", "worst_run", "low", "high", "more", "result", "look_at"),
+)

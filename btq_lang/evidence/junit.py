@@ -1,0 +1,72 @@
+"""JUnit XML: a suite for each mission, a case for each requirement.
+
+One invariant: a case has one property of a name.  `verifies` is the requirement's ID, in the shape that
+sphinx-test-reports makes links of (`tr_property_link_types`) and StrictDoc a field of its test results; both read one
+property with several IDs, separated by commas, and StrictDoc refuses a name that comes twice, and `<error>`.
+"""
+
+from __future__ import annotations
+
+from btq_lang.evidence.sentences import explained, headline, result
+from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
+from btq_lang.evidence.wording import timestamp
+from btq_lang.render.junit import escaped
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
+
+
+def junit(report: Report) -> str:
+    """The document: violated is a failure, what is neither violated nor satisfied is skipped."""
+    return "".join(f"{line}\n" for line in _lines(report))
+
+
+def _lines(report: Report) -> Iterator[str]:
+    yield '<?xml version="1.0" encoding="UTF-8"?>'
+    every = [requirement for mission in report.missions for requirement in mission.requirements]
+    yield f'<testsuites name="btq verify" {_numbers(every)}>'
+    for mission in report.missions:
+        begin = next((source.begin for source in mission.sources if source.begin is not None), 0)
+        name = escaped(mission.name)
+        start = timestamp(begin).partition(".")[0]
+        yield f'  <testsuite name="{name}" {_numbers(mission.requirements)} time="0" timestamp="{start}">'
+        for requirement in mission.requirements:
+            yield from _case(requirement, mission)
+        yield "  </testsuite>"
+    yield "</testsuites>"
+
+
+def _numbers(requirements: Sequence[RequirementVerdict]) -> str:
+    verdicts = [each.verdict for each in requirements]
+    failures = verdicts.count(VIOLATED)
+    skipped = len(verdicts) - failures - verdicts.count(SATISFIED)
+    return f'tests="{len(verdicts)}" failures="{failures}" errors="0" skipped="{skipped}"'
+
+
+def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator[str]:
+    yield f'    <testcase classname="{escaped(mission.name)}" name="{escaped(requirement.id)}" time="0">'
+    yield f'      <properties><property name="verifies" value="{escaped(requirement.id)}"/></properties>'
+    worst = next(each for each in requirement.clauses if each.verdict == requirement.verdict)
+    if requirement.verdict == VIOLATED:
+        yield f'      <failure type="violated" message="{escaped(headline(worst, mission.medians))}">'
+        lines = [line for clause in requirement.clauses for line in _details(clause, mission)]
+        yield "\n".join(map(escaped, lines)) + "</failure>"
+    elif requirement.verdict != SATISFIED:
+        message = escaped(f"{requirement.verdict}: {result(worst)}")
+        yield f'      <skipped type="{requirement.verdict}" message="{message}"/>'
+    else:
+        lines = [f"{clause.text}: {result(clause)}" for clause in requirement.clauses]
+        yield f"      <system-out>{escaped('; '.join(lines))}</system-out>"
+    yield "    </testcase>"
+
+
+def _details(clause: ClauseVerdict, mission: MissionVerdicts) -> Iterator[str]:
+    yield f"{clause.text} at {clause.path}: {clause.verdict}, {result(clause)}"
+    if clause.verdict == VIOLATED:
+        yield from (f"  {explained(each, mission.medians)}" for each in clause.violations[:_SHOWN])
+
+
+_SHOWN = 10  # violations of a clause

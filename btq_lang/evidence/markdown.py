@@ -1,0 +1,48 @@
+"""Markdown, for a comment on a pull request."""
+
+from __future__ import annotations
+
+from btq_lang.evidence.sentences import headline, result
+from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.evidence.wording import counted
+from btq_lang.render.gfm import code, escaped, table
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.verdicts import MissionVerdicts, Report
+
+
+def markdown(report: Report) -> str:
+    """For each mission the verdicts, and what to look at."""
+    return "\n\n".join("\n".join(_lines(mission)) for mission in report.missions) + "\n"
+
+
+def _lines(mission: MissionVerdicts) -> Iterator[str]:
+    verdicts = [each.verdict for each in mission.requirements]
+    found = [f"{verdicts.count(verdict)} {verdict}" for verdict in WORST_FIRST if verdict in verdicts]
+    yield f"### {escaped(mission.name)}: {', '.join(found) or 'no requirement to judge'}"
+    yield ""
+    files = ", ".join(code(source.file) for source in mission.sources)
+    outcomes = ", ".join(f"{number} {outcome}" for outcome, number in mission.outcomes)
+    yield f"{counted(mission.runs, 'run')} in {files}{': ' if outcomes else ''}{outcomes}"
+    if not verdicts:
+        return
+    yield ""
+    clauses = [(requirement, clause) for requirement in mission.requirements for clause in requirement.clauses]
+    clauses.sort(key=lambda each: WORST_FIRST.index(each[1].verdict))
+    rows = [
+        (
+            f"**{clause.verdict}**" if clause.verdict == WORST_FIRST[0] else clause.verdict,
+            "<br>".join(filter(None, (f"**{escaped(requirement.id)}**", escaped(requirement.title)))),
+            code(clause.text) + (f"<br>{code(clause.path)}" if clause.path else ""),
+            escaped(result(clause)),
+        )
+        for requirement, clause in clauses
+    ]
+    yield from table(("Verdict", "Requirement", "Clause", "Result"), rows)
+    looks = [headline(clause, mission.medians) for _, clause in clauses if clause.verdict == WORST_FIRST[0]]
+    if looks:
+        yield from ("", "What to look at:", "")
+        yield from (f"* {escaped(line)}" for line in looks)
