@@ -18,7 +18,7 @@ from btq_lang.features.clause_words import Expected, expected, is_count, is_wind
 from btq_lang.features.completion_list import listed
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.measures import Measured, measured_at
-from btq_lang.features.place import Place, item_tokens, place_at
+from btq_lang.features.place import Place, item_tokens, place_at, word_text
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
 from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
@@ -271,12 +271,12 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
     elif first == "qualities":
         yield from offer.words(EDITIONS, "enum")
     elif first == "quality":
-        yield from offer.qualities(workspace, path, place) if last in (":", ".") else ()
+        yield from _others(offer.qualities(workspace, path, place), place) if last in (":", ".") else ()
     elif first == "signal":
         yield from _in_signal(place, last)
     elif first == "context":
         wanted = Expected(condition=True) if last == ":" else replace(expected(place.group), clause=False)
-        yield from _clause_words(workspace, path, wanted, place)
+        yield from _others(_clause_words(workspace, path, wanted, place), place)
     elif first == "Root":
         yield from offer.trees(workspace, path)
     elif first == "QualityReq":
@@ -285,6 +285,12 @@ def _in_item(workspace: Workspace, path: str, place: Place, first: str) -> Itera
         yield from _in_apply(workspace, path, place)
     elif first in CATEGORIES and len(place.words) == 1:
         yield from offer.unknown_nodes(workspace, path)
+
+
+def _others(found: Iterable[Proposal], place: Place) -> Iterator[Proposal]:
+    """What is not the quality or the context that the line defines."""
+    own = [word_text(word) for word in place.words[1:2]]
+    yield from (one for one in found if one.label not in own or one.kind not in ("quality", "context"))
 
 
 def _in_signal(place: Place, last: str) -> Iterator[Proposal]:

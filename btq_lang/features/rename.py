@@ -15,6 +15,7 @@ from btq_lang.catalog.qualities import fold
 from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
 from btq_lang.file import is_btq
 from btq_lang.mentions import Mention, What
+from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
 from btq_lang.syntax import is_name, quote
 from btq_lang.text import Edit, Span, apply_edits
@@ -62,6 +63,7 @@ def rename(workspace: Workspace, path: str, offset: int, name: str) -> Renaming 
         return ready if isinstance(ready, Refusal) else Refusal("nothing to rename here")
     wanted = subject(workspace, found)
     reason = _unfit(wanted, name)
+    reason = reason or _is_the_other(workspace, path, wanted, name)
     if reason:
         return Refusal(reason)
     places = tuple(everywhere(workspace, wanted))
@@ -135,6 +137,16 @@ def _unfit(wanted: Subject, name: str) -> str:
     if wanted.what is What.INSTANCE and (problem := instance_name_problem(name)):
         return f"the engine refuses the name: {problem}"
     return ""
+
+
+def _is_the_other(workspace: Workspace, path: str, wanted: Subject, name: str) -> str:
+    """Why a signal cannot have the name of a context, nor a context that of a signal; empty where it can."""
+    other = {What.SIGNAL: Kind.CONTEXT, What.CONTEXT: Kind.SIGNAL}.get(wanted.what)
+    taken = workspace.scope(path).find(other, name) if other is not None else None
+    if taken is None or other is None:
+        return ""
+    line = workspace.files[taken.path].lines.position(taken.span.start).line + 1
+    return f"`{name}` is already a {other.value}: {workspace.project.shown(taken.path)}, line {line}"
 
 
 def _is_in_script(mention: Mention) -> bool:

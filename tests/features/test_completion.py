@@ -110,7 +110,7 @@ def typed(line: str) -> str:
         ('QualityReq a "t"\n    keeps ($0', CONDITION),
         ('QualityReq a "t"\n    keeps low and (not ($0)', CONDITION),
         ('QualityReq a "t"\n    takes at most 3 s if ($0', CONDITION),
-        ("context high : ($0)", ("low", "high", *CONDITION[1:])),
+        ("context high : ($0)", CONDITION),
         ('BehaviorTree X\n    Pick (satisfies QualityReq a "t" keeps ($0', CONDITION),
         ('QualityReq a "t"\n    keeps battery <= ($0)', ("battery", *FUNCTIONS)),
         ('QualityReq a "t"\n    keeps (battery $0)', BEHIND_OPERAND),

@@ -135,6 +135,8 @@ def test_no_rename(text: str, reason: str) -> None:
             "a name in a script may contain only the letters A to Z, digits and `_`",
         ),
         ("signal sp$0eed : m/s\n", "top speed", "the name of a signal may contain only letters, digits and `_`"),
+        ("context c : d\nsignal d$0 : bool\n", "c", "`c` is already a context: main.btq, line 1"),
+        ("signal d : bool\ncontext c : d\ncontext e : c$0\n", "d", "`d` is already a signal: main.btq, line 1"),
         ("signal v : m/s\ncontext c : v$0 > 0\n", "not", "`not` would have another meaning here"),
         (
             "BehaviorTree Main\n    Pick (a = {b$0})\n",
