@@ -69,6 +69,19 @@ def test_all_that_is_missing_is_told_at_once() -> None:
     assert_fix(bare, "Pass on the entry of the same name: `x = {=}`", bare.replace("Home", "Home (x = {=})"))
 
 
+def test_a_port_is_not_missed_where_a_declaration_cannot_be_read() -> None:
+    model = "Action Move\n    inptu place : string\n    input speed\n"
+    damaged = "2:5 error syntax-error «inptu» expected a port (input, output or inout), metadata or xml, found `inptu`"
+    use = tree("Move (place = a speed = b)")
+    assert_problems(model + use, damaged)
+    assert_clean(model.replace("inptu", "input") + use)
+    subtree = PICK.replace("= 0.5", "= = 0.5") + tree("SubTree Pick (object = a sped = 2)")
+    assert [each.rule for each in check(Workspace.of({"a.btq": subtree}), "a.btq")] == ["syntax-error"]
+    models = "TreeNodesModel\n    Action Stop\n        inptu place\n    Action Move\n        input speed\n"
+    found = check(Workspace.of({"a.btq": models + use}), "a.btq")
+    assert [each.rule for each in found] == ["syntax-error", "unknown-port"]  # the other node's can be read
+
+
 def test_a_model_without_ports_is_one_mistake_at_a_node() -> None:
     """Public palettes are full of them: somebody wrote `<Action ID="Move"/>` and nothing more."""
     assert_problems(

@@ -8,12 +8,13 @@ stay the same object for as long as the item does.
 from __future__ import annotations
 
 import posixpath
+from math import inf
 
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.name_kinds import Kind
-from btq_lang.rules import Severity
+from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -46,6 +47,19 @@ def owner(workspace: Workspace, path: str, kind: Kind, name: str) -> Facts | Non
     """The item that defines what a name means."""
     found = workspace.scope(path).find(kind, name)
     return workspace.files[found.path].facts[id(found.entry.item)] if found is not None else None
+
+
+def is_torn(workspace: Workspace, path: str, kind: Kind, name: str) -> bool:
+    """Whether something could not be read in the tree or model that a name means, which may be a port."""
+    found = workspace.scope(path).find(kind, name)
+    if found is None or not found.entry.diagnostics:
+        return False
+    target, item = found.symbol.target, found.entry.item
+    if not isinstance(target, Tree | Model):
+        return False
+    starts = [each.start for each in item.models if isinstance(each, Model)] if isinstance(item, Models) else []
+    end = min([start for start in starts if start > target.start], default=inf)
+    return any(each.rule in UNREADABLE and target.start <= each.span.start < end for each in found.entry.diagnostics)
 
 
 def place(workspace: Workspace, path: str, kind: Kind, name: str) -> tuple[str, Facts, Span] | None:

@@ -7,6 +7,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
+from btq_lang.checks import lookups
 from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
@@ -31,7 +32,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for seen in view.seen(entry).given:
         yield from _forbidden_id(seen)
         ports = _ports(view, seen)
-        if ports is None or not (meant := _meant(seen, ports)):
+        if ports is None or not (meant := _meant(seen, ports)) or _may_have_more(view, seen):
             continue
         known = ports.all
         names = ", ".join(f"`{port.name}`" for port in known)
@@ -67,6 +68,8 @@ def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
         missing = [port for port in ports.required if port.name not in given]
         if not missing or (seen.is_subtree and _remaps_all(seen)) or is_torn(view, entry, seen):
             continue  # a value may be what could not be read
+        if _may_have_more(view, seen):
+            continue  # and so may a default
         slips = {likely[0] for likely in _meant(seen, ports).values() if likely}  # told as unknown, with a fix
         missing = [port for port in missing if port.name not in slips]
         if not missing:
@@ -214,6 +217,15 @@ def _ports(view: View, seen: SeenNode) -> KnownPorts | None:
     if seen.model is not None:
         return _model_ports(view, seen.model)
     return None
+
+
+def _may_have_more(view: View, seen: SeenNode) -> bool:
+    """Whether a port may be declared where something could not be read."""
+    name = seen.node.id if seen.is_subtree else seen.id
+    if name is None or not (seen.is_subtree or seen.model):
+        return False
+    kinds = (Kind.TREE, Kind.MODEL) if seen.is_subtree else (Kind.MODEL,)
+    return any(view.look_up_name(lookups.is_torn, kind, name.text) for kind in kinds)
 
 
 def _model_ports(view: View, model: Model) -> KnownPorts:
