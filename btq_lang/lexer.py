@@ -29,7 +29,16 @@ from btq_lang.scan import (
     symbol_at,
     unit_run,
 )
-from btq_lang.slips import INSTEAD, close_string, no_token, unknown_escapes, unknown_unit, value_meant
+from btq_lang.slips import (
+    ATTRIBUTES,
+    INSTEAD,
+    attributes_in_braces,
+    close_string,
+    no_token,
+    unknown_escapes,
+    unknown_unit,
+    value_meant,
+)
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import (
@@ -409,6 +418,9 @@ class Lexer:
         if self._strange:
             return end
         self._strange = True
+        if character == "{" and not self._brackets and (mended := attributes_in_braces(self.text, start)) is not None:
+            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), ATTRIBUTES, fixes=(mended,)))
+            return end
         other = "}" if character == "{" else "{"
         at = end
         if character == "}":

@@ -16,7 +16,7 @@ from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
 from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, line_end, line_start
-from btq_lang.slips import CHILDREN
+from btq_lang.slips import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax import (
     Node,
     NodeClause,
@@ -277,6 +277,8 @@ class NodeParser(AttributeParser):
             self.expected("`,` or the end of the line", (), fixes)
         elif self.kind == OPEN and self.index > 0 and self.kinds[self.index - 1] == CLOSE:
             self.complain("syntax-error", self.here(), "all attributes of a node go in one pair of brackets")
+        elif self.kind == BRACED and (mended := attributes_in_braces(self.text, self.here().start)):
+            self.complain("syntax-error", self.here(), ATTRIBUTES, (), (mended,))
         elif self.kind in (NUMBER, QUANTITY, BRACED):
             self.expected("the end of the line", ("values go in brackets, with their names: `(key = value)`",))
         elif self.at(",") or self.kind == SYMBOL:

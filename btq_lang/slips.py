@@ -105,14 +105,23 @@ def _square_brackets(text: str, start: int) -> tuple[str, tuple[Fix, ...]]:
     """What square brackets are probably meant for, and the fix: attributes, a list of requirements, or children."""
     closing = text.find("]", start, line_end(text, start))
     if closing < 0:
-        return _ATTRIBUTES, ()
+        return ATTRIBUTES, ()
     ends = Span(start, start + 1), Span(closing, closing + 1)
     if "=" in text[start:closing]:
         changes = tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True))
-        return _ATTRIBUTES, (Fix("Write `(` and `)`", changes),)
+        return ATTRIBUTES, (Fix("Write `(` and `)`", changes),)
     if text[line_start(text, 0, start) : start].rstrip().endswith(("satisfies", "satisfices", "tags")):
         return "a list needs no brackets", (Fix("Remove the brackets", tuple(Change(Place(end), "") for end in ends)),)
     return CHILDREN, ()
+
+
+def attributes_in_braces(text: str, start: int) -> Fix | None:
+    """The fix for `{key = value}` instead of `(key = value)`, on one line."""
+    found = _BRACED_ATTRIBUTES.match(text, start)
+    if found is None:
+        return None
+    ends = Span(start, start + 1), Span(found.end() - 1, found.end())
+    return Fix("Write `(` and `)`", tuple(Change(Place(end), sign) for end, sign in zip(ends, "()", strict=True)))
 
 
 def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
@@ -135,6 +144,9 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
 
 
 _WORD: Final = regex(r"\w+|,")
+_BRACED_ATTRIBUTES: Final = regex(
+    r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
+)
 _nearest_units: Final = cache_of(256)(nearest_units)  # the same mistake is often made again
 _ESCAPE: Final = regex(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
@@ -144,7 +156,7 @@ _LOOKS_LIKE: Final = {
     **dict.fromkeys("‘’", "'"),
 }
 CHILDREN: Final = "children go on lines of their own below their parent, indented"
-_ATTRIBUTES: Final = "attributes go in round brackets: `(key = value)`"
+ATTRIBUTES: Final = "attributes go in round brackets: `(key = value)`"
 _NO_END_SIGN: Final = "a line needs no sign at its end; comments begin with `#`"
 _UNITS_OF_SIGNALS: Final = "a signal's unit goes after `:`: `signal distance : m`"
 # What to write instead of characters that are part of no value either.

@@ -24,8 +24,12 @@ NODE = "BehaviorTree Main\n    Action X satisfies r\n"
             "runs at least 1.5 per 2 s",
             "3:19 warning impossible-bound «1.5» expected a whole number of starts, found `1.5`",
         ),
-        ("runs every 0 s", "3:16 warning impossible-bound «0 s» every duration exceeds `0 s`"),
-        ("succeeds within 0 s", "3:21 warning impossible-bound «0 s» every duration exceeds `0 s`"),
+        (
+            "takes at most -3 s",
+            "3:20 warning impossible-bound «3 s» a duration must be longer than zero, found `-3 s`",
+        ),
+        ("runs every 0 s", "3:16 warning impossible-bound «0 s» a duration must be longer than zero, found `0 s`"),
+        ("succeeds within 0 s", "3:21 warning impossible-bound «0 s» a duration must be longer than zero, found `0 s`"),
         (
             "tries at most 0",
             "3:19 warning impossible-bound «0» a node that starts makes at least one attempt, so only a node "

@@ -134,6 +134,26 @@ FROM_XML: Final[list[Case]] = [
 ]
 
 FROM_PYTHON: Final[list[Case]] = [
+    (
+        "Root Main\n" + tree('Go {station = "x", at = {y}} satisfies r') + R,
+        "3:8 error syntax-error «{» attributes go in round brackets: `(key = value)`",
+        "Root Main\n" + tree('Go (station = "x", at = {y}) satisfies r') + R,
+    ),
+    (
+        "Root Main\n" + tree("Go {n = 1}"),
+        "3:8 error syntax-error «{n = 1}» attributes go in round brackets: `(key = value)`",
+        "Root Main\n" + tree("Go (n = 1)"),
+    ),
+    (
+        tree("->", "    Condtion AtDoor"),
+        "3:9 warning unknown-node «Condtion» btq reads `Condtion` as a node here; did you mean `Condition`?",
+        tree("->", "    Condition AtDoor"),
+    ),
+    (
+        tree("Decoratr Slowly", "    Acton Go (n = 1)"),
+        "2:5 warning unknown-node «Decoratr» btq reads `Decoratr` as a node here; did you mean `Decorator`?",
+        tree("Decorator Slowly", "    Acton Go (n = 1)"),
+    ),
     (tree("Sequence:", "    Go"), "2:13 error syntax-error «:» unexpected `:`", tree("Sequence", "    Go")),
     ("BehaviorTree Main:\n    Go\n", "1:18 error syntax-error «:» unexpected `:`", tree("Go")),
     (tree("Action: Go"), "2:11 error syntax-error «:» unexpected `:`", tree("Action Go")),

@@ -177,6 +177,7 @@ REFUSED: list[tuple[str, str, str, str | None]] = [
         "strings in scripts go in single quotes: '…'; a string cannot contain a single quote",
         None,
     ),
+    ('a == "x\n" && b == 1', '"x\n"', "strings in scripts go in single quotes", None),  # a quote is lost, perhaps
     ("not a == b", "not", "`not` is written `!` in a script, which binds more tightly", None),
     ("é > 3", "é", "invalid name `é`: names in scripts contain only", None),
     ("3foo", "3foo", "the engine does not read `3foo` as a number", None),

@@ -114,7 +114,7 @@ def _count(
 
 def _time(amount: Amount, number: float, is_lower: bool) -> Iterator[Diagnostic]:
     if number < 0 or (number == 0 and not is_lower):
-        message = f"every duration exceeds `{_shown(amount)}`"
+        message = f"a duration must be longer than zero, found `{_shown(amount)}`"
         yield Diagnostic("impossible-bound", amount.word.span, message)
 
 

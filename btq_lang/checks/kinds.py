@@ -55,7 +55,7 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield _tree_as_node(view, seen, name)
         elif name.text in KNOWN_WORDS or _quoted_alias(seen, name) is not None:
             continue  # no node of the engine, which is told
-        elif (category := _category_meant(seen)) is not None:
+        elif (category := _category_meant(view, seen)) is not None:
             fix = replace_fix(f"Replace `{name.text}` with `{category}`", name.span, category)
             message = f"btq reads `{name.text}` as a node here; did you mean `{category}`?"
             yield Diagnostic("unknown-node", name.span, message, fixes=(fix,))
@@ -304,13 +304,17 @@ def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple
     return Fix(title, (Change(Place(Span(0, 0)), "".join(lines)),))
 
 
-def _category_meant(seen: SeenNode) -> str | None:
-    """`action Lower`: a word for the node's category, not written as one."""
+def _category_meant(view: View, seen: SeenNode) -> str | None:
+    """`action Lower`, `Acton Lower`: a word for the node's category, not written as one."""
     kind = seen.node.kind
     if kind is None or kind.quoted or seen.node.category is not None or seen.node.label is None:
         return None
     meant = kind.raw.capitalize()
-    return meant if meant in CATEGORIES and meant != kind.raw else None
+    if meant in CATEGORIES:
+        return meant if meant != kind.raw else None
+    if seen.node.attributes or view.is_xml:  # a node with a label
+        return None
+    return next((word for word in sorted(CATEGORIES) if distance(kind.raw.lower(), word.lower(), 1) == 1), None)
 
 
 def _is_slip(word: str, meant: str) -> bool:

@@ -92,6 +92,8 @@ def wrong_quotes(span: Span, content: str) -> Diagnostic:
     message = "strings in scripts go in single quotes: '…'"
     if "'" in content:
         return error(span, f"{message}; a string cannot contain a single quote")
+    if "\n" in content or "\r" in content:  # it may well be the quotes of the attribute that are lost
+        return error(span, message)
     return error(span, message, _write(f"'{content}'", span))
 
 
