@@ -311,7 +311,7 @@ def test_markdown() -> None:
         "",
         "5 requirements (3 clauses: 3 monitored), 1 of them hard (on violation fail or halt)"
         " and not enforced everywhere, 6 qualities;"
-        " of 5 custom leaf nodes 2 carry a quality or a requirement, 1 through a node above, 2 none.",
+        " of 5 custom leaf nodes, 2 carry a quality or a requirement, 1 only through a node above, 2 not at all.",
         "",
         "| Requirement | Quality | Holds for | How | Defined |",
         "|---|---|---|---|---|",

@@ -22,9 +22,9 @@ def summary(overview: Overview) -> str:
     skills = overview.coverage()
     if not sum(skills.values()):
         return f"{said}."
-    of = f"{said}; of {counted(sum(skills.values()), 'custom leaf node')} {skills['own']}"
+    of = f"{said}; of {counted(sum(skills.values()), 'custom leaf node')}, {skills['own']}"
     of += " carries" if skills["own"] == 1 else " carry"
-    return f"{of} a quality or a requirement, {skills['above']} through a node above, {skills['none']} none."
+    return f"{of} a quality or a requirement, {skills['above']} only through a node above, {skills['none']} not at all."
 
 
 def counted(number: int, one: str, several: str = "") -> str:
