@@ -22,13 +22,16 @@ from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.loader import IS_SPECIAL, absolute, collect, find_project, is_special, read, shown
+from btq_lang.name_kinds import Kind
+from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
+from btq_lang.syntax import Signal
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
@@ -40,7 +43,9 @@ def run(options: Namespace) -> int:
     logs, missions, samples = _given(options, problems)
     if not problems:
         report = verify(logs, missions, samples, shown)
-        problems += (*report.problems, *_without_verdicts(report), *_with_errors(report, missions))
+        problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
+        for note in _ignored(options.signals, samples, missions):
+            print(f"btq verify: {note}", file=sys.stderr)
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
             print(f"btq verify: {each.file}: {runs} {each.of}, not judged", file=sys.stderr)
@@ -143,6 +148,19 @@ def _side(path: str) -> _Side | None:
         return None
 
 
+def _ignored(path: str | None, samples: Iterable[str], missions: Sequence[Candidate]) -> Iterator[str]:
+    """The columns that no mission reads, each with the names that may be meant."""
+    scopes = [mission.workspace.scope(mission.path) for mission in missions]
+    found = [each for scope in scopes for name in scope.names(Kind.SIGNAL) for each in scope.all(Kind.SIGNAL, name)]
+    signals = [each.symbol.target for each in found if isinstance(each.symbol.target, Signal)]
+    words = [word for each in signals for word in (each.name, each.source) if word is not None]
+    known = {word.text.strip("{} ").removeprefix("@") for word in words}
+    for name in samples:
+        if name not in known:
+            meant = did_you_mean(near(name, known))
+            yield f"{path}: column `{name}` is ignored, because no signal or entry has this name{meant}"
+
+
 def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
     """The missions of the report in which something is wrong, so that a clause may not have been understood."""
     judged = {mission.file for mission in report.missions}
@@ -155,8 +173,12 @@ def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]
                 yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
 
 
-def _without_verdicts(report: Report) -> Iterator[str]:
+def _without_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
     if not report.missions and not report.problems:
-        yield "no log matches a known mission; name the mission with --mission FILE"
+        differences = dict.fromkeys(each.difference for each in report.foreign if asked and each.difference)
+        if differences:
+            yield from (f"no log matches {', '.join(asked)}: {each}" for each in differences)
+        else:
+            yield "no log matches a known mission; name the mission with --mission FILE"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"

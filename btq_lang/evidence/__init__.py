@@ -42,6 +42,7 @@ def verify(
         shown: a path as people read it.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
+    from btq_lang.evidence.identity import difference
     from btq_lang.evidence.named_runs import joined_sessions
     from btq_lang.evidence.readers import NotALog, read
     from btq_lang.evidence.runs import count_runs
@@ -49,6 +50,7 @@ def verify(
 
     evaluations = {mission.path: MissionEvaluation(mission) for mission in missions}
     foreign: dict[tuple[str, str], int] = {}
+    differences: dict[tuple[str, str], str] = {}
     problems: list[str] = []
     runs = 0
     for log in logs:
@@ -56,12 +58,14 @@ def verify(
             for source, session, joined in joined_sessions(read(log), missions, shown(log)):
                 if isinstance(joined, str):
                     foreign[source, joined] = foreign.get((source, joined), 0) + count_runs(session)
+                    if (source, joined) not in differences:
+                        differences[source, joined] = difference(missions, session.tree)
                 else:
                     runs += evaluations[joined.mission.path].read(session, joined, samples, runs + 1, source)
         except NotALog as error:
             problems.append(f"{shown(log)}: {error}")
         except OSError as error:
             problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
-    others = [Foreign(source, number, of) for (source, of), number in foreign.items()]
+    others = [Foreign(key[0], number, key[1], differences[key]) for key, number in foreign.items()]
     results = tuple(each.result() for each in evaluations.values())
     return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))

@@ -111,9 +111,26 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
         for build in mission.builds():
             if (same := _same(mission, build, tree, wanted)) is not None:
                 return same
-    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds())
-    best = max(found, key=lambda each: each.number, default=None)
+    best = _nearest(missions, tree)
     return best if best is not None and best.number * 2 >= len(wanted) else None
+
+
+def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
+    """What the mission that is nearest to a log's tree lacks of it; empty where no mission can be built."""
+    best = _nearest(missions, tree)
+    if best is None or not tree.nodes:
+        return ""
+    joined = frozenset(best.uids.values())
+    lacking = next((node.path for node in tree.nodes.values() if node.uid not in joined), "")
+    return (
+        f"{best.mission.name} has {best.number} of the {len(tree.nodes)} nodes in the log; "
+        f"the first that it does not have is `{lacking}`"
+    )
+
+
+def _nearest(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
+    found = (_by_path(mission, build, tree) for mission in missions for build in mission.builds())
+    return max(found, key=lambda each: each.number, default=None)
 
 
 def join_build(mission: Candidate, build: Build, tree: LoggedTree) -> Joined | None:

@@ -208,11 +208,17 @@ class MissionVerdicts(Record):
 
 
 class Foreign(Record):
-    """Runs that are not judged, and what they are of: another mission, or one of several."""
+    """Runs that are not judged.
+
+    Attributes:
+        of: what they are of: another mission, or one of several.
+        difference: what the nearest mission and the tree of the log differ in; empty where one of them is unknown.
+    """
 
     file: str
     runs: int
     of: str
+    difference: str
 
 
 class Report(Record):

@@ -116,7 +116,8 @@ def test_a_log_of_another_mission_is_counted_and_left_alone(verify: Verify) -> N
     verify.text("b.btlog", "--mission", "main.btq")
     assert (verify.code, verify.errors.splitlines()[1]) == (
         2,
-        "btq verify: no log matches a known mission; name the mission with --mission FILE",
+        "btq verify: no log matches main.btq: main has 1 of the 3 nodes in the log; "
+        "the first that it does not have is `Wash::2`",
     )
 
 

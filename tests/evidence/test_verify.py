@@ -286,6 +286,31 @@ def test_what_cannot_be_done(arguments: tuple[str, ...], error: str, lab: Path) 
     assert (code, errors) == (2, error)
 
 
+def test_what_a_mission_lacks_of_the_log_is_told(lab: Path) -> None:
+    (lab / "other.btq").write_text("BehaviorTree Other\n    ->\n        Go\n", encoding="utf-8")
+    code, _, errors = btq(lab, "verify", "lab.btlog", "--mission", "other.btq")
+    assert (code, errors.splitlines()) == (
+        2,
+        [
+            "btq verify: lab.btlog: 200 runs of another mission, not judged",
+            "btq verify: no log matches other.btq: other has 0 of the 19 nodes in the log; "
+            "the first that it does not have is `Mission`",
+        ],
+    )
+
+
+def test_columns_that_nothing_reads_are_named(lab: Path) -> None:
+    text = (lab / "lab.battery.csv").read_text(encoding="utf-8")
+    head, _, rows = text.partition("\n")
+    (lab / "wrong.csv").write_text(f"{head.replace('battery', 'batery')},zebra\n{rows}", encoding="utf-8")
+    _, _, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq", "--signals", "wrong.csv")
+    why = "is ignored, because no signal or entry has this name"
+    assert errors.splitlines() == [
+        f"btq verify: wrong.csv: column `batery` {why}; did you mean `battery`?",
+        f"btq verify: wrong.csv: column `zebra` {why}",
+    ]
+
+
 def test_a_mission_with_errors_may_lack_clauses(lab: Path) -> None:
     text = (lab / "lab.btq").read_text(encoding="utf-8")
     (lab / "lab.btq").write_text(text.replace("280 ms", "280 sek"), encoding="utf-8")
