@@ -473,6 +473,11 @@ signal far : m
     check_completion(f"{main}{line}\n//- lib.btq\n{lib}", *labels)
 
 
+@pytest.mark.parametrize("line", ["quality neat : $0\nquality tidy : safety", "context neat : $0\ncontext tidy : low"])
+def test_a_definition_does_not_offer_itself(line: str) -> None:
+    check_offers(typed(line), "tidy", absent=("neat",))
+
+
 def test_where_a_name_is_declared_no_file_is_read_that_refers_to_nothing_undeclared() -> None:
     main, user, other = (
         "BehaviorTree ",
