@@ -200,7 +200,7 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
     as what it is, for nothing in it would be worth telling else.  Without a text there is always a problem: so it is
     for bytes among which there is a NUL.  Line ends stay as they are.
     """
-    if is_special(path):
+    if is_special(path) and not path.startswith(("/dev/stdin", "/dev/fd/")):  # what a shell has opened has an end
         return None, LoadProblem(path, IS_SPECIAL)
     try:
         with open(path, "rb") as file:

@@ -253,6 +253,15 @@ def test_an_included_file_that_cannot_be_read_is_a_problem(folder: Path, monkeyp
     assert list(map(str, loaded.problems)) == ["b.btq: cannot be read: Permission denied"]
 
 
+@pytest.mark.skipif(not os.path.isdir("/dev/fd"), reason="the system has no /dev/fd")
+def test_a_pipe_that_the_shell_has_opened_is_read() -> None:
+    begin, end = os.pipe()
+    with os.fdopen(end, "w") as writer:
+        writer.write("BehaviorTree A")
+    assert read(f"/dev/fd/{begin}") == ("BehaviorTree A", None)
+    os.close(begin)
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
 def test_an_included_pipe_is_not_waited_for(folder: Path) -> None:
     make(folder, "a.btq: include pipe.btq")
