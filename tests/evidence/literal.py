@@ -43,18 +43,23 @@ class Literal(OverRuns):
         """A claim of an applied requirement, with its scopes, odds and window."""
         requirement = applied.requirement
         if isinstance(applied.subject, Span):
-            judged = self.span(applied.subject, claim)
+            judged = self.span(applied.subject, claim, requirement)
         elif isinstance(applied.subject, Total):
-            judged = self.total(applied.subject, claim)
+            judged = self.total(applied.subject, claim, requirement)
         else:
             judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
             judged = [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
-        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.begin)))
+        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.at)))
         experiments = [each.verdict for each in judged]
         if requirement.odds is not None and requirement.odds.experiments == "runs":
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
             experiments = [all_of(verdicts) for verdicts in of_runs]
-        return ClauseResult(self.verdict(requirement, experiments), tuple(judged), tuple(experiments))
+        verdict = self.verdict(requirement, experiments)
+        targets = applied.subject.targets if isinstance(applied.subject, Total) else ()
+        nodes = {uid for target in targets for uid in self.uids(target)} or {each.uid for each in judged}
+        if verdict == "satisfied" and not any(each.uid in nodes for each in self.activations):
+            verdict = "never exercised"  # where others ran that it might have run in, or after
+        return ClauseResult(verdict, tuple(judged), tuple(experiments))
 
     def verdict(self, requirement: Requirement, experiments: Sequence[Verdict]) -> str:
         """What experiments come to together."""
@@ -85,14 +90,16 @@ class Literal(OverRuns):
         window = requirement.window
         if window is None:
             return judged
+        counted = [each for each in judged if each.verdict not in (OPEN, OUT)]
         if window.seconds is not None:
             since = max((run.end for run in self.runs), default=0) - micros(window.seconds)
-            return [each for each in judged if each.begin >= since]
-        assert window.count is not None
-        if window.experiments == "runs":
-            return [each for each in judged if each.run >= len(self.runs) - window.count]
-        counted = [each for each in judged if each.verdict not in (OPEN, OUT)]
-        return counted[-window.count :]
+            counted = [each for each in counted if each.at >= since]
+        elif window.experiments == "runs":
+            runs = sorted({each.run for each in counted})[-(window.count or 0) :]
+            counted = [each for each in counted if each.run in runs]
+        else:
+            counted = counted[-(window.count or 0) :]
+        return counted + [each for each in judged if each.verdict is OPEN]
 
 
 _OVER_RUNS = ("tries", "runs", "starts", "ends", "follows")

@@ -70,7 +70,8 @@ class Hunt:
             return
         judged = literal.clause(applied, claim)
         self.compared[f"{claim.verb}: {judged.verdict}"] += 1
-        expected, got = expected_of(made, applied.requirement, judged), got_of(streamed)
+        has_path = streamed.unit != "runs" and not isinstance(applied.subject, Span | Total)
+        expected, got = expected_of(made, applied.requirement, judged, has_path), got_of(streamed, has_path)
         if expected != got:
             of_node = [f"{each}" for each in literal.activations if each.uid in {one.uid for one in judged.judged}]
             self.differences.append(
@@ -130,14 +131,20 @@ def literal_of(made: Case) -> Literal:
     )
 
 
-def expected_of(made: Case, requirement: Requirement, judged: ClauseResult) -> dict[str, object]:
-    """What a clause came to, by the literal judge."""
+def expected_of(made: Case, requirement: Requirement, judged: ClauseResult, has_path: bool) -> dict[str, object]:
+    """What a clause came to, by the literal judge.
+
+    Args:
+        has_path: each violation is one of a node.
+    """
     yes, no, maybe = (sum(each is truth for each in judged.experiments) for truth in (True, False, None))
     confidence = requirement.confidence or 0.95
     limits = (lower_limit(yes, yes + no, confidence), upper_limit(yes, yes + no, confidence)) if yes + no else None
-    broken = [(each.run + 1, made.joined.tree.nodes[each.uid].path) for each in judged.judged if each.verdict is False]
+    nodes = made.joined.tree.nodes
+    wrong = [each for each in judged.judged if each.verdict is False]
+    broken = [(each.run + 1, nodes[each.uid].path if has_path else "") for each in wrong]
     if requirement.odds is not None and requirement.odds.experiments == "runs":
-        broken = [*{run: (run, "") for run, _ in broken}.values()]  # the first one of each run
+        broken = [*dict.fromkeys(broken)]  # the first one of each run
     return {
         "verdict": judged.verdict,
         "counted": yes + no,
@@ -149,7 +156,7 @@ def expected_of(made: Case, requirement: Requirement, judged: ClauseResult) -> d
     }
 
 
-def got_of(clause: ClauseVerdict) -> dict[str, object]:
+def got_of(clause: ClauseVerdict, has_path: bool) -> dict[str, object]:
     """The same by `btq_lang.evidence`."""
     return {
         "verdict": clause.verdict,
@@ -157,7 +164,7 @@ def got_of(clause: ClauseVerdict) -> dict[str, object]:
         "violated": clause.violated,
         "unknown": clause.unknown,
         "cut off": clause.cut_off,
-        "violations": sorted((each.run, each.path if clause.unit != "runs" else "") for each in clause.violations),
+        "violations": sorted((each.run, each.path if has_path else "") for each in clause.violations),
         "interval": clause.interval if clause.counted and not clause.unknown else None,
     }
 

@@ -32,6 +32,8 @@ from btq_lang.requirements.model import (
 )
 
 if TYPE_CHECKING:
+    from literal_runs import Moment
+
     from btq_lang.evidence.model import SampleValue, Transition
     from btq_lang.requirements.model import Bounded, Condition, Mission, Number, Signal
 
@@ -49,7 +51,7 @@ class Log:
         instances: the uids of the instances of a written node.
 
     Attributes:
-        changes: the times at which anything changes: rows, samples, and samples that grow too old.
+        changes: the moments at which anything changes: rows, samples, and samples that grow too old.
     """
 
     def __init__(
@@ -67,46 +69,50 @@ class Log:
         self.instances = instances
         self.activations = activations(tree, rows)
         self.runs = self.of(ROOT)
-        self.changes = {time for each in self.activations for time in (each.begin, each.end)}
+        self.changes = {each.start for each in self.activations}
+        self.changes |= {(each.end, each.last + 1) for each in self.activations}
         for name, series in samples.items():
-            self.changes.update(time for time, _ in series)
+            self.changes.update((time, -1) for time, _ in series)
             if (fresh := signals[name].fresh) is not None:
-                self.changes.update(time + micros(fresh) + 1 for time, _ in series)
+                self.changes.update((time + micros(fresh) + 1, -1) for time, _ in series)
 
-    def moments(self, begin: int, end: int) -> list[int]:
-        """The times in [begin, end] at which something may change: samples, ones that grow too old, and rows."""
-        return sorted({begin, *(time for time in self.changes if begin < time <= end)})
+    def moments(self, a: Activation) -> list[Moment]:
+        """Those of an activation at which something may change: rows, samples, and samples that grow too old."""
+        return sorted({a.start, *(each for each in self.changes if a.start < each <= a.stop)})
 
-    def holds(self, condition: Condition | None, time: int, a: Activation) -> Truth:
+    def holds(self, condition: Condition | None, moment: Moment, a: Activation) -> Truth:
         """Whether a condition holds at a time of an activation."""
         match condition:
             case Flag(value):
                 return value
             case Read(signal):
-                value = self.sample(signal, time)
+                value = self.sample(signal, moment[0])
                 return None if value is None else bool(value)
             case InContext(_, inner):
-                return self.holds(inner, time, a)
+                return self.holds(inner, moment, a)
             case Not(inner):
-                return negated(self.holds(inner, time, a), True)
+                return negated(self.holds(inner, moment, a), True)
             case All(parts):
-                return both(*(self.holds(part, time, a) for part in parts))
+                return both(*(self.holds(part, moment, a) for part in parts))
             case Any(parts):
-                return either(*(self.holds(part, time, a) for part in parts))
+                return either(*(self.holds(part, moment, a) for part in parts))
             case Running(target):
-                return any(
-                    each.begin <= time < each.end or (each.outcome == "O" and time == each.end)
-                    for uid in self.uids(target)
-                    for each in self.of(uid)
-                )
+                near = [each for uid in self.nearest(a.uid, self.uids(target)) for each in self.of(uid)]
+                return either(*(self.is_running(each, moment) for each in near))
             case Compare(operators, operands):
-                values = [self.number(operand, time, a) for operand in operands]
+                values = [self.number(operand, moment, a) for operand in operands]
                 return both(
                     *(compare(operator, *pair) for operator, pair in zip(operators, pairwise(values), strict=True))
                 )
         raise AssertionError(condition)
 
-    def number(self, number: Number | Bounded | None, time: int, a: Activation) -> SampleValue | None:
+    def is_running(self, a: Activation, moment: Moment) -> Truth:
+        """Whether an activation is open, from its first row to its last one."""
+        if not a.start <= moment <= a.stop:
+            return False
+        return True if a.is_exact or moment == a.start else None
+
+    def number(self, number: Number | Bounded | None, moment: Moment, a: Activation) -> SampleValue | None:
         """A value in SI, at a time."""
         match number:
             case Value(_, si):
@@ -114,22 +120,22 @@ class Log:
             case Flag(value) | Text(value):
                 return value
             case Read(signal):
-                return self.sample(signal, time)
+                return self.sample(signal, moment[0])
             case Minus(operand):
-                value = self.number(operand, time, a)
+                value = self.number(operand, moment, a)
                 return None if value is None else -value
             case Arithmetic(operator, left, right):
-                one, other = self.number(left, time, a), self.number(right, time, a)
+                one, other = self.number(left, moment, a), self.number(right, moment, a)
                 if one is None or other is None or (operator == "/" and other == 0):
                     return None
                 return {"+": one + other, "-": one - other, "*": one * other, "/": other and one / other}[operator]
             case Table(cases):
                 for case in cases:
-                    holds = True if case.condition is None else self.holds(case.condition, time, a)
+                    holds = True if case.condition is None else self.holds(case.condition, moment, a)
                     if holds is None:
                         return None
                     if holds:
-                        return self.number(case.value, time, a)
+                        return self.number(case.value, moment, a)
             case Aggregate(function, signal):
                 return self.aggregate(function, signal, a)
         raise AssertionError(number)
@@ -138,22 +144,24 @@ class Log:
         """The last sample up to a time, unless it is too old; before the first `initially`."""
         earlier = [each for each in self.samples.get(signal.name, ()) if each[0] <= time]
         if not earlier:
-            return self.number(signal.initially, time, self.runs[0]) if signal.initially is not None else None
+            return self.number(signal.initially, (time, 0), self.runs[0]) if signal.initially is not None else None
         at, value = earlier[-1]
         return None if signal.fresh is not None and time - at > micros(signal.fresh) else value
 
     def aggregate(self, function: str, signal: Signal, a: Activation) -> float | None:
-        """Over the samples of an activation."""
-        values = sorted(value for time, value in self.samples.get(signal.name, ()) if a.begin <= time <= a.end)
-        if function == "count":
-            return len(values)
-        if function == "change":
-            one, other = self.sample(signal, a.begin), self.sample(signal, a.end)
-            return None if one is None or other is None else other - one
-        if not values:
+        """Over what a signal was in an activation: as it began, if that is known, and each sample since."""
+        times = sorted({a.begin, *(time for time, _ in self.changes if a.begin < time <= a.end)})
+        known = [(time, self.sample(signal, time)) for time in times]
+        while known and known[0][1] is None:
+            known.pop(0)
+        sampled = {time for time, _ in self.samples.get(signal.name, ())}
+        values = [value for time, value in known if time == a.begin or time in sampled]
+        if not values or any(value is None for _, value in known) or (not a.is_exact and len(known) > 1):
             return None
+        if function == "change":
+            return values[-1] - values[0]
         if function == "p95":
-            return values[-(-len(values) * 95 // 100) - 1]
+            return sorted(values)[-(-len(values) * 95 // 100) - 1]
         return {"max": max, "min": min, "mean": statistics.fmean, "stddev": statistics.pstdev}[function](values)
 
     def uids(self, subject: Target | Mission | None) -> list[int]:

@@ -3,19 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from literal_log import both, micros
 from literal_runs import Activation
-from literal_verbs import OPEN, OUT, Judged, OfActivations, judged
+from literal_verbs import OPEN, OUT, Judged, OfActivations, counted, judged
 
+from btq_lang import record
 from btq_lang.evidence.model import ROOT
+from btq_lang.requirements.model import Value
 
 if TYPE_CHECKING:
+    from literal_runs import Moment
     from literal_verbs import Verdict
 
-    from btq_lang.requirements.model import Claim, Event, Requirement, Span, Total
+    from btq_lang.requirements.model import Claim, Condition, Event, Requirement, Span, Total
+
+
+@dataclass(frozen=True)
+class Happening:
+    """An event: from when on and by when it happened; is_sure: once, and just then."""
+
+    after: Moment
+    by: Moment
+    is_sure: bool = True
 
 
 class OverRuns(OfActivations):
@@ -23,157 +36,196 @@ class OverRuns(OfActivations):
 
     def over_runs(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
         """tries, runs, starts, ends, follows at one instance of a node."""
-        if claim.verb == "runs":
-            return [judged(run, self.rate(uid, claim, requirement, run)) for run in self.runs]
-        return {"tries": self.tries, "follows": self.follows}.get(claim.verb, self.reactions)(uid, claim, requirement)
+        judge = {"tries": self.tries, "runs": self.rate, "follows": self.follows}.get(claim.verb, self.reactions)
+        found = []
+        for run in self.runs:
+            own = [each for each in self.of(uid) if each.run == run.run]
+            verdicts = judge(uid, own, run, claim, requirement)
+            found += [Judged(run.run, uid, run.end, verdict) for verdict in verdicts]
+        return found
 
-    def tries(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+    def tries(
+        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+    ) -> list[Verdict]:
+        """How many starts that count lie in each activation of the other node, or in the run."""
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
-        found = []
-        for p in (each for other in around for each in self.of(other)):
-            number = sum(x.run == p.run and p.begin <= x.begin <= p.end for x in self.of(uid))
-            not_above, not_below = self.within(number, claim.limit, p)
-            verdict: Verdict = both(not_above, not_below)
-            if p.outcome == "O" and not_above is not False:
-                verdict = OPEN
-            elif p.outcome == "H" and not_above is True and not_below is not True:
-                verdict = OUT
-            found.append(judged(p, self.scoped(p, verdict, requirement)))
+        found: list[Verdict] = []
+        for p in (each for other in around for each in self.of(other) if each.run == run.run):
+            inside = [self.counts(x, requirement) for x in own if p.start <= x.start <= p.stop]
+            numbers = {inside.count(True), inside.count(True) + inside.count(None)}
+            verdicts = {self.tried(p, number, claim) for number in numbers}
+            found.append(verdicts.pop() if len(verdicts) == 1 else None)
         return found
 
-    def rate(self, uid: int, claim: Claim, requirement: Requirement, run: Activation) -> Verdict:
-        """runs every d, runs at least m per d: a run's starts in each stretch of time that counts."""
-        starts = [each.begin for each in self.of(uid) if each.run == run.run]
-        verdicts = [
-            self.evenly(claim, run, [time for time in starts if begin <= time <= end], begin, end)
-            for begin, end in self.stretches(requirement, run)
+    def tried(self, p: Activation, number: int, claim: Claim) -> Verdict:
+        not_above, not_below = self.within(number, claim.limit, p)
+        if p.outcome in ("S", "F"):
+            return both(not_above, not_below)
+        if p.outcome == "O":
+            return not_above if not not_above else OPEN
+        return not_above if not_above is not False or p.is_exact else None
+
+    def rate(
+        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+    ) -> list[Verdict]:
+        """runs every d, runs at least m per d: in each stretch of a run that counts."""
+        scopes = [each.condition for each in requirement.scopes if each.word == "while"]
+        when = record.replace(requirement, scopes=tuple(each for each in requirement.scopes if each.word == "when"))
+        found: list[Verdict] = []
+        for stretch, is_sure in self.stretches(scopes, replace(run, uid=uid)):
+            inside = [(x, self.counts(x, when)) for x in own if stretch.start <= x.start <= stretch.stop]
+            inside = [(x, counts) for x, counts in inside if counts is not False]
+            if not is_sure or any(counts is None for _, counts in inside):
+                found.append(None)
+                continue
+            times = [x.begin for x, _ in inside]
+            is_open = run.outcome == "O" and stretch.stop == run.stop
+            judge = self.evenly if claim.every else self.often
+            found += judge(claim, replace(stretch, outcome="O" if is_open else "S"), times)
+        return [each for each in found if each != OUT]
+
+    def evenly(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Verdict]:
+        """Each time between two starts, and from the last one to the end."""
+        if not times:
+            return []
+        kept = [self.within((later - before) / 1e6, claim.limit, stretch)[0] for before, later in pairwise(times)]
+        tail: Verdict = self.within((stretch.end - times[-1]) / 1e6, claim.limit, stretch)[0]
+        return [*kept, OPEN if tail and stretch.outcome == "O" else tail]
+
+    def often(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Verdict]:
+        """Each window of the length."""
+        assert isinstance(claim.per, Value)
+        length = micros(claim.per.si)
+        last = stretch.end - length
+        if last < stretch.begin:
+            return []
+        begins = {stretch.begin, last, *(time + shift for time in times for shift in (0, 1, -length, 1 - length))}
+        numbers = [
+            sum(begin <= time < begin + length for time in times) for begin in begins if stretch.begin <= begin <= last
         ]
-        is_sure = all(
-            self.holds_all("while", requirement, time, run) is not None for time in self.moments(run.begin, run.end)
-        )
-        verdict = all_of(verdicts)
-        return verdict if is_sure or verdict == OUT else None
+        kept = both(*(both(*self.within(number, claim.limit, stretch)) for number in numbers))
+        return [OPEN if kept and stretch.outcome == "O" else kept]
 
-    def evenly(self, claim: Claim, run: Activation, starts: list[int], begin: int, end: int) -> Verdict:
-        if claim.every:
-            gaps = [later - earlier for earlier, later in pairwise([*starts, end])]
-            kept = [self.within(gap / 1e6, claim.limit, run)[0] for gap in gaps]
-            if not starts:
-                return OUT
-        else:
-            window, fewest = micros(claim.per.si), claim.limit.value.si
-            if end - begin < window:
-                return OUT
-            marks = [begin, *starts, end]
-            needed = int(fewest)
-            kept = [later - earlier <= window for earlier, later in zip(marks, marks[needed:], strict=False)]
-            kept += [False] if len(starts) < needed else []
-        return False if False in kept else OPEN if run.outcome == "O" else both(*kept)
+    def reactions(
+        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+    ) -> list[Verdict]:
+        """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
+        assert claim.event is not None
+        found: list[Verdict] = []
+        for event in self.events(claim.event, replace(run, uid=uid)):
+            if claim.verb == "starts":
+                answer = next((Happening(x.start, x.start) for x in own if x.start >= event.after), None)
+            else:  # what does not run has nothing to end
+                running = [x for x in own if x.start <= event.after <= x.stop][-1:]
+                if not running:
+                    continue
+                answer = next((Happening(x.start, x.stop, x.is_exact) for x in running if x.outcome != "O"), None)
+            by = answer.by if answer is not None else run.stop
+            at = between(run, uid, event.after, by)
+            kept = self.within((by[0] - event.after[0]) / 1e6, claim.limit, at)[0]
+            bound = self.number(claim.limit.value, event.after, at) if claim.limit is not None else None
+            until = by if bound is None else min(by, (event.after[0] + micros(bound), by[1]))
+            counts = self.counts(between(run, uid, event.after, until), requirement)
+            verdict: Verdict = kept
+            if not event.is_sure or (kept is False and answer is not None and not answer.is_sure):
+                verdict = None
+            elif kept and answer is None:
+                verdict = OPEN if run.outcome == "O" else None  # an open tail
+            found.append(counted(counts, verdict))
+        return [each for each in found if each != OUT]
 
-    def reactions(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
-        """starts within d after ev, ends within d after ev: an answer to each event."""
-        answers = [
-            each.begin if claim.verb == "starts" else each.end
-            for each in self.of(uid)
-            if claim.verb == "starts" or each.outcome != "O"
-        ]
+    def follows(
+        self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
+    ) -> list[Verdict]:
+        """An event since the start before, or since the run began."""
+        assert claim.event is not None
+        events = self.events(claim.event, replace(run, uid=uid))
+        before = (run.begin, -1)
+        found: list[Verdict] = []
+        for x in own:
+            maybe = [each for each in events if before < each.by and each.after <= x.start]
+            is_sure = any(each.is_sure and before < each.after and each.by <= x.start for each in maybe)
+            verdict: Verdict = True if is_sure else None if maybe else False
+            found.append(counted(self.counts(x, requirement), OPEN if is_sure and x.outcome == "O" else verdict))
+            before = x.start
+        return [each for each in found if each != OUT]
+
+    def span(self, span: Span, claim: Claim, requirement: Requirement) -> list[Judged]:
+        """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
+        firsts = self.uids(span.first.subject) if span.first.condition is None else [ROOT]
         found = []
-        for run in self.runs:
-            for time in self.events(claim.event, run, uid):
-                at = Activation(uid, run.first, run.last, time, run.end, run.outcome, True, run.run)
-                waits = [answer - time for answer in answers if time <= answer <= run.end]
-                open_ = (run.end - time) / 1e6
-                kept: Verdict = self.within(min(waits) / 1e6 if waits else open_, claim.limit, at)[0]
-                if not waits and kept is True:
-                    kept = OPEN if run.outcome == "O" else False
-                found.append(judged(at, self.scoped(at, kept, requirement)))
-        return found
-
-    def follows(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
-        found = []
-        for run in self.runs:
-            events, before = self.events(claim.event, run, uid), run.begin - 1
-            for each in self.of(uid):
-                if each.run == run.run:
-                    verdict = any(before < event <= each.begin for event in events)
-                    before = each.begin
-                    found.append(
-                        judged(
-                            each,
-                            self.scoped(
-                                each, verdict or OPEN if each.outcome == "O" and verdict else verdict, requirement
-                            ),
-                        )
-                    )
-        return found
-
-    def span(self, span: Span, claim: Claim) -> list[Judged]:
-        """from e1 to e2: each e1 opens one, the next e2 closes it."""
-        found = []
-        firsts = self.uids(span.first.subject) if span.first.subject is not None else [ROOT]
         for run in self.runs:
             for uid in firsts:
-                ends = self.events(span.last, run, uid)
-                for time in self.events(span.first, run, uid, only=True):
-                    later = [end for end in ends if end >= time]
-                    at = Activation(uid, run.first, run.last, time, run.end, run.outcome, True, run.run)
-                    if later:
-                        verdict: Verdict = both(*self.within((later[0] - time) / 1e6, claim.limit, at))
-                    elif run.outcome == "O":
-                        verdict = OPEN if self.within((run.end - time) / 1e6, claim.limit, at)[0] else False
-                    else:
-                        verdict = False
-                    found.append(judged(at, verdict))
-        return found
+                lasts = self.events(span.last, replace(run, uid=uid))
+                for first in self.events(span.first, replace(run, uid=uid), only=True):
+                    after = first.after if span.first != span.last else (first.after[0], first.after[1] + 1)
+                    closing = [each.by for each in lasts if each.is_sure and each.by >= after]
+                    by = min(closing, default=run.stop)
+                    unclear = any(not each.is_sure and each.by >= first.after and each.after <= by for each in lasts)
+                    at = between(run, uid, first.after, by)
+                    kept = self.within((by[0] - first.after[0]) / 1e6, claim.limit, at)[0]
+                    verdict: Verdict = kept
+                    if not first.is_sure or (unclear and not (kept and closing)):
+                        verdict = None
+                    elif kept and not closing:
+                        verdict = OPEN if run.outcome == "O" else False
+                    found.append(judged(replace(run, uid=uid), counted(self.counts(at, requirement), verdict)))
+        return [each for each in found if each.verdict != OUT]
 
-    def total(self, total: Total, claim: Claim) -> list[Judged]:
-        """sum of X, Y: all of their activations in a run."""
+    def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:
+        """sum of X, Y: what they did in a run, together."""
         uids = {uid for target in total.targets for uid in self.uids(target)}
         found = []
-        for run in self.runs:
+        for run in self.runs if uids else ():
             parts = [each for each in self.activations if each.uid in uids and each.run == run.run]
-            spent = sum(each.end - each.begin for each in parts)
-            sure = sum(each.end - each.begin for each in parts if each.is_exact)
-            most, least = (self.within(micro / 1e6, claim.limit, run) for micro in (spent, sure))
-            verdict: Verdict = both(*most) if spent == sure or both(*most) else False if least[0] is False else None
-            if run.outcome == "O" and verdict is not False:
-                verdict = OPEN
-            found.append(judged(run, verdict))
+            may = [(each, counts) for each in parts if (counts := self.counts(each, requirement)) is not False]
+            most = sum(each.end - each.begin for each, _ in may)
+            least = sum(each.end - each.begin for each, counts in may if counts and each.is_exact)
+            kept = {self.within(spent / 1e6, claim.limit, run)[0] for spent in (least, most)}
+            verdict: Verdict = kept.pop() if len(kept) == 1 else None
+            found.append(judged(run, OPEN if verdict and run.outcome == "O" else verdict))
         return found
 
-    def stretches(self, requirement: Requirement, run: Activation) -> list[tuple[int, int]]:
-        """The parts of a run that count."""
-        if self.holds_all("when", requirement, run.begin, run) is not True:
-            return []
-        found: list[tuple[int, int]] = []
-        since: int | None = None
-        for time in self.moments(run.begin, run.end):
-            if self.holds_all("while", requirement, time, run):
-                since = time if since is None else since
-            elif since is not None:
-                found.append((since, time))
-                since = None
-        return found if since is None else [*found, (since, run.end)]
+    def stretches(self, conditions: Sequence[Condition], run: Activation) -> list[tuple[Activation, bool]]:
+        """The longest parts of a run with conditions, and, not sure, those in which they may hold."""
+        moments = self.moments(run)
+        held = [both(*(self.holds(condition, moment, run) for condition in conditions)) for moment in moments]
+        found: list[tuple[Activation, bool]] = []
+        for index, now in enumerate(held):
+            if now is False or (index and held[index - 1] is now):
+                continue
+            length = next((later for later, then in enumerate(held[index:]) if then is not now), None)
+            end = moments[index + length] if length is not None else run.stop
+            found.append((between(run, run.uid, moments[index], end), now is True))
+        return found
 
-    def events(self, event: Event, run: Activation, near: int, *, only: bool = False) -> list[int]:
-        """The times of an event in a run.
-
-        Args:
-            near: of the event's nodes, those of the same subtree instance as this one.
-            only: of this one alone.
-        """
-        if event.happening == "when":
-            moments = self.moments(run.begin, run.end)
-            held = [self.holds(event.condition, time, run) is True for time in moments]
-            return [
-                time for time, before, now in zip(moments, [False, *held], held, strict=False) if now and not before
-            ]
-        uids = [near] if only else self.nearest(near, self.uids(event.subject))
+    def events(self, event: Event, run: Activation, *, only: bool = False) -> list[Happening]:
+        """An event in a run: of its nodes, those in the same use of a subtree as the run's uid; only: of this alone."""
+        if event.condition is not None:
+            found = []
+            end: Moment | None = None
+            for part, is_sure in self.stretches([event.condition], run):
+                if not is_sure:
+                    found.append(Happening(part.start, part.stop, False))
+                elif part.start != end:
+                    found.append(Happening(part.start, part.start))
+                end = None if is_sure else part.stop
+            return found
+        uids = [run.uid] if only else self.nearest(run.uid, self.uids(event.subject))
         of = [each for each in self.activations if each.uid in uids and each.run == run.run]
         if event.happening == "starts":
-            return sorted(each.begin for each in of)
+            return [Happening(each.start, each.start) for each in of]
         outcomes = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}[event.happening]
-        return sorted(each.end for each in of if each.outcome in outcomes)
+        return [
+            Happening(each.stop if each.is_exact else each.start, each.stop, each.is_exact)
+            for each in of
+            if each.outcome in outcomes
+        ]
+
+
+def between(run: Activation, uid: int, start: Moment, stop: Moment) -> Activation:
+    """A part of a run, as seen from a node."""
+    return Activation(uid, start[1], stop[1], start[0], stop[0], run.outcome, True, run.run)
 
 
 def all_of(verdicts: Sequence[Verdict]) -> Verdict:

@@ -15,6 +15,8 @@ from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, Logge
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Transition
 
+    Moment = tuple[int, int]  # time and row; -1: before all rows of that time
+
 
 @dataclass
 class Activation:
@@ -35,6 +37,16 @@ class Activation:
     outcome: str
     is_exact: bool
     run: int = -1
+
+    @property
+    def start(self) -> Moment:
+        """Its first row; rows of one time have an order."""
+        return self.begin, self.first
+
+    @property
+    def stop(self) -> Moment:
+        """Its last row."""
+        return self.end, self.last
 
 
 def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation]:

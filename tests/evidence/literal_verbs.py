@@ -9,7 +9,7 @@ from literal_log import Log, both, either, negated
 
 if TYPE_CHECKING:
     from literal_log import Truth
-    from literal_runs import Activation
+    from literal_runs import Activation, Moment
 
     from btq_lang.requirements.model import Claim, Limit, Requirement
 
@@ -20,11 +20,11 @@ OPEN, OUT = "open", "out"  # cut off by the end of the log before it breaks anyt
 
 @dataclass(frozen=True)
 class Judged:
-    """What one activation came to: true, false, unknown, open, or not counted."""
+    """What one activation came to: true, false, unknown, open, or not counted; at: when it had."""
 
     run: int
     uid: int
-    begin: int
+    at: int
     verdict: Verdict
 
 
@@ -48,10 +48,10 @@ class OfActivations(Log):
                 return {"S": True, "H": OUT, "O": OPEN}[a.outcome]
             return self.bounded(a, (a.end - a.begin) / 1e6, claim.limit)
         if claim.verb == "needs":
-            holds = self.holds(claim.condition, a.begin, a)
+            holds = self.holds(claim.condition, a.start, a)
             return OPEN if holds and a.outcome == "O" else holds
         if claim.verb == "leaves":
-            holds = self.holds(claim.condition, a.end, a)
+            holds = self.holds(claim.condition, a.stop, a)
             return {"S": holds, "F": OUT, "H": OUT, "O": OPEN}[a.outcome]
         assert claim.verb == "uses"
         before, after = self.sample(claim.signal, a.begin), self.sample(claim.signal, a.end)
@@ -64,14 +64,14 @@ class OfActivations(Log):
         """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
         moments = [
             (
-                self.holds_all("while", requirement, time, a),
-                negated(self.holds(claim.condition, time, a), claim.verb == "never"),
+                self.holds_all("while", requirement, moment, a),
+                negated(self.holds(claim.condition, moment, a), claim.verb == "never"),
             )
-            for time in self.moments(a.begin, a.end)
+            for moment in self.moments(a)
         ]
         if not a.is_exact:  # it may have ended right after its start
             moments[1:] = [(None if counts else counts, holds) for counts, holds in moments[1:]]
-        counts = both(self.holds_all("when", requirement, a.begin, a), either(*(counts for counts, _ in moments)))
+        counts = both(self.holds_all("when", requirement, a.start, a), either(*(counts for counts, _ in moments)))
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
         return counted(counts, OPEN if kept and a.outcome == "O" else kept)
 
@@ -87,8 +87,8 @@ class OfActivations(Log):
     def within(self, measured: float | None, limit: Limit | None, a: Activation) -> tuple[Truth, Truth]:
         """Whether a measure keeps the upper and the lower end of a limit, read at the start."""
         assert limit is not None
-        low = self.number(limit.value, a.begin, a)
-        high = self.number(limit.upper, a.begin, a) if limit.upper is not None else low
+        low = self.number(limit.value, a.start, a)
+        high = self.number(limit.upper, a.start, a) if limit.upper is not None else low
         is_known = measured is not None
         above: Truth = None if high is None or not is_known else measured <= high
         below: Truth = None if low is None or not is_known else measured >= low
@@ -99,20 +99,24 @@ class OfActivations(Log):
         return (True if limit.relation in (">", ">=") else above), (True if limit.relation in ("<", "<=") else below)
 
     def scoped(self, a: Activation, verdict: Verdict, requirement: Requirement) -> Verdict:
+        """What an activation comes to where it may not count."""
+        return counted(self.counts(a, requirement), verdict)
+
+    def counts(self, a: Activation, requirement: Requirement) -> Truth:
         """Only activations with `when C` at their start, and `while C` throughout."""
-        first, *later = (self.holds_all("while", requirement, time, a) for time in self.moments(a.begin, a.end))
+        first, *later = (self.holds_all("while", requirement, moment, a) for moment in self.moments(a))
         if not a.is_exact:  # it may have ended right after its start
             later = [None if each is False else each for each in later]
-        return counted(both(self.holds_all("when", requirement, a.begin, a), first, *later), verdict)
+        return both(self.holds_all("when", requirement, a.start, a), first, *later)
 
-    def holds_all(self, word: str, requirement: Requirement, time: int, a: Activation) -> Truth:
-        """The conditions of `while`, or of `when`, at a time."""
-        return both(*(self.holds(each.condition, time, a) for each in requirement.scopes if each.word == word))
+    def holds_all(self, word: str, requirement: Requirement, moment: Moment, a: Activation) -> Truth:
+        """The conditions of `while`, or of `when`, at a moment."""
+        return both(*(self.holds(each.condition, moment, a) for each in requirement.scopes if each.word == word))
 
 
 def judged(a: Activation, verdict: Verdict) -> Judged:
     """What an activation came to."""
-    return Judged(a.run, a.uid, a.begin, verdict)
+    return Judged(a.run, a.uid, a.end, verdict)
 
 
 def counted(counts: Truth, verdict: Verdict) -> Verdict:

@@ -198,11 +198,11 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
 def claim(chance: random.Random, labels: list[str]) -> str:
     """A subject and a verb."""
     subject = chance.choice([*labels, *labels, "mission", "Part", *(f"every {action}" for action in ACTIONS)])
-    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum"])
+    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum" if len(labels) > 1 else "span"])
     if verb == "span":
         return f"from {event(chance, labels)} to {event(chance, labels)} takes at most {seconds(chance)}"
     if verb == "sum":
-        return f"sum of {chance.choice(labels)}, {chance.choice(labels)} takes at most {seconds(chance)}"
+        return f"sum of {', '.join(chance.sample(labels, 2))} takes at most {seconds(chance)}"
     operand = {
         "takes": lambda: bound(chance, labels, lambda: seconds(chance)),
         "succeeds": lambda: f"within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.6 else "",
