@@ -40,6 +40,7 @@ _START: Final = "at its start"
 _MEANWHILE: Final = "while it runs"
 _END: Final = "at its end"
 _RUN: Final = "over the run"
+_SINCE: Final = "the time since an event"
 
 VERBS: Final = {
     verb.word: verb
@@ -51,12 +52,17 @@ VERBS: Final = {
         Verb("never", "condition", "a condition", _MEANWHILE, "{}", "never speed > 1 m/s"),
         Verb("leaves", "condition", "a condition", _END, "{} at the end", "leaves battery >= 3 %"),
         Verb("uses", "use", "the change of a signal", _END, "used {}", "uses at most 20 Wh of energy"),
-        Verb("tries", "count", "the number of its starts", _RUN, "tried {}", "tries at most 3 per PickTray"),
-        Verb("runs", "rate", "the times between its starts", _RUN, "{} between two starts", "runs every 500 ms"),
+        Verb("tries", "count", "the number of its starts", _RUN, "started {}", "tries at most 3 per PickTray"),
         Verb(
-            "starts", "reaction", "the time since an event", _RUN, "after {}", "starts within 2 s after Dock succeeds"
+            "runs",
+            "rate",
+            "the time between two starts, or their number in a time",
+            _RUN,
+            "ran {}",
+            "runs every 500 ms",
         ),
-        Verb("ends", "reaction", "the time since an event", _RUN, "after {}", "ends within 2 s after Dock succeeds"),
+        Verb("starts", "reaction", _SINCE, _RUN, "started after {}", "starts within 2 s after Dock succeeds"),
+        Verb("ends", "reaction", _SINCE, _RUN, "ended after {}", "ends within 2 s after Dock succeeds"),
         Verb("follows", "event", "an event since its last start", _START, "{}", "follows Dock succeeds"),
     )
 }

@@ -7,12 +7,14 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     runs.py        transitions to activations and runs
     identity.py    which node of a log is which written node
     named_runs.py  the same of a log that has no tree, run by run
-    signals.py, conditions.py   what signals were at a moment, and whether conditions held
+    signals.py, history.py   what signals were at a moment, and what nodes did in the run that is open
+    observed.py, conditions.py   all that may be asked of an activation or a run, and whether conditions held
     guards.py      what the nodes did that a build has put around others
-    verbs/         a module a verb: what an activation came to
+    verbs/         a module a verb: what an activation, or a run, came to
+    limits.py, over_run.py   what they share: measures beside bounds, and when events happened
     scopes.py      which activations count
     clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
-    tally.py, odds.py   what was counted, and how sure it makes one
+    tally.py, recent.py, odds.py   what was counted, all of it or lately, and how sure it makes one
     explain.py     what led to a violation
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data

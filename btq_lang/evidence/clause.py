@@ -1,53 +1,197 @@
-"""A clause at a written node: which nodes of a log it holds for, and what their activations come to.
+"""A clause at a written node: which nodes of a log it holds for, and what they did comes to.
 
 One invariant: a clause that cannot be judged is unknown with the reason, and never left out.
 """
 
 from __future__ import annotations
 
+from btq_lang.evidence.history import Nearby, near
+from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
+from btq_lang.evidence.observed import Observed, parts_in
+from btq_lang.evidence.over_run import OverRun, target_of
+from btq_lang.evidence.recent import Recent
 from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.tally import Tally
-from btq_lang.evidence.verbs import Judgement, judge_of
-from btq_lang.evidence.verdicts import NEVER, UNKNOWN, VIOLATED, ClauseVerdict
+from btq_lang.evidence.verbs import Judgement, judges_of
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNKNOWN, VIOLATED, ClauseVerdict
 from btq_lang.evidence.wording import duration
-from btq_lang.requirements.model import Mission, Span, Target, Total
+from btq_lang.record import Record, replace
+from btq_lang.requirements.model import Mission, Running, Span, Target, Total
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Final
 
     from btq_lang.evidence.guards import Guard, Refusal
+    from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.signals import Signals
-    from btq_lang.requirements.model import Applied, Claim, Requirement
+    from btq_lang.evidence.tally import Run
+    from btq_lang.evidence.verdicts import Link
+    from btq_lang.requirements.model import Applied, Claim, Event, Requirement, Subject
+
+
+class _Place(Record):
+    """Where a clause holds in the log that is read: a node, or those whose events or durations it is about.
+
+    Attributes:
+        uids: its nodes.
+        others: the nodes that it speaks of beside them.
+    """
+
+    path: str
+    uids: tuple[int, ...]
+    others: Nearby
 
 
 class JudgedClause:
     """A clause at a written node, with what it has come to.
 
     Attributes:
-        tally: what was counted.
+        explain: what led to a violation, by its judgement and its path.
     """
 
     def __init__(self, requirement: Requirement, claim: Claim, applied: Applied | None) -> None:
+        subject = applied.subject if applied is not None else None
         self.requirement: Final = requirement
         self.claim: Final = claim
-        self.tally: Final = Tally(requirement.odds, requirement.confidence)
-        self._target: Final = _target(applied)
-        self._not_judged: Final = _not_judged(requirement, claim, applied, self._target)
-        self._judge: Final = judge_of(claim.verb)
-        self._judged: Final = within(claim, requirement.scopes)
+        odds, confidence, window = requirement.odds, requirement.confidence, requirement.window
+        self._tally: Final = Tally(odds, confidence) if window is None else Recent(window, odds, confidence)
+        self._subject: Final = subject
+        self._judge, self._judge_run = judges_of(claim, subject)
+        self._judged: Final = replace(within(claim, requirement.scopes), subject=subject)
+        self._events: Final = _events(claim, subject)
+        parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
+        self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
+        self._not_judged: Final = self._why_not()
+        self._places: Final[dict[int, _Place]] = {}  # in the log that is read, by each of their nodes, as are these:
+        self._signals: Signals | None = None
+        self._history: History | None = None
+        self._waiting: Final[list[tuple[Activation, str]]] = []  # until it is known what else ran meanwhile
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
+        self._has_run = False
+        self.explain: Callable[[Judgement, str], tuple[Link, ...]] | None = None
 
-    def join(self, joined: Joined) -> list[int]:
-        """The nodes of a log that it holds for."""
-        if self._target is None or self._not_judged:
-            return []
+    def join(self, joined: Joined, signals: Signals, history: History) -> list[int]:
+        """Read another log; the nodes of it that the clause holds for."""
+        self._signals, self._history = signals, history
+        self._places.clear()
+        for uids in self._own(joined) if not self._not_judged else ():
+            others = Nearby(uids[0], joined, history)
+            needed = [target_of(each) for each in self._events if each.condition is None]
+            if isinstance(self.claim.per, Target):
+                needed.append(self.claim.per)
+            lost = [each for each in [others.find(target) for target in needed] if isinstance(each, Unknown)]
+            for target in self._running:
+                others.find(target)
+            if lost:
+                self._missing = self._missing or lost[0].why
+                continue
+            if self._judge_run is not None:
+                history.watch(uids)
+            place = _Place(joined.tree.nodes[uids[0]].path, uids, others)
+            self._places.update(dict.fromkeys(uids, place))
+        return [*self._places]
+
+    def judge(self, activation: Activation, guard: Guard | None, path: str) -> None:
+        """Count an activation of one of its nodes.
+
+        Args:
+            guard: what stopped it.
+        """
+        self._has_run = True
+        if guard is not None and self._is_own(guard):
+            said = f"stopped by its own guard after {duration(activation.seconds)}"
+            self._add(Judgement(False, activation.end, said), path)
+        elif self._judge is not None and self._running:
+            self._waiting.append((activation, path))
+        elif self._judge is not None:
+            self._judge_one(activation, path)
+
+    def refuse(self, refusal: Refusal, path: str) -> None:
+        """Count a start that was refused for what a requirement demands: that breaks the demand, and no node succeeds
+        that does not start for what it needs."""
+        own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
+        if own or (self.claim.verb == "succeeds" and refusal.verb == "needs"):
+            self._has_run = True
+            self._add(Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path)
+
+    def end_run(self, run: Run, root: Activation) -> None:
+        """The run that was open has ended.
+
+        Args:
+            root: the activation of its root.
+        """
+        for activation, path in self._waiting:
+            self._judge_one(activation, path, root)
+        self._waiting.clear()
+        if self._judge_run is not None:
+            for place in dict.fromkeys(self._places.values()):
+                for judgement in self._judge_run(self._judged, self._over(root, place)):
+                    self._count(_clocked(judgement, root), root, place.path)
+        self._tally.end_run(run)
+
+    def _judge_one(self, activation: Activation, path: str, root: Activation | None = None) -> None:
+        """Count an activation.
+
+        Args:
+            root: of the run, where what it comes to rests on the order of what happened.
+        """
+        assert self._judge is not None, "the clause is judged by its activations"
+        assert self._signals is not None, "it is joined with a log"
+        others = self._places[activation.uid].others
+        is_end_known = activation.timing != "latest"
+        observed = Observed(self._signals, others, activation.started, activation.ended, is_end_known)
+        counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
+        if counts is False:
+            return
+        judgement = self._judge(self._judged, activation, observed)
+        if activation.outcome == "O" and judgement is not None and judgement.holds:
+            judgement = None
+        if judgement is not None and isinstance(counts, Unknown):
+            judgement = Judgement(None, judgement.at, counts.why)
+        self._count(_clocked(judgement, root), activation, path)
+
+    def _over(self, root: Activation, place: _Place) -> OverRun:
+        assert self._history is not None, "the clause is joined with a log"
+        assert self._signals is not None, "likewise"
+        observed = Observed(self._signals, place.others, root.started, root.ended)
+        return OverRun(self.claim.verb, self.requirement.scopes, root, self._history.of(place.uids), observed)
+
+    def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
+        if judgement is not None:
+            self._add(judgement, path)
+        else:
+            self._tally.cut_off += of.outcome == "O"
+
+    def _add(self, judgement: Judgement, path: str) -> None:
+        explain = self.explain if judgement.holds is False else None
+        self._tally.add(judgement, path, explain(judgement, path) if explain is not None else ())
+
+    def _own(self, joined: Joined) -> list[tuple[int, ...]]:
+        """The nodes of a log that it holds for: together are those that are judged as one."""
+        subject = self._subject
+        if isinstance(subject, Span):
+            firsts = self._instances(joined, _known(subject.first.subject))
+            groups: dict[tuple[int, ...], tuple[int, ...]] = {}
+            lasts = self._instances(joined, _known(subject.last.subject))
+            for uid in firsts or [ROOT]:
+                together = near(uid, lasts, joined.tree)
+                groups[together] = (*groups.get(together, ()), uid)
+            return [*groups.values()] if not self._missing else []
+        if isinstance(subject, Total):
+            uids = [uid for target in subject.targets for uid in self._instances(joined, target)]
+            return [tuple(uids)] if uids and not self._missing else []
+        return [(uid,) for uid in self._instances(joined, _known(subject))]
+
+    def _instances(self, joined: Joined, target: Target | None) -> list[int]:
+        """A node's instances; those that are not in the log are noted."""
         found: list[int] = []
-        for path, uid in joined.instances(self._target):
+        for path, uid in joined.instances(target) if target is not None else ():
             self._paths[path] = None
             if uid is not None:
                 found.append(uid)
@@ -55,53 +199,44 @@ class JudgedClause:
                 self._missing = self._missing or f"`{path}` {joined.lacking}"
         return found
 
-    def judge(self, activation: Activation, guard: Guard | None, signals: Signals, path: str) -> None:
-        """Count an activation of one of its nodes.
-
-        Args:
-            guard: what stopped it.
-        """
-        assert self._judge is not None, "a clause that cannot be judged is joined with no node"
-        if guard is not None and self._is_own(guard):
-            said = f"stopped by its own guard after {duration(activation.seconds)}"
-            self.tally.add(Judgement(False, activation.end, said), path)
-            return
-        counts = in_scope(self.requirement.scopes, self.claim.verb, activation, signals)
-        if counts is False:
-            return
-        judgement = self._judge(self._judged, activation, signals)
-        is_open = activation.outcome == "O"
-        if judgement is None or (is_open and judgement.holds):
-            self.tally.cut_off += is_open
-            return
-        if isinstance(counts, Unknown):
-            judgement = Judgement(None, judgement.at, counts.why)
-        self.tally.add(judgement, path)
-
-    def refuse(self, refusal: Refusal, path: str) -> None:
-        """Count a start that was refused for what a requirement needs: that breaks what it needs, and no node succeeds
-        that does not start."""
-        own = self.claim.verb == "needs" and self.requirement.name == refusal.requirement
-        if own or self.claim.verb == "succeeds":
-            self.tally.add(Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path)
-
     def _is_own(self, guard: Guard) -> bool:
         """Whether a guard was put around the node for this clause."""
         return guard.requirement == self.requirement.name and self.claim.verb in _STOPPED_BY.get(guard.kind, ())
 
+    def _why_not(self) -> str:
+        """Why it cannot be judged from logs; empty where it can."""
+        subject = self._subject
+        if subject is None:
+            return "the clause applies to no node"
+        if any(
+            isinstance(each, Mission) and each.node is None
+            for each in (subject, *(each.subject for each in self._events))
+        ):
+            return "the mission has no known main tree"
+        if self._judge is None and self._judge_run is None:
+            of = "the time from one event to another" if isinstance(subject, Span) else "a sum of durations"
+            return f"`{self.claim.verb}` cannot be judged of {of}"
+        return ""
+
     def verdict(self) -> ClauseVerdict:
         """What it has come to."""
-        tally = self.tally
+        tally = self._tally.result()
         verdict = tally.verdict()
+        if verdict == SATISFIED and not self._has_run:
+            verdict = NEVER  # it is kept by a node that did nothing
         why = ""
         if self._not_judged or (self._missing and verdict != VIOLATED):
             verdict, why = UNKNOWN, self._not_judged or self._missing
         elif verdict == UNKNOWN:
             why = tally.why
         elif verdict == NEVER:
-            why = "it did not start in any run" if not tally.cut_off else "the log ends before it does"
+            why = "the log ends before it does" if tally.cut_off else "it did not start in any run"
+            if not tally.cut_off and self._has_run:
+                why = "nothing that it is about happened in any run"
         said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
         said += [self.requirement.odds.text] if self.requirement.odds is not None else []
+        said += [self.requirement.window.text] if self.requirement.window is not None else []
+        said += [f"goal {self.requirement.goal.text}"] if self.requirement.goal is not None else []
         return ClauseVerdict(
             text=" ".join(said),
             path=", ".join(self._paths),
@@ -120,31 +255,29 @@ class JudgedClause:
         )
 
 
-def _target(applied: Applied | None) -> Target | None:
-    """The node that is judged."""
-    subject = applied.subject if applied is not None else None
-    if isinstance(subject, Mission):
-        return Target(subject.node) if subject.node is not None else None
+def _events(claim: Claim, subject: Subject | None) -> tuple[Event, ...]:
+    """The events that a clause is about."""
+    if isinstance(subject, Span):
+        return subject.first, subject.last
+    return (claim.event,) if claim.event is not None else ()
+
+
+def _known(subject: Subject | None) -> Target | None:
+    """The node of a subject that is one."""
+    if isinstance(subject, Mission) and subject.node is not None:
+        return Target(subject.node)
     return subject if isinstance(subject, Target) else None
 
 
-def _not_judged(requirement: Requirement, claim: Claim, applied: Applied | None, target: Target | None) -> str:
-    """Why a clause cannot be judged from logs; empty where it can."""
-    if applied is None:
-        return "the clause applies to no node"
-    if isinstance(applied.subject, Span):
-        return "the time from one event to another is not judged yet"
-    if isinstance(applied.subject, Total):
-        return "sums of durations are not judged yet"
-    if target is None:
-        return "the mission has no known main tree"
-    if judge_of(claim.verb) is None:
-        return f"`{claim.verb}` is not judged yet"
-    return "`over last` is not judged yet" if requirement.window is not None else ""
+def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement | None:
+    """A judgement that rests on the order of what happened in a run."""
+    if judgement is None or root is None or root.timing != "broken":
+        return judgement
+    return Judgement(None, judgement.at, CLOCK_SET_BACK)
 
 
 # The guards that stop a node for a clause; the others around it belong to other clauses.
 _STOPPED_BY: Final = {
     "Timeout": frozenset(("takes", "succeeds")),
-    "ReactiveSequence": frozenset(("keeps", "never", "succeeds")),
+    "ReactiveSequence": frozenset(("keeps", "never", "uses", "succeeds")),
 }

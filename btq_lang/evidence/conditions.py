@@ -1,4 +1,4 @@
-"""Whether conditions hold at a moment, and what bounds are, by what signals were then.
+"""Whether conditions hold at a moment, and what bounds are, by what was observed then.
 
 One invariant: an unknown part makes the whole unknown unless the other parts decide it (Kleene), and the reason of the
 first such part is kept.
@@ -28,15 +28,16 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
+from btq_lang.units import parse_unit
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
     from typing import Final, TypeAlias
 
-    from btq_lang.evidence.model import SampleValue
-    from btq_lang.evidence.signals import Signals
-    from btq_lang.requirements.model import Bounded, Condition, Number, Signal
+    from btq_lang.evidence.model import Moment, SampleValue
+    from btq_lang.evidence.observed import Observed
+    from btq_lang.requirements.model import Bounded, Condition, Number
     from btq_lang.units import Unit
 
     Truth: TypeAlias = bool | Unknown
@@ -55,106 +56,92 @@ class Bound(Record):
 
 
 class Reading(Record):
-    """A signal beside a bound, which is what many a condition is: `battery >= 3 %`.
+    """A signal, or a summary of it, beside a bound, which is what many a condition is: `battery >= 3 %`.
 
     Attributes:
-        excess: how far the signal is on the wrong side of the bound, in SI; negative on the right side.
+        name: as typed: `battery`, `max(force)`.
+        excess: how far it is on the wrong side of the bound, in SI; negative on the right side.
     """
 
-    signal: Signal
+    name: str
+    unit: Unit | None
     si: float
     bound: Bound
     excess: float
 
 
-def truth(condition: Condition, signals: Signals, time: int) -> Truth:
-    """Whether a condition holds at a time."""
+def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
+    """Whether a condition holds at a moment."""
     if isinstance(condition, Compare):
-        return _compared(condition, signals, time)
+        return _compared(condition, observed, moment)
     if isinstance(condition, All | Any):
         decides = isinstance(condition, Any)
         unknown: Truth = not decides
         for part in condition.conditions:
-            found = truth(part, signals, time)
+            found = truth(part, observed, moment)
             if found is decides:
                 return decides
             if isinstance(found, Unknown) and not isinstance(unknown, Unknown):
                 unknown = found
         return unknown
     if isinstance(condition, Not):
-        found = truth(condition.condition, signals, time)
+        found = truth(condition.condition, observed, moment)
         return found if isinstance(found, Unknown) else not found
     if isinstance(condition, InContext):
-        return truth(condition.condition, signals, time)
+        return truth(condition.condition, observed, moment)
     if isinstance(condition, Flag):
         return condition.value
     if isinstance(condition, Read):
-        value = signals.reading(condition.signal, time)
+        value = observed.reading(condition.signal, moment)
         return value if isinstance(value, bool | Unknown) else Unknown(f"`{condition.signal.name}` is not a bool")
+    if isinstance(condition, Running):
+        return observed.runs(condition.target, moment)
     return Unknown(_not_judged(condition))
 
 
-def bound_at(bounded: Bounded, signals: Signals, time: int) -> Bound | Unknown:
-    """A bound at a time: of a table the value of the first case that holds then."""
+def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Bound | Unknown:
+    """A bound at a moment: of a table the value of the first case that holds then."""
     if isinstance(bounded, Table):
         for case in bounded.cases:
-            holds = case.condition is None or truth(case.condition, signals, time)
+            holds = case.condition is None or truth(case.condition, observed, moment)
             if isinstance(holds, Unknown):
                 return holds
             if holds:
-                return bound_at(case.value, signals, time)
+                return bound_at(case.value, observed, moment)
         return Unknown("no case of the bound holds")
     if isinstance(bounded, Value):
         return Bound(bounded.si, bounded.unit, bounded.text)
-    value = _number(bounded, signals, time)
+    value = _number(bounded, observed, moment)
     if isinstance(value, Unknown) or not isinstance(value, float):
         return value if isinstance(value, Unknown) else Unknown(f"`{bounded.text}` is not a number")
     return Bound(value, bounded.signal.unit if isinstance(bounded, Read) else None, bounded.text)
 
 
-def reading_of(condition: Condition, signals: Signals, time: int) -> Reading | None:
+def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Reading | None:
     """The signal and the bound of a condition that is one comparison of these; None of any other, or where unknown."""
     if isinstance(condition, InContext):
-        return reading_of(condition.condition, signals, time)
+        return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
-        found = reading_of(condition.condition, signals, time)
+        found = reading_of(condition.condition, observed, moment)
         return replace(found, excess=-found.excess) if found is not None else None
     if not isinstance(condition, Compare) or len(condition.operators) != 1 or condition.operators[0] not in _MIRRORED:
         return None
     sign = condition.operators[0]
     left, right = condition.operands
-    if not isinstance(left, Read):
+    if not isinstance(left, Read | Aggregate):
         sign, left, right = _MIRRORED[sign], right, left
-    if not isinstance(left, Read) or not isinstance(right, Value | Table | Read):
+    if not isinstance(left, Read | Aggregate) or not isinstance(right, Value | Table | Read):
         return None
-    value, bound = signals.reading(left.signal, time), bound_at(right, signals, time)
+    value, bound = _number(left, observed, moment), bound_at(right, observed, moment)
     if not isinstance(value, float) or isinstance(bound, Unknown):
         return None
-    return Reading(left.signal, value, bound, value - bound.si if sign in ("<", "<=") else bound.si - value)
+    name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"
+    excess = value - bound.si if sign in ("<", "<=") else bound.si - value
+    return Reading(name, _unit(left), value, bound, excess)
 
 
-def signals_in(part: object) -> Iterator[Signal]:
-    """The signals that a condition or a bound reads."""
-    if isinstance(part, Read | Aggregate):
-        yield part.signal
-    elif isinstance(part, Compare):
-        yield from (found for each in part.operands for found in signals_in(each))
-    elif isinstance(part, All | Any):
-        yield from (found for each in part.conditions for found in signals_in(each))
-    elif isinstance(part, Not | InContext):
-        yield from signals_in(part.condition)
-    elif isinstance(part, Minus):
-        yield from signals_in(part.operand)
-    elif isinstance(part, Arithmetic):
-        yield from (found for each in (part.left, part.right) for found in signals_in(each))
-    elif isinstance(part, Table):
-        for case in part.cases:
-            yield from signals_in(case.value)
-            yield from signals_in(case.condition)
-
-
-def _compared(condition: Compare, signals: Signals, time: int) -> Truth:
-    values = [_number(each, signals, time) for each in condition.operands]
+def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:
+    values = [_number(each, observed, moment) for each in condition.operands]
     result: Truth = True
     for sign, left, right in zip(condition.operators, values, values[1:], strict=False):
         if isinstance(left, Unknown) or isinstance(right, Unknown):
@@ -168,22 +155,24 @@ def _compared(condition: Compare, signals: Signals, time: int) -> Truth:
     return result
 
 
-def _number(part: Number | Flag | Text, signals: Signals, time: int) -> SampleValue | Unknown:
+def _number(part: Number | Flag | Text, observed: Observed, moment: Moment) -> SampleValue | Unknown:
     """An operand of a comparison in SI; of a text and a bool its value."""
     if isinstance(part, Value):
         return part.si
     if isinstance(part, Flag | Text):
         return part.value
     if isinstance(part, Read):
-        return signals.reading(part.signal, time)
+        return observed.reading(part.signal, moment)
+    if isinstance(part, Aggregate):
+        return observed.summary(part.function, part.signal)
     if isinstance(part, Table):
-        bound = bound_at(part, signals, time)
+        bound = bound_at(part, observed, moment)
         return bound if isinstance(bound, Unknown) else bound.si
     if isinstance(part, Minus):
-        value = _number(part.operand, signals, time)
+        value = _number(part.operand, observed, moment)
         return value if isinstance(value, Unknown | str) else -value
     if isinstance(part, Arithmetic):
-        left, right = _number(part.left, signals, time), _number(part.right, signals, time)
+        left, right = _number(part.left, observed, moment), _number(part.right, observed, moment)
         if isinstance(left, Unknown) or isinstance(right, Unknown):
             return left if isinstance(left, Unknown) else right
         if isinstance(left, str) or isinstance(right, str):
@@ -194,14 +183,20 @@ def _number(part: Number | Flag | Text, signals: Signals, time: int) -> SampleVa
     return Unknown(_not_judged(part))
 
 
+def _unit(part: Read | Aggregate) -> Unit | None:
+    """The unit to say a value in; of differences between temperatures it is no level."""
+    unit = part.signal.unit
+    if isinstance(part, Read) or unit is None:
+        return unit
+    if part.function == "count":
+        return None
+    return parse_unit("K") if unit.offset and part.function in ("change", "stddev") else unit
+
+
 def _not_judged(part: object) -> str:
-    """What of the language is not judged from logs yet."""
-    if isinstance(part, Running):
-        return f"`node {part.target.node.shown.strip('`')}` in a condition is not judged yet"
+    """What of the language is not judged from logs."""
     if isinstance(part, Script):
         return "a script of the engine is not judged"
-    if isinstance(part, Aggregate):
-        return f"`{part.function}({part.signal.name})` is not judged yet"
     return f"the parameter `{part.name}` has no value" if isinstance(part, Parameter) else "it is not judged"
 
 

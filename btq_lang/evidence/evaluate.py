@@ -11,6 +11,7 @@ from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
+from btq_lang.evidence.history import History
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
@@ -63,14 +64,15 @@ class MissionEvaluation:
         """
         tree = session.tree
         signals = Signals(given, session.samples)
+        history = History()
         at: dict[int, list[JudgedClause]] = {}
         for clause in self._clauses:
-            for uid in clause.join(joined):
+            for uid in clause.join(joined, signals, history):
                 at.setdefault(uid, []).append(clause)
         guards = Guards(tree, joined.enforcing(), at)
         explainer = Explainer(tree, at, signals)
         for clause in self._clauses:
-            clause.tally.explain = partial(explainer.chain, clause.claim)
+            clause.explain = partial(explainer.chain, clause.claim)
         self._coverage.expect(tree)
         begin: int | None = None
         end = 0
@@ -78,22 +80,24 @@ class MissionEvaluation:
         for activation in activations(timed(session, self._coverage.took)):
             self._coverage.count(activation)
             origin = explainer.see(activation)
+            history.add(activation)
             if activation.uid in guards.concerned:  # few of the nodes are
                 for refusal in guards.refused(activation):
                     for clause in at[refusal.uid]:
                         clause.refuse(refusal, tree.nodes[refusal.uid].path)
                 for ended, guard in guards.settled(activation):
                     for clause in at[ended.uid]:
-                        clause.judge(ended, guard, signals, tree.nodes[ended.uid].path)
+                        clause.judge(ended, guard, tree.nodes[ended.uid].path)
             if activation.uid == ROOT:
-                run = Run(first_run + runs, source, activation.begin)
+                run = Run(first_run + runs, source, activation.begin, activation.end)
                 runs += 1
                 begin = activation.begin if begin is None else begin
                 end = activation.end
                 self._outcomes[activation.outcome] += 1
                 self._coverage.end_run(run.number, origin.uid if origin is not None else None)
                 for clause in self._clauses:
-                    clause.tally.end_run(run)
+                    clause.end_run(run, activation)
+                history.clear()
                 signals.forget_before(end)
         self._add(
             Source(

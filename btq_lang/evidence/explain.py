@@ -6,8 +6,8 @@ run its last failure, so memory does not grow with a log.
 
 from __future__ import annotations
 
-from btq_lang.evidence.conditions import signals_in
 from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration
 from btq_lang.record import Record

@@ -29,11 +29,16 @@ class Guard(Record):
 
 
 class Refusal(Record):
-    """A node was not started, for what a requirement needs did not hold."""
+    """A node was not started, for that would have broken a requirement.
+
+    Attributes:
+        verb: of the clause that refused it: `needs`, `tries` or `follows`.
+    """
 
     uid: int
     time: int
     requirement: str
+    verb: str
 
 
 class Guards:
@@ -51,7 +56,7 @@ class Guards:
         """
         self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
         self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
-        self._refuse: Final[dict[int, list[int]]] = {}
+        self._refuse: Final[dict[int, tuple[str, list[int]]]] = {}
         self._waiting: Final[dict[int, list[tuple[Activation, tuple[int, ...]]]]] = {}
         self.concerned: Final = {*judged, *enforcing}
         for uid in judged:
@@ -62,9 +67,10 @@ class Guards:
                 above = tree.parent[above]
             self._around[uid] = tuple(around)
             for guard in self._guards:
-                is_check = self._guards[guard].kind == "ScriptCondition" and tree.parent[guard] in around
-                if is_check and tree.nodes[tree.parent[guard]].path.endswith(_AROUND_NEEDS):
-                    self._refuse.setdefault(guard, []).append(uid)
+                if self._guards[guard].kind == "ScriptCondition" and tree.parent[guard] in around:
+                    verb = tree.nodes[tree.parent[guard]].path.rpartition("_")[2]
+                    if verb in _REFUSING:
+                        self._refuse.setdefault(guard, (verb, []))[1].append(uid)
 
     def settled(self, activation: Activation) -> list[tuple[Activation, Guard | None]]:
         """The activations that can be judged now that this one has ended, each with the guard that stopped it."""
@@ -87,7 +93,8 @@ class Guards:
         if activation.outcome != "F" or activation.uid not in self._refuse:
             return []
         requirement = self._guards[activation.uid].requirement
-        return [Refusal(uid, activation.end, requirement) for uid in self._refuse[activation.uid]]
+        verb, refused = self._refuse[activation.uid]
+        return [Refusal(uid, activation.end, requirement, verb) for uid in refused]
 
 
-_AROUND_NEEDS: Final = "_needs"  # what the name of the Sequence ends in that refuses a start
+_REFUSING: Final = ("needs", "tries", "follows")  # what the names end in of the Sequences that refuse a start

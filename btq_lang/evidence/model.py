@@ -20,12 +20,15 @@ if TYPE_CHECKING:
     SampleValue: TypeAlias = float | bool | str
     Outcome: TypeAlias = Literal["S", "F", "H", "O"]
     Timing: TypeAlias = Literal["exact", "latest", "broken"]
+    Moment: TypeAlias = tuple[int, int]  # time, and the row of the log: rows of one time have an order
 
 IDLE: Final = 0
 RUNNING: Final = 1
 SUCCESS: Final = 2
 FAILURE: Final = 3
 SKIPPED: Final = 4
+UNKNOWN_END: Final = "the log does not say when it was halted"
+CLOCK_SET_BACK: Final = "the clock was set back meanwhile"
 ROOT: Final = 1  # the uid of the node whose activations are the runs
 
 
@@ -72,16 +75,38 @@ class Activation:
     Attributes:
         outcome: succeeded, failed, halted, or still open when the log ends.
         timing: `latest`: the log shows only that it had ended by `end`; `broken`: the clock was set back meanwhile.
+        first, last: the rows of the log with which it began and ended.
     """
 
-    __slots__ = ("begin", "end", "outcome", "timing", "uid")
+    __slots__ = ("begin", "end", "first", "last", "outcome", "timing", "uid")
 
-    def __init__(self, uid: int, begin: int, end: int, outcome: Outcome, timing: Timing = "exact") -> None:
+    def __init__(
+        self,
+        uid: int,
+        begin: int,
+        end: int,
+        outcome: Outcome,
+        timing: Timing = "exact",
+        first: int = 0,
+        last: int = 0,
+    ) -> None:
         self.uid: Final = uid
         self.begin: Final = begin
         self.end: Final = end
         self.outcome: Final[Outcome] = outcome
         self.timing: Final[Timing] = timing
+        self.first: Final = first
+        self.last: Final = last
+
+    @property
+    def started(self) -> Moment:
+        """When it began."""
+        return self.begin, self.first
+
+    @property
+    def ended(self) -> Moment:
+        """When it ended."""
+        return self.end, self.last
 
     @property
     def seconds(self) -> float:

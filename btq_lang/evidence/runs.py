@@ -31,9 +31,9 @@ def activations(session: Session) -> Iterator[Activation]:
     parent = tree.parent
     begun, running = nodes.begun, nodes.running
     odd = _Oddities(session)
-    idle: tuple[int, int] | None = None  # a halt that may turn out to be part of the node's own completion
-    last = 0
-    for time, uid, status in session.transitions:
+    idle: tuple[int, int, int] | None = None  # a halt that may turn out to be part of the node's own completion
+    last = row = 0
+    for row, (time, uid, status) in enumerate(session.transitions, 1):
         if uid not in parent or status not in _STATUSES:
             odd.count("rows with an unknown node or status, left out", time)
             continue
@@ -42,38 +42,38 @@ def activations(session: Session) -> Iterator[Activation]:
             nodes.distrust()
         completes = status in (SUCCESS, FAILURE)
         if idle is not None:
-            halted, halted_at = idle
+            halted, halted_at, halted_row = idle
             idle = None
             if not (halted == uid and completes and time - halted_at <= ONE_COMPLETION):
-                yield from nodes.end(halted, halted_at, "H")
+                yield from nodes.end(halted, halted_at, halted_row, "H")
         if status == RUNNING:
             if uid in running:
                 if uid == ROOT:
-                    yield from nodes.end(ROOT, last, "O", below="O")
+                    yield from nodes.end(ROOT, last, row - 1, "O", below="O")
                 else:
                     odd.count(_UNWRITTEN, time)
-                    yield from nodes.end(uid, time, "H", "latest")
+                    yield from nodes.end(uid, time, row, "H", "latest")
             running.add(uid)
             if uid not in begun:
-                nodes.begin(uid, time)
+                nodes.begin(uid, time, row)
         elif completes:
             if uid not in begun:
-                nodes.begin(uid, time)
-            ended = nodes.end(uid, time, "S" if status == SUCCESS else "F")
+                nodes.begin(uid, time, row)
+            ended = nodes.end(uid, time, row, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count(_UNWRITTEN, time)
             yield from ended
         elif uid in running:
-            idle = uid, time
+            idle = uid, time, row
         elif uid == ROOT and uid in begun:  # a run without a row of the root: how it ended is not known
-            yield from nodes.end(ROOT, time, "O", below="O")
+            yield from nodes.end(ROOT, time, row, "O", below="O")
         else:
             nodes.forget(uid)
         last = time
     if idle is not None:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:
-        yield from nodes.end(ROOT, last, "O", below="O")
+        yield from nodes.end(ROOT, last, row, "O", below="O")
     odd.report()
 
 
@@ -94,16 +94,18 @@ class _OpenNodes:
         self.begun: Final[dict[int, int]] = {}
         self.running: Final[set[int]] = set()
         self._tree: Final = tree
+        self._first: Final[dict[int, int]] = {}  # the row with which each of them began
         self._distrusted: Final[set[int]] = set()
 
-    def begin(self, uid: int, time: int) -> None:
+    def begin(self, uid: int, time: int, row: int) -> None:
         """A node is active, and so are those above it, whether they have written so or not."""
         while uid and uid not in self.begun:
             self.begun[uid] = time
+            self._first[uid] = row
             uid = self._tree.parent[uid]
 
     def end(
-        self, uid: int, time: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
+        self, uid: int, time: int, row: int, outcome: Outcome, timing: Timing = "exact", below: Outcome = "H"
     ) -> list[Activation]:
         """What ends with a node: what was active below it, innermost first, and the node itself."""
         found: list[Activation] = []
@@ -112,10 +114,10 @@ class _OpenNodes:
             inside = sorted([each for each in self.begun if uid < each <= last], reverse=True)
             for each in inside:
                 if each in self.running:
-                    found.append(self._made(each, time, below, "latest" if below == "H" else "exact"))
+                    found.append(self._made(each, time, row, below, "latest" if below == "H" else "exact"))
                 else:  # only something below it has written a row
                     self.forget(each)
-        found.append(self._made(uid, time, outcome, timing))
+        found.append(self._made(uid, time, row, outcome, timing))
         return found
 
     def forget(self, uid: int) -> None:
@@ -128,11 +130,11 @@ class _OpenNodes:
         """The clock was set back: the durations of all active nodes are unknown."""
         self._distrusted.update(self.begun)
 
-    def _made(self, uid: int, end: int, outcome: Outcome, timing: Timing) -> Activation:
-        begin = self.begun[uid]
+    def _made(self, uid: int, end: int, row: int, outcome: Outcome, timing: Timing) -> Activation:
+        begin, first = self.begun[uid], self._first[uid]
         timing = "broken" if uid in self._distrusted else timing
         self.forget(uid)
-        return Activation(uid, begin, end, outcome, timing)
+        return Activation(uid, begin, end, outcome, timing, first, row)
 
 
 class _Oddities:

@@ -5,9 +5,9 @@ One invariant: with an unknown scope an activation is unknown, whatever it came 
 
 from __future__ import annotations
 
-from btq_lang.evidence.conditions import signals_in, truth
+from btq_lang.evidence.conditions import truth
+from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs.takes import UNKNOWN_END
 from btq_lang.record import replace
 from btq_lang.requirements.model import All, Any, Not
 
@@ -15,8 +15,7 @@ TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Scope
 
 
@@ -31,17 +30,16 @@ def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
     return claim
 
 
-def in_scope(scopes: Sequence[Scope], verb: str, activation: Activation, signals: Signals) -> bool | Unknown:
-    """Whether an activation counts."""
+def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | Unknown:
+    """Whether what was observed counts: an activation, or the time between two events."""
     result: bool | Unknown = True
     for scope in scopes:
-        if scope.word == "when":
-            times = [activation.begin]
-        else:
-            times = signals.moments(signals_in(scope.condition), activation.begin, activation.end)
-        found = [truth(scope.condition, signals, time) for time in times]
+        if scope.word == "while" and verb == "runs":  # time counts, whatever runs in it
+            continue
+        moments = [observed.begin] if scope.word == "when" else observed.moments(scope.condition)
+        found = [truth(scope.condition, observed, moment) for moment in moments]
         is_some_enough = scope.word == "while" and verb in ("keeps", "never")  # some of its time counts
-        if activation.timing == "latest":  # at any moment but its start it may have been halted already
+        if not observed.is_end_known:  # at any moment but its start it may have been halted already
             found[1:] = [Unknown(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
         unknown = next((each for each in found if isinstance(each, Unknown)), None)
         if is_some_enough:

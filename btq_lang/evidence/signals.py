@@ -13,7 +13,7 @@ from btq_lang.units import to_si
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
     from typing import Final
 
     from btq_lang.evidence.model import SampleValue
@@ -54,22 +54,44 @@ class Signals:
         found = series.at(time) if series is not None else None
         return found[0] if found is not None else None
 
-    def moments(self, signals: Iterable[Signal], begin: int, end: int) -> list[int]:
-        """The times from `begin` to `end` at which a condition on these signals may change: samples, and where one
-        grows too old."""
-        found = {begin}
-        for signal in signals:
-            series = self._series(signal)
-            if series is None:
-                continue
-            times = series.between(begin, end)
-            found.update(times)
-            if signal.fresh is not None:
-                age = round(signal.fresh * 1e6) + 1
-                before = series.at(begin)
-                sampled = [*times] if before is None else [before[0], *times]
-                found.update([time + age for time in sampled if begin < time + age <= end])
-        return sorted(found)
+    def changes(self, signal: Signal, begin: int, end: int) -> list[int]:
+        """The times after `begin`, up to `end`, at which a signal may change: samples, and where one grows too old."""
+        series = self._series(signal)
+        if series is None:
+            return []
+        times = list(series.between(begin, end))
+        if signal.fresh is not None:
+            age = round(signal.fresh * 1e6) + 1
+            before = series.at(begin)
+            sampled = times if before is None else [before[0], *times]
+            times = [*times, *[time + age for time in sampled if begin < time + age <= end]]
+        return times
+
+    def values(self, signal: Signal, begin: int, end: int) -> list[float] | Unknown:
+        """A signal's values from `begin`, where it is known then, to `end`: unknown where there are none, where one of
+        them is no number, and where it was not fresh between two of them."""
+        series = self._series(signal)
+        times = list(series.between(begin, end)) if series is not None else []
+        if not isinstance(self.reading(signal, begin), Unknown):
+            times.insert(0, begin)
+        if not times:
+            is_sampled = series is not None and series.times
+            return Unknown(f"no sample of `{signal.name}` meanwhile" if is_sampled else _none_of(signal))
+        asked = [*times, *self.changes(signal, times[0], end)] if signal.fresh is not None else times
+        found: list[float] = []
+        for time in asked:
+            value = self.reading(signal, time)
+            if isinstance(value, Unknown):
+                return value
+            found.append(float(value))
+        return found[: len(times)]
+
+    def number(self, signal: Signal, begin: int, end: int) -> float | Unknown:
+        """How many samples of a signal there are from `begin` to `end`."""
+        series = self._series(signal)
+        if series is None or not series.times:
+            return Unknown(_none_of(signal))
+        return float(len(series.between(begin - 1, end)))
 
     def forget_before(self, time: int) -> None:
         """Drop the samples of the log's entries that no question about this time or a later one needs."""
@@ -88,8 +110,12 @@ def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
     first = signal.initially
     if first is None:
         late = f"no sample of `{signal.name}` before that time"
-        return Unknown(late if is_sampled else f"{NO_SAMPLES} `{signal.name}`")
+        return Unknown(late if is_sampled else _none_of(signal))
     return first.si if isinstance(first, Value) else first.value
+
+
+def _none_of(signal: Signal) -> str:
+    return f"{NO_SAMPLES} `{signal.name}`"
 
 
 def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:

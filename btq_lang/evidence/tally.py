@@ -12,7 +12,6 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from typing import Final
 
     from btq_lang.evidence.verbs import Judgement, Measure
@@ -21,11 +20,12 @@ if TYPE_CHECKING:
 
 
 class Run(Record):
-    """A run that has ended: its number, its file, and when it began."""
+    """A run that has ended: its number, its file, when it began and when it ended."""
 
     number: int
     source: str
     begin: int
+    end: int
 
 
 class Tally:
@@ -33,10 +33,13 @@ class Tally:
 
     Attributes:
         counted, violated, unknown, cut_off, why, violations, worst: as of a `ClauseVerdict`.
-        explain: what led to a violation, by its judgement and its path.
     """
 
-    def __init__(self, odds: Odds | None, confidence: float | None) -> None:
+    def __init__(self, odds: Odds | None, confidence: float | None, most: int | None = None) -> None:
+        """
+        Args:
+            most: how many count at most; None: all.
+        """
         self.counted = 0
         self.violated = 0
         self.unknown = 0
@@ -44,17 +47,21 @@ class Tally:
         self.why = ""
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
-        self.explain: Callable[[Judgement, str], tuple[Link, ...]] | None = None
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self._odds: Final = odds
         self._confidence: Final = confidence
+        self._most: Final = most
         self._worst_excess = float("-inf")
         self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the run that is open
         self._kept = self._unclear = 0  # likewise
         self._worst_now: Measure | None = None
 
-    def add(self, judgement: Judgement, path: str) -> None:
-        """Count what an activation of the run that is open came to."""
+    def add(self, judgement: Judgement, path: str, chain: tuple[Link, ...] = ()) -> None:
+        """Count what an activation of the run that is open came to.
+
+        Args:
+            chain: what led to it.
+        """
         if judgement.holds is None:
             self._unclear += 1
             self.why = self.why or judgement.said
@@ -62,7 +69,6 @@ class Tally:
         if judgement.holds:
             self._kept += 1
         else:
-            chain = self.explain(judgement, path) if self.explain is not None else ()
             self._broken.append((judgement, path, chain))
         measure = judgement.measure
         if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
@@ -90,6 +96,10 @@ class Tally:
         self._kept = self._unclear = 0
         self._worst_now = None
 
+    def result(self) -> Tally:
+        """All that was counted."""
+        return self
+
     def verdict(self) -> Verdict:
         """Without odds one violation decides; with odds the unknown ones are judged as false and as true, and only a
         verdict that both give stands."""
@@ -113,8 +123,11 @@ class Tally:
         """How many more that hold decide an undecided verdict."""
         if self._odds is None or self._confidence is None or self.verdict() != UNDECIDED:
             return None
-        n = self.counted + self.unknown
-        return runs_to_decide(self.counted - self.violated, n, self._confidence, self._odds.probability)
+        n, most, wanted = self.counted + self.unknown, self._most, self._odds.probability
+        found = runs_to_decide(self.counted - self.violated, n, self._confidence, wanted)
+        if most is None or (found is not None and n + found <= most):
+            return found
+        return most if lower_limit(most, most, self._confidence) >= wanted else None  # they replace what is counted now
 
     def _by_odds(self, k: int, n: int) -> Verdict:
         assert self._odds is not None, "there are odds"

@@ -25,9 +25,9 @@ from btq_lang.evidence.verdicts import ClauseVerdict
 from btq_lang.requirements.model import Aggregate, Applied, Claim, Requirement, Running, Span, Total
 from btq_lang.units import to_si
 
-# What btq_lang.evidence says of itself that it does not judge yet: not compared, and no more than this.
-NOT_JUDGED = frozenset(
-    ("uses", "tries", "runs", "starts", "ends", "follows", "from … to", "sum of", "over last", "node", "aggregates")
+# What the two do not read alike yet: not compared.
+NOT_COMPARED = frozenset(
+    ("tries", "runs", "starts", "ends", "follows", "from … to", "sum of", "over last", "node", "aggregates")
 )
 
 
@@ -36,13 +36,13 @@ class Hunt:
 
     Attributes:
         compared: how many clauses have which verdict.
-        not_judged: how many clauses were left out, and why.
+        left_out: how many clauses were not compared, and why.
         differences: what the two differ in, a text each.
     """
 
     def __init__(self) -> None:
         self.compared: Counter[str] = Counter()
-        self.not_judged: Counter[str] = Counter()
+        self.left_out: Counter[str] = Counter()
         self.differences: list[str] = []
 
     def judge(self, seed: int) -> None:
@@ -64,9 +64,8 @@ class Hunt:
     def compare(
         self, made: Case, seed: int, literal: Literal, applied: Applied, claim: Claim, streamed: ClauseVerdict
     ) -> None:
-        if left_out := features(applied, claim) & NOT_JUDGED:
-            if len(left_out) == 1 and streamed.why.endswith(" not judged yet"):
-                self.not_judged.update(left_out)
+        if left_out := features(applied, claim) & NOT_COMPARED:
+            self.left_out.update(left_out)
             return
         judged = literal.clause(applied, claim)
         self.compared[f"{claim.verb}: {judged.verdict}"] += 1
@@ -89,7 +88,7 @@ class Hunt:
 
 
 def features(applied: Applied, claim: Claim) -> set[str]:
-    """What a clause is made of, of what may not be judged yet."""
+    """What a clause is made of, of what may not be compared yet."""
     requirement = applied.requirement
     kinds = {type(each) for each in parts((claim, requirement.scopes))}
     found = {Running: "node", Aggregate: "aggregates"}
@@ -181,7 +180,7 @@ def main() -> None:
         hunt.judge(seed)
     for difference in hunt.differences[: options.shown]:
         print(difference)
-    for counts in (hunt.compared, hunt.not_judged):
+    for counts in (hunt.compared, hunt.left_out):
         print("\n".join(f"{number:8} {what}" for what, number in sorted(counts.items())))
     print(f"{options.cases} cases, {hunt.compared.total()} clauses compared, {len(hunt.differences)} differ")
     sys.exit(bool(hunt.differences))

@@ -207,14 +207,40 @@ def test_a_refused_start_counts_for_what_is_needed_and_for_success(verify: Verif
     }
 
 
-def test_what_the_order_refuses_does_not_fail(verify: Verify) -> None:
+def test_what_the_order_refuses_breaks_the_order_and_does_not_fail(verify: Verify) -> None:
     demands = "QualityReq ordered : safety\n    Pick follows Move succeeds\n    on violation fail\n"
     demands += "QualityReq works : reliability\n    Pick succeeds\n"
     uid = several(verify, demands, SPEED)
     around, check, move = uid["ordered_follows"], uid["ordered_check"], uid["Move"]
     assert verdicts(verify, f"0 1R {move}S {around}R {check}F {around}F 1F") == {
-        "ordered": "unknown",  # `follows` is not judged yet
+        "ordered": "violated: its start was refused by ordered",
         "works": "never exercised",
+    }
+    assert verdicts(verify, f"0 1R {move}S {around}R {check}S {uid['Pick']}S {around}S 1S") == {
+        "ordered": "satisfied",
+        "works": "satisfied",
+    }
+
+
+def test_a_start_that_is_refused_for_its_number_breaks_the_number(verify: Verify) -> None:
+    uid = several(verify, "QualityReq rare : safety\n    Move tries at most 1\n    on violation fail\n", SPEED)
+    around, check, move = uid["rare_tries"], uid["rare_check"], uid["Move"]
+    once = f"0 1R {around}R {check}S {move}R 5 {move}F {around}F"
+    assert verdicts(verify, f"{once} 1F") == {"rare": "satisfied"}
+    assert verdicts(verify, f"{once} 9 {around}R {check}F {around}F 1F") == {
+        "rare": "violated: its start was refused by rare"
+    }
+
+
+def test_what_is_stopped_for_its_use_is_violated(verify: Verify) -> None:
+    demand = "QualityReq saving : energy\n    Move uses at most 5 Wh of energy\n    on violation fail\n"
+    uid = several(verify, demand, "signal energy : Wh from {energy} counter initially 0 Wh")
+    move, node = uid["Move"], uid["saving_uses_node"]
+    around = [uid[name] for name in ("saving_values", "saving_used", "saving_uses")]
+    before = " ".join(f"{each}R" for each in (1, *around, node, move))
+    after = " ".join(f"{each}F" for each in (*reversed(around), 1))
+    assert verdicts(verify, f"0 {before} 9 {uid['saving_guard']}F {move}I {node}I {after}") == {
+        "saving": "violated: stopped by its own guard after 9 ms"
     }
 
 

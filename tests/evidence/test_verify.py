@@ -79,7 +79,7 @@ def test_verdicts_are_what_the_skills_did(log: str, lab: Path, shared: Path) -> 
         "placed": "undecided",
         "picked": "satisfied",
         "swift": "satisfied",
-        "ordered": "unknown",
+        "ordered": "satisfied",
     }
 
     drives = truth.of(4)
@@ -108,6 +108,7 @@ def test_verdicts_are_what_the_skills_did(log: str, lab: Path, shared: Path) -> 
     assert clause["picked"]["counted"] == len(picks)
     assert clause["picked"]["violated"] == sum(status != "SUCCESS" for *_, status in picks)
     assert clause["picked"]["path"] == "PickPlate/Pick::10, PickTube/Pick::18"
+    assert clause["ordered"]["counted"] == len(placed)
     tubes = truth.of(18)  # a path through a SubTree means that instance
     assert (clause["swift"]["counted"], clause["swift"]["path"]) == (len(tubes), "PickTube/Pick::18")
 
@@ -158,8 +159,8 @@ TABLE = """\
   satisfied        reliable       The mission succeeds nearly always     mission succeeds in at least 80 % of runs            186 of 200, at least 89.3 % with confidence 95 %
   satisfied        picked         Picking rarely fails                   every Pick succeeds in at least 90 % of activations  583 of 616, 94.6 %; limits 92.9 % to 96.1 % with confidence 95 % each
   satisfied        swift          The tubes are moved swiftly            PickTube/Pick takes at most 1 s                      held so far in 447 activations, worst 0.087 s in run 136
+  satisfied        ordered        Nothing is placed that was not picked  PickPlace/Place follows PickPlace/Pick succeeds      held so far in 583 activations
   undecided        placed         What was picked is placed              PickPlace/Place succeeds in at least 99 % of runs    159 of 162; 611 more without a violation decide it
-  unknown          ordered        Nothing is placed that was not picked  PickPlace/Place follows PickPlace/Pick succeeds      `follows` is not judged yet
 
 runs: 186 succeeded, 14 failed · failures began at PickPlate/Pick::10 (7), MoveToStation (6), PickPlate/Place::11 (1) · retries 419, at most 3 in run 1
 nodes: exercised 19 of 19 · slowest: MoveToCharger p50 233 ms, p95 324 ms

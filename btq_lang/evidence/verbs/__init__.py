@@ -1,28 +1,31 @@
-"""What each verb demands of one activation: a module a verb, named as its row in `catalog/verbs`.
+"""What each verb demands: a module a verb, named as its row in `catalog/verbs`; of `takes`, `span` and `total` judge
+the time between events and sums.
 
-One invariant: a module has `judge(claim, activation, signals)`, which answers None where the activation does not count.
-It sees one activation at a time, when that has ended; runs, odds and scopes are not known here.
+One invariant: a module has one of two functions.  `judge(claim, activation, observed)` sees one activation when that
+has ended, and answers None where it does not count.  `judge_run(claim, run)` sees what the nodes did in a run that has
+ended, and answers None for what the end of the log cuts off.  Odds and windows are not known here.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.util import find_spec
 
-from btq_lang.catalog.verbs import VERBS
 from btq_lang.record import Record
+from btq_lang.requirements.model import Span, Total
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from typing import TypeAlias
 
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
-    from btq_lang.requirements.model import Claim
+    from btq_lang.evidence.observed import Observed
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.requirements.model import Claim, Subject
     from btq_lang.units import Unit
 
-    Judge: TypeAlias = Callable[[Claim, Activation, Signals], "Judgement | None"]
+    Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
+    RunJudge: TypeAlias = Callable[[Claim, OverRun], Iterator["Judgement | None"]]
 
 
 class Measure(Record):
@@ -57,12 +60,16 @@ class Judgement(Record):
     measure: Measure | None = None
 
 
-def judge_of(word: str) -> Judge | None:
-    """What judges clauses with a verb; None: they are not judged from logs yet.
+def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:
+    """What judges a clause: each activation, or a run; neither where nothing does.
 
     Args:
-        word: a row of `catalog.verbs.VERBS`.
+        subject: what it holds for.
     """
-    name = f"{__name__}.{VERBS[word].word}"
-    judge: Judge | None = import_module(name).judge if find_spec(name) is not None else None
-    return judge
+    name: str = claim.verb
+    if isinstance(subject, Span | Total):
+        if claim.verb != "takes":
+            return None, None
+        name = "span" if isinstance(subject, Span) else "total"
+    module = import_module(f"{__name__}.{name}")
+    return getattr(module, "judge", None), getattr(module, "judge_run", None)

@@ -3,34 +3,38 @@
 from __future__ import annotations
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import signals_in
+from btq_lang.evidence.observed import parts_in
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verbs.leaves import judged_at
+from btq_lang.record import replace
+from btq_lang.requirements.model import Aggregate
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Condition
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether the condition holds all the time."""
     assert claim.condition is not None, "it keeps a condition"
-    return judged_all_along(claim.condition, activation, signals, VERBS["keeps"].said)
+    return judged_all_along(claim.condition, activation, observed, VERBS["keeps"].said)
 
 
-def judged_all_along(condition: Condition, activation: Activation, signals: Signals, said: str) -> Judgement:
+def judged_all_along(condition: Condition, activation: Activation, observed: Observed, said: str) -> Judgement:
     """Whether a condition holds at every moment of an activation: the first at which it does not decides, else one at
     which it is unknown, else the one that came closest to breaking it."""
     unknown: Judgement | None = None
     closest: Judgement | None = None
-    for time in signals.moments(signals_in(condition), activation.begin, activation.end):
-        found = judged_at(condition, time, signals, said)
+    is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # what is known only at the end
+    for moment in observed.moments(condition):
+        found = judged_at(condition, moment, observed, said)
         if found.holds is False:
-            if activation.timing == "exact" or time == activation.begin:
-                return found
-            return Judgement(None, time, "the log does not say whether it was still running")
+            at = activation.end if is_of_all else found.at
+            if activation.timing == "exact" or at == activation.begin:
+                return replace(found, at=at)
+            return Judgement(None, at, "the log does not say whether it was still running")
         if found.holds is None:
             unknown = unknown or found
         elif closest is None or _excess(found) > _excess(closest):

@@ -9,31 +9,32 @@ from btq_lang.evidence.verbs import Judgement, Measure
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.model import Activation, Moment
+    from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Condition
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether the condition holds when an activation has succeeded."""
     assert claim.condition is not None, "it leaves a condition"
     if activation.outcome != "S":
         return None
-    return judged_at(claim.condition, activation.end, signals, VERBS["leaves"].said)
+    return judged_at(claim.condition, activation.ended, observed, VERBS["leaves"].said)
 
 
-def judged_at(condition: Condition, time: int, signals: Signals, said: str) -> Judgement:
-    """Whether a condition holds at a time.
+def judged_at(condition: Condition, moment: Moment, observed: Observed, said: str) -> Judgement:
+    """Whether a condition holds at a moment.
 
     Args:
         said: the sentence that the measure becomes a part of.
     """
-    found = truth(condition, signals, time)
+    time = moment[0]
+    found = truth(condition, observed, moment)
     if isinstance(found, Unknown):
         return Judgement(None, time, found.why)
-    reading = reading_of(condition, signals, time)
+    reading = reading_of(condition, observed, moment)
     if reading is None:
         return Judgement(found, time, said.replace("{}", f"the condition {'holds' if found else 'does not hold'}"))
     bound = reading.bound
-    measure = Measure(reading.si, reading.signal.unit, bound.si, bound.text, reading.excess)
-    return Judgement(found, time, said.replace("{}", f"`{reading.signal.name}` was {{}}"), measure)
+    measure = Measure(reading.si, reading.unit, bound.si, bound.text, reading.excess)
+    return Judgement(found, time, said.replace("{}", f"`{reading.name}` was {{}}"), measure)

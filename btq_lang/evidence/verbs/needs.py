@@ -8,12 +8,12 @@ from btq_lang.evidence.verbs.leaves import judged_at
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import Claim
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether the condition holds when an activation starts."""
     assert claim.condition is not None, "it needs a condition"
-    return judged_at(claim.condition, activation.begin, signals, VERBS["needs"].said)
+    return judged_at(claim.condition, activation.started, observed, VERBS["needs"].said)

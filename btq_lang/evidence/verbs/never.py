@@ -9,12 +9,12 @@ from btq_lang.requirements.model import Not
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import Claim
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether the condition does not hold at any time."""
     assert claim.condition is not None, "something must not be"
-    return judged_all_along(Not(claim.condition), activation, signals, VERBS["never"].said)
+    return judged_all_along(Not(claim.condition), activation, observed, VERBS["never"].said)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.verbs.takes import UNKNOWN_END, measure
+from btq_lang.evidence.verbs.takes import duration
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether an activation succeeds, and in time; where it is halted, or cut off, before that it does not count."""
     said = VERBS["succeeds"].said
     if claim.limit is None:
@@ -22,17 +23,16 @@ def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement |
             holds = activation.outcome == "S"
             return Judgement(holds, activation.end, said.replace("{}", "succeeded" if holds else "failed"))
         return None
-    found = measure(claim.limit, activation, signals)
     if activation.outcome == "F":
         return Judgement(False, activation.end, said.replace("{}", "failed"))
+    found = duration(claim.limit, activation, observed)
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
-    _, duration = found
-    if duration.excess > 0:
+    if found.measure.excess > 0:
         if activation.timing == "latest":
             return Judgement(None, activation.end, UNKNOWN_END)
         how = "succeeded after {}" if activation.outcome == "S" else "had not succeeded after {}"
-        return Judgement(False, activation.end, said.replace("{}", how), duration)
+        return Judgement(False, activation.end, said.replace("{}", how), found.measure)
     if activation.outcome == "S":
-        return Judgement(True, activation.end, said.replace("{}", "succeeded after {}"), duration)
+        return Judgement(True, activation.end, said.replace("{}", "succeeded after {}"), found.measure)
     return None

@@ -6,54 +6,47 @@ Violated as soon as it lasts longer, however it ends; a lower bound is judged wh
 from __future__ import annotations
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import bound_at
+from btq_lang.evidence.limits import Compared, compared
+from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
-from btq_lang.evidence.verbs import Judgement, Measure
+from btq_lang.evidence.verbs import Judgement
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
-    from btq_lang.evidence.signals import Signals
+    from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Limit
 
 
-def judge(claim: Claim, activation: Activation, signals: Signals) -> Judgement | None:
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
     """Whether an activation is as long as it should be."""
     assert claim.limit is not None, "a time has a bound"
-    completed = activation.outcome in ("S", "F")
-    if not completed and claim.limit.relation in (">=", ">"):
+    if is_left_out(claim.limit, activation):
         return None
-    found = measure(claim.limit, activation, signals)
+    found = duration(claim.limit, activation, observed)
     if isinstance(found, Unknown):
         return Judgement(None, activation.end, found.why)
-    is_upper, duration = found
-    if duration.excess > 0 and (is_upper or completed):
-        if activation.timing == "latest":
-            return Judgement(None, activation.end, UNKNOWN_END)
-        return Judgement(False, activation.end, VERBS["takes"].said, duration)
-    if not completed:
+    return judged(found, activation, VERBS["takes"].said)
+
+
+def is_left_out(limit: Limit, activation: Activation) -> bool:
+    """Whether an activation cannot break a bound: what was halted, or is open, falls short of nothing."""
+    return limit.relation in (">=", ">") and activation.outcome not in ("S", "F")
+
+
+def judged(found: Compared, activation: Activation, said: str) -> Judgement | None:
+    """What a measure over an activation that grows with it says: where it was halted, only what it has broken by then
+    counts."""
+    holds = found.kept(activation.outcome in ("S", "F"))
+    if holds is None:
         return None
-    return Judgement(True, activation.end, VERBS["takes"].said, duration)
+    if not holds and activation.timing == "latest":
+        return Judgement(None, activation.end, UNKNOWN_END)
+    return Judgement(holds, activation.end, said, found.measure)
 
 
-def measure(limit: Limit, activation: Activation, signals: Signals) -> tuple[bool, Measure] | Unknown:
-    """How long an activation lasts beside the side of its bound that it is closer to breaking, and whether that is the
-    upper one; unknown where the bound is, or the time."""
+def duration(limit: Limit, activation: Activation, observed: Observed) -> Compared | Unknown:
+    """How long an activation lasts; unknown where the bound is, or the time."""
     if activation.timing == "broken":
-        return Unknown("the clock was set back meanwhile")
-    bounds = [bound_at(each, signals, activation.begin) for each in (limit.value, limit.upper) if each is not None]
-    sides: list[tuple[bool, Measure]] = []
-    for index, bound in enumerate(bounds):
-        if isinstance(bound, Unknown):
-            return bound
-        is_upper = limit.relation in ("<=", "<") or index == 1
-        seconds = activation.seconds
-        excess = seconds - bound.si if is_upper else bound.si - seconds
-        if excess == 0 and limit.relation in ("<", ">"):
-            excess = _JUST
-        sides.append((is_upper, Measure(seconds, bound.unit, bound.si, bound.text, excess)))
-    return max(sides, key=lambda side: side[1].excess)
-
-
-UNKNOWN_END = "the log does not say when it was halted"
-_JUST = 1e-9  # what is as long as a bound that it must not reach breaks it
+        return Unknown(CLOCK_SET_BACK)
+    return compared(limit, activation.seconds, observed, activation.started)

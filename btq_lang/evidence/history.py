@@ -1,0 +1,117 @@
+"""What nodes did in the run that is open: kept for the nodes that somebody asks about, and for no others.
+
+One invariant: a clause at a node of a subtree that is used several times means, by the name of another node, that node
+in the same use of the subtree; outside of it, all that are in the innermost tree around both.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from btq_lang.evidence.signals import Unknown
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from typing import Final
+
+    from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Activation, LoggedTree, Moment
+    from btq_lang.requirements.model import Target
+
+
+class History:
+    """The activations of the open run, by node, each when it has ended."""
+
+    def __init__(self) -> None:
+        self._by_node: Final[dict[int, list[Activation]]] = {}
+
+    def watch(self, uids: Iterable[int]) -> None:
+        """Keep what these nodes do."""
+        for uid in uids:
+            self._by_node.setdefault(uid, [])
+
+    def add(self, activation: Activation) -> None:
+        """A node has ended."""
+        kept = self._by_node.get(activation.uid)
+        if kept is not None:
+            kept.append(activation)
+
+    def of(self, uids: Sequence[int]) -> list[Activation]:
+        """What nodes did, in the order of the starts."""
+        found = [activation for uid in uids for activation in self._by_node[uid]]
+        return sorted(found, key=_started) if len(uids) > 1 else found
+
+    def runs(self, uid: int, moment: Moment) -> bool:
+        """Whether a node runs: from the row with which it starts to the row with which it ends."""
+        kept = self._by_node[uid]
+        index = bisect_right(kept, moment, key=_started) - 1
+        return index >= 0 and moment <= kept[index].ended
+
+    def clear(self) -> None:
+        """The run has ended."""
+        for kept in self._by_node.values():
+            kept.clear()
+
+
+class Nearby:
+    """Other nodes as a clause at one node means them."""
+
+    def __init__(self, uid: int, joined: Joined, history: History) -> None:
+        """
+        Args:
+            uid: of the one node; the root's where there is none.
+        """
+        self._uid: Final = uid
+        self._joined: Final = joined
+        self._history: Final = history
+        self._found: Final[dict[Target, tuple[int, ...] | Unknown]] = {}
+
+    def find(self, target: Target) -> tuple[int, ...] | Unknown:
+        """The instances of a node; what they do is kept from now on."""
+        instances = self._joined.instances(target)
+        lost = next((path for path, uid in instances if uid is None), None)
+        found: tuple[int, ...] | Unknown
+        if lost is not None:
+            found = Unknown(f"`{lost}` {self._joined.lacking}")
+        else:
+            found = near(self._uid, [uid for _, uid in instances if uid is not None], self._joined.tree)
+            self._history.watch(found)
+        self._found[target] = found
+        return found
+
+    def activations(self, target: Target) -> list[Activation]:
+        """What a node did in the run, in the order of the starts."""
+        found = self._found[target]
+        return [] if isinstance(found, Unknown) else self._history.of(found)
+
+    def runs(self, target: Target, moment: Moment) -> bool | Unknown:
+        """Whether a node runs."""
+        found = self._found[target]
+        if isinstance(found, Unknown):
+            return found
+        return any(self._history.runs(uid, moment) for uid in found)
+
+
+def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:
+    """Those of some nodes that are in the innermost tree around a node that has any of them."""
+    while others:
+        uid = _use_around(uid, tree)
+        inside = tuple(other for other in others if not uid or uid <= other <= tree.last[uid])
+        if inside:
+            return inside
+    return ()
+
+
+def _use_around(uid: int, tree: LoggedTree) -> int:
+    """The SubTree node that a node is inside of; 0: it is in the main tree.  The paths of all in a subtree begin with
+    that of its SubTree node."""
+    path = tree.nodes[uid].path
+    above = tree.parent[uid]
+    while above and not path.startswith(f"{tree.nodes[above].path}/"):
+        above = tree.parent[above]
+    return above
+
+
+def _started(activation: Activation) -> Moment:
+    return activation.started

@@ -1,0 +1,154 @@
+"""What can be asked about the moments of an activation, or of a run: what signals were, and which nodes ran.
+
+One invariant: an answer is a value in SI, or the reason why it is unknown.
+"""
+
+from __future__ import annotations
+
+from math import fsum, sqrt
+
+from btq_lang.evidence.signals import Unknown
+from btq_lang.requirements.model import (
+    Aggregate,
+    All,
+    Any,
+    Arithmetic,
+    Compare,
+    Event,
+    InContext,
+    Limit,
+    Minus,
+    Not,
+    Read,
+    Running,
+    Table,
+)
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from typing import Final
+
+    from btq_lang.evidence.history import Nearby
+    from btq_lang.evidence.model import Activation, Moment, SampleValue
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.requirements.model import Signal, Target
+
+
+class Observed:
+    """What there is to know from one moment to another.
+
+    Attributes:
+        begin, end: of the activation, or of the run.
+        is_end_known: otherwise it had ended by `end`.
+    """
+
+    __slots__ = ("_nodes", "_signals", "begin", "end", "is_end_known")
+
+    def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
+        """
+        Args:
+            nodes: complete only when the run has ended.
+        """
+        self._signals: Final = signals
+        self._nodes: Final = nodes
+        self.begin: Final = begin
+        self.end: Final = end
+        self.is_end_known: Final = is_end_known
+
+    def during(self, activation: Activation) -> Observed:
+        """The same from the start of an activation to its end."""
+        is_end_known = activation.timing != "latest"
+        return Observed(self._signals, self._nodes, activation.started, activation.ended, is_end_known)
+
+    def between(self, begin: Moment, end: Moment) -> Observed:
+        """The same from one moment to another."""
+        return Observed(self._signals, self._nodes, begin, end)
+
+    def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
+        """The value of a signal."""
+        return self._signals.reading(signal, moment[0])
+
+    def summary(self, function: str, signal: Signal) -> float | Unknown:
+        """A function of the samples from beginning to end; the value that the signal begins with is one of them."""
+        begin, end = self.begin[0], self.end[0]
+        if function == "count":
+            return self._signals.number(signal, begin, end)
+        values = self._signals.values(signal, begin, end)
+        return values if isinstance(values, Unknown) else _FUNCTIONS[function](values)
+
+    def runs(self, target: Target, moment: Moment) -> bool | Unknown:
+        """Whether a node runs."""
+        return self._nodes.runs(target, moment)
+
+    def activations(self, target: Target) -> list[Activation]:
+        """What a node did in the whole run, in the order of the starts."""
+        return self._nodes.activations(target)
+
+    def moments(self, *parts: object) -> list[Moment]:
+        """The moments, from the beginning to the end, at which conditions and bounds may change."""
+        found = {self.begin}
+        begin, end = self.begin, self.end
+        for part in parts:
+            for each in parts_in(part):
+                if isinstance(each, Read):
+                    found.update([(time, 0) for time in self._signals.changes(each.signal, begin[0], end[0])])
+                elif isinstance(each, Running):
+                    for activation in self._nodes.activations(each.target):
+                        stopped = activation.end, activation.last + 1
+                        found.update([at for at in (activation.started, stopped) if begin < at <= end])
+        return sorted(found)
+
+
+def signals_in(part: object) -> Iterator[Signal]:
+    """The signals that a condition or a bound reads."""
+    return (each.signal for each in parts_in(part) if isinstance(each, Read | Aggregate))
+
+
+def parts_in(part: object) -> Iterator[Read | Aggregate | Running]:
+    """What a condition, a bound or an event reads."""
+    if isinstance(part, Read | Aggregate | Running):
+        yield part
+    elif isinstance(part, Compare):
+        yield from (found for each in part.operands for found in parts_in(each))
+    elif isinstance(part, All | Any):
+        yield from (found for each in part.conditions for found in parts_in(each))
+    elif isinstance(part, Not | InContext):
+        yield from parts_in(part.condition)
+    elif isinstance(part, Minus):
+        yield from parts_in(part.operand)
+    elif isinstance(part, Arithmetic):
+        yield from (found for each in (part.left, part.right) for found in parts_in(each))
+    elif isinstance(part, Table):
+        for case in part.cases:
+            yield from parts_in(case.value)
+            yield from parts_in(case.condition)
+    elif isinstance(part, Limit):
+        yield from (found for each in (part.value, part.upper) for found in parts_in(each))
+    elif isinstance(part, Event):
+        yield from parts_in(part.condition)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return fsum(values) / len(values)
+
+
+def _p95(values: Sequence[float]) -> float:
+    """The smallest that 95 of 100 do not exceed."""
+    return sorted(values)[-(-len(values) * 95 // 100) - 1]
+
+
+def _stddev(values: Sequence[float]) -> float:
+    """Of the values themselves, not an estimate for more of their kind."""
+    middle = _mean(values)
+    return sqrt(_mean([(value - middle) ** 2 for value in values]))
+
+
+_FUNCTIONS: Final[dict[str, Callable[[Sequence[float]], float]]] = {
+    "max": max,
+    "min": min,
+    "mean": _mean,
+    "p95": _p95,
+    "stddev": _stddev,
+    "change": lambda values: values[-1] - values[0],
+}

@@ -1,0 +1,144 @@
+"""What a clause that is judged over a run may ask: what its nodes did in it, and when events happened."""
+
+from __future__ import annotations
+
+from btq_lang.evidence.conditions import truth
+from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.scopes import in_scope
+from btq_lang.evidence.signals import Unknown
+from btq_lang.record import Record
+from btq_lang.requirements.model import All, Mission, Target
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Final
+
+    from btq_lang.evidence.model import Activation, Moment
+    from btq_lang.evidence.observed import Observed
+    from btq_lang.requirements.model import Condition, Event, Scope
+
+
+class Happening(Record):
+    """An event, when it happened.
+
+    Attributes:
+        until: the same moment; a later one where the log says only that it happened by then.
+        why: why it is unknown when; empty where it is not.
+        is_certain: it did happen.
+    """
+
+    at: Moment
+    until: Moment
+    why: str = ""
+    is_certain: bool = True
+
+
+class Stretch(Record):
+    """A part of a run, with a condition all along.
+
+    Attributes:
+        why: why it is unknown whether the condition held; empty where it did.
+    """
+
+    begin: Moment
+    end: Moment
+    why: str = ""
+
+
+class OverRun:
+    """A run that has ended.
+
+    Attributes:
+        root: the activation of its root, which is as long as the run.
+        own: what the nodes of the clause did, in the order of the starts.
+        observed: of the whole run.
+    """
+
+    def __init__(
+        self, verb: str, scopes: Sequence[Scope], root: Activation, own: Sequence[Activation], observed: Observed
+    ) -> None:
+        self.root: Final = root
+        self.own: Final = own
+        self.observed: Final = observed
+        self._verb: Final = verb
+        self._scopes: Final = scopes
+
+    @property
+    def is_cut_off(self) -> bool:
+        """Whether the log ends before the run does."""
+        return self.root.outcome == "O"
+
+    def counts(self, begin: Moment, end: Moment) -> bool | Unknown:
+        """Whether what lasts from one moment to another counts."""
+        return in_scope(self._scopes, self._verb, self.observed.between(begin, end))
+
+    def counts_one(self, activation: Activation) -> bool | Unknown:
+        """Whether an activation counts."""
+        return in_scope(self._scopes, self._verb, self.observed.during(activation))
+
+    def starts(self) -> list[tuple[Activation, bool | Unknown]]:
+        """What the nodes of the clause did that counts, or may count."""
+        found = [(each, self.counts_one(each)) for each in self.own]
+        return [(each, counts) for each, counts in found if counts is not False]
+
+    def stretches(self) -> list[Stretch]:
+        """The parts of the run in which time counts, and those in which it may."""
+        conditions = [scope.condition for scope in self._scopes if scope.word == "while"]
+        return self.with_all_along(All(tuple(conditions)))
+
+    def with_all_along(self, condition: Condition) -> list[Stretch]:
+        """The longest parts of the run with a condition, and those in which it is unknown."""
+        found: list[Stretch] = []
+        begin = self.observed.begin
+        before: bool | Unknown = False
+        for moment in (*self.observed.moments(condition), None):
+            now = truth(condition, self.observed, moment) if moment is not None else False
+            if moment is not None and _is_like(now, before):
+                continue
+            end = moment if moment is not None else self.observed.end
+            if before is not False:
+                found.append(Stretch(begin, end, before.why if isinstance(before, Unknown) else ""))
+            begin, before = end, now
+        return found
+
+    def happenings(self, event: Event, of: Sequence[Activation] | None = None) -> list[Happening]:
+        """When an event happened, and when it may have, in this order.
+
+        Args:
+            of: what its node did; None: as the clause's nodes mean it.
+        """
+        found: list[Happening] = []
+        if event.condition is not None:
+            ended: Moment | None = None  # of a part in which it is unknown
+            for part in self.with_all_along(event.condition):
+                if part.why or part.begin != ended:
+                    found.append(Happening(part.begin, part.end if part.why else part.begin, part.why, not part.why))
+                ended = part.end if part.why else None
+            return found
+        outcomes = _OUTCOMES.get(event.happening)
+        for each in of if of is not None else self.observed.activations(target_of(event)):
+            if outcomes is None:
+                found.append(Happening(each.started, each.started))
+            elif each.outcome in outcomes and each.timing == "latest":
+                found.append(Happening(each.started, each.ended, UNKNOWN_END))
+            elif each.outcome in outcomes:
+                found.append(Happening(each.ended, each.ended))
+        return sorted(found, key=lambda each: each.at)
+
+
+def target_of(event: Event) -> Target:
+    """The node that an event happens to."""
+    subject = event.subject
+    if isinstance(subject, Mission):
+        assert subject.node is not None, "an event of an unknown mission is not judged"
+        return Target(subject.node)
+    assert subject is not None, "only `when` has no subject"
+    return subject
+
+
+def _is_like(one: bool | Unknown, other: bool | Unknown) -> bool:
+    return one is other or (isinstance(one, Unknown) and isinstance(other, Unknown))
+
+
+_OUTCOMES: Final = {"succeeds": "S", "fails": "F", "finishes": "SF", "halts": "H"}

@@ -1,0 +1,87 @@
+"""`over last N runs`, `over last 8 h`: what a clause has come to lately.
+
+One invariant: kept are the judgements of the window and no others; what is last is told by when it happened, in
+whatever order the logs are read.
+"""
+
+from __future__ import annotations
+
+from bisect import insort
+
+from btq_lang.evidence.tally import Tally
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final, TypeAlias
+
+    from btq_lang.evidence.tally import Run
+    from btq_lang.evidence.verbs import Judgement
+    from btq_lang.evidence.verdicts import Link
+    from btq_lang.requirements.model import Odds, Window
+
+    _Entry: TypeAlias = tuple[Judgement, str, tuple[Link, ...]]
+
+
+class Recent:
+    """What is counted of the last activations, of the last runs in which anything was judged, or of the last time.
+
+    Attributes:
+        cut_off: as of a `ClauseVerdict`; of all logs.
+    """
+
+    def __init__(self, window: Window, odds: Odds | None, confidence: float | None) -> None:
+        self.cut_off = 0
+        self._window: Final = window
+        self._odds: Final = odds
+        self._confidence: Final = confidence
+        self._now: Final[list[_Entry]] = []  # of the run that is open
+        self._kept: Final[list[tuple[Run, list[_Entry]]]] = []  # the earliest run first
+        self._end = 0  # of the last run
+
+    def add(self, judgement: Judgement, path: str, chain: tuple[Link, ...] = ()) -> None:
+        """Count what an activation of the run that is open came to.
+
+        Args:
+            chain: what led to it.
+        """
+        self._now.append((judgement, path, chain))
+
+    def end_run(self, run: Run) -> None:
+        """The run that was open has ended."""
+        self._end = max(self._end, run.end)
+        if self._now:
+            found = sorted(self._now, key=lambda each: each[0].at)
+            insort(self._kept, (run, found), key=lambda each: each[0].begin)
+            self._now.clear()
+        self._leave_out()
+
+    def result(self) -> Tally:
+        """All that is in the window, counted."""
+        is_of_odds = self._odds is None or self._odds.experiments == self._window.experiments
+        tally = Tally(self._odds, self._confidence, self._window.count if is_of_odds else None)
+        tally.cut_off = self.cut_off
+        for run, judgements in self._kept:
+            for each in judgements:
+                tally.add(*each)
+            tally.end_run(run)
+        return tally
+
+    def _leave_out(self) -> None:
+        """What is not in the window any more."""
+        kept, count = self._kept, self._window.count
+        if count is None:
+            assert self._window.seconds is not None, "a window is a number or a time"
+            begin = self._end - round(self._window.seconds * 1e6)
+            for _, judgements in kept:
+                judgements[:] = [each for each in judgements if each[0].at >= begin]
+            kept[:] = [each for each in kept if each[1]]
+        elif self._window.experiments == "runs":
+            del kept[: max(len(kept) - count, 0)]
+        else:
+            surplus = sum(len(judgements) for _, judgements in kept) - count
+            while surplus > 0:
+                judgements = kept[0][1]
+                surplus, gone = surplus - len(judgements), min(surplus, len(judgements))
+                del judgements[:gone]
+                if not judgements:
+                    del kept[0]

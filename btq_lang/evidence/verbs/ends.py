@@ -1,0 +1,33 @@
+"""`ends within d after ev`: how long a node that runs when an event happens goes on."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.over_run import Happening
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verbs.starts import judged
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether the node ends in time after each event that happens while it runs."""
+    assert claim.event is not None, "the clause names one"
+    moments = [each.started for each in run.own]
+    for event in run.happenings(claim.event):
+        index = bisect_right(moments, event.at) - 1
+        if index < 0 or run.own[index].ended < event.at:
+            continue
+        ended = run.own[index]
+        answer = None
+        if ended.outcome != "O":
+            answer = Happening(ended.ended, ended.ended, UNKNOWN_END if ended.timing == "latest" else "")
+        yield from judged(claim, run, event, answer, VERBS["ends"].said, "had not ended after {}")

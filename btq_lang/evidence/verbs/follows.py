@@ -1,0 +1,37 @@
+"""`follows ev`: an event before each start of a node, and since its last one."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether the event has happened in the run before each start, and since the start before that."""
+    assert claim.event is not None, "the clause names one"
+    events = run.happenings(claim.event)
+    name = claim.text.partition(" follows ")[2]
+    before = (run.root.begin, -1)  # of the run
+    since = "before it in the run"
+    for start in run.own:
+        found = [each for each in events if each.until > before and each.at <= start.started]
+        is_sure = any(each.is_certain and before < each.at and each.until <= start.started for each in found)
+        before = start.started
+        counts = run.counts_one(start)
+        unclear = counts.why if isinstance(counts, Unknown) else ""
+        if not is_sure and found:
+            unclear = unclear or found[0].why
+        if unclear:
+            yield Judgement(None, start.begin, unclear)
+        elif counts:
+            said = f"followed `{name}`" if is_sure else f"`{name}` did not happen {since}"
+            yield Judgement(is_sure, start.begin, VERBS["follows"].said.replace("{}", said))
+        since = "since its last start"

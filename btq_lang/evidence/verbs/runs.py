@@ -1,0 +1,85 @@
+"""`runs every d` and `runs at least m per d`: how a node's starts are spread over the time that counts."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.limits import compared
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.wording import counted
+from btq_lang.record import replace
+from btq_lang.requirements.model import Value
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.over_run import OverRun, Stretch
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether it runs often enough, and not too often: each time between two starts, or each stretch of time."""
+    starts = run.starts()
+    for stretch in run.stretches():
+        inside = [(each, counts) for each, counts in starts if stretch.begin <= each.started <= stretch.end]
+        unclear = [counts.why for _, counts in inside if isinstance(counts, Unknown)]
+        if stretch.why or unclear:
+            yield Judgement(None, stretch.begin[0], stretch.why or unclear[0])
+            continue
+        is_open = run.is_cut_off and stretch.end == run.observed.end
+        found = [each for each, _ in inside]
+        if claim.every:
+            yield from _between(claim, run, stretch, found, is_open)
+        else:
+            yield from _in_windows(claim, run, stretch, found, is_open)
+
+
+def _between(
+    claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
+) -> Iterator[Judgement | None]:
+    """The times from each start to the next one, and from the last one to the end of the stretch."""
+    assert claim.limit is not None, "`every` has a bound"
+    for index, start in enumerate(starts):
+        is_last = index + 1 == len(starts)
+        until = stretch.end[0] if is_last else starts[index + 1].begin
+        found = compared(claim.limit, (until - start.begin) / 1e6, run.observed, start.started)
+        if isinstance(found, Unknown):
+            yield Judgement(None, until, found.why)
+            continue
+        holds = found.measure.excess <= 0
+        said = "had not run again after {}" if is_last else VERBS["runs"].said.replace("{}", "{} after its last start")
+        yield None if is_last and is_open and holds else Judgement(holds, until, said, found.measure)
+
+
+def _in_windows(
+    claim: Claim, run: OverRun, stretch: Stretch, starts: Sequence[Activation], is_open: bool
+) -> Iterator[Judgement | None]:
+    """The windows with the fewest and with the most starts; a stretch that is shorter than one has none."""
+    assert claim.limit is not None, "a number of starts has a bound"
+    assert isinstance(claim.per, Value), "and a time"
+    length = round(claim.per.si * 1e6)
+    begin, last = stretch.begin[0], stretch.end[0] - length  # of the windows in it, the first and the last begin then
+    if begin > last:
+        return
+    times = [each.begin for each in starts]
+
+    def number(window: int) -> int:
+        return bisect_left(times, window + length) - bisect_left(times, window)
+
+    # Fewest are where one has just left; most where one is the first, or in the last window.
+    windows = [begin, *[time + 1 for time in times if time < last], *[min(time, last) for time in times]]
+    judgements: list[Judgement] = []
+    for window in (min(windows, key=number), max(windows, key=number)):
+        found = compared(claim.limit, float(number(window)), run.observed, stretch.begin)
+        if isinstance(found, Unknown):
+            yield Judgement(None, stretch.begin[0], found.why)
+            return
+        said = VERBS["runs"].said.replace("{}", f"{counted(number(window), 'time')} in {claim.per.text}")
+        measure = replace(found.measure, unit=None)
+        judgements.append(Judgement(measure.excess <= 0, window + length, said, measure))
+    worst = max(judgements, key=lambda each: each.measure.excess if each.measure is not None else 0.0)
+    yield None if is_open and worst.holds else worst

@@ -1,0 +1,71 @@
+"""`from e₁ to e₂ takes at most d`: the time from each first event to the next last one, which ends with the run."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.limits import compared
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.requirements.model import Span
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.model import Moment
+    from btq_lang.evidence.over_run import Happening, OverRun
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether each span is as long as it should be."""
+    span = claim.subject
+    assert isinstance(span, Span), "the time between two events"
+    first = span.first
+    lasts = run.happenings(span.last)
+    certain = sorted([each for each in lasts if each.is_certain], key=lambda each: each.until)
+    moments = [each.until for each in certain]
+    next_after = bisect_right if first == span.last else bisect_left  # an event is not the next one after itself
+    for event in run.happenings(first, run.own if first.condition is None else None):
+        index = next_after(moments, event.at)
+        end = certain[index].until if index < len(certain) else None
+        until = end if end is not None else run.root.ended
+        unclear = next((each.why for each in lasts if each.why and each.until >= event.at and each.at <= until), "")
+        yield from _judged(claim, run, event, end, unclear)
+
+
+def _judged(
+    claim: Claim, run: OverRun, first: Happening, last: Moment | None, unclear: str
+) -> Iterator[Judgement | None]:
+    """What a span says, if it counts.
+
+    Args:
+        last: when it had ended; None: it did not in the run.
+        unclear: why it may have ended before that; else empty.
+    """
+    assert claim.limit is not None, "a time has a bound"
+    until = last if last is not None else run.root.ended
+    counts = run.counts(first.at, until)
+    if counts is False:
+        return
+    found = compared(claim.limit, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
+    why = first.why
+    for each in (counts, found):
+        why = why or (each.why if isinstance(each, Unknown) else "")
+    if why or isinstance(found, Unknown):
+        yield Judgement(None, until[0], why)
+        return
+    said = VERBS["takes"].said
+    is_late = found.is_upper and found.measure.excess > 0
+    if unclear and (is_late or last is None or not (found.is_upper and found.is_lone)):
+        yield Judgement(None, until[0], unclear)
+    elif last is not None:
+        yield Judgement(found.measure.excess <= 0, until[0], said, found.measure)
+    elif is_late:
+        yield Judgement(False, until[0], "had not come to an end after {}", found.measure)
+    elif run.is_cut_off:
+        yield None
+    elif claim.limit.relation not in (">=", ">"):
+        yield Judgement(False, until[0], "its last event did not happen before the run ended")

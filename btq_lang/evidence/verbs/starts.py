@@ -1,0 +1,62 @@
+"""`starts within d after ev`: how long it takes until a node starts after each event."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.limits import compared
+from btq_lang.evidence.over_run import Happening
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether each event is answered in time by the next start."""
+    assert claim.event is not None, "the clause names one"
+    moments = [each.started for each in run.own]
+    for event in run.happenings(claim.event):
+        index = bisect_left(moments, event.at)
+        answer = Happening(moments[index], moments[index]) if index < len(moments) else None
+        yield from judged(claim, run, event, answer, VERBS["starts"].said, "had not started after {}")
+
+
+def judged(
+    claim: Claim, run: OverRun, event: Happening, answer: Happening | None, said: str, never: str
+) -> Iterator[Judgement | None]:
+    """What an event and its answer say, if they count; None: the log ends before the time is over.
+
+    Args:
+        answer: None: there is none in the run.
+        said, never: of an answer, and of its absence.
+    """
+    assert claim.limit is not None, "an answer has a time"
+    until = answer.until if answer is not None else run.root.ended
+    found = compared(claim.limit, (until[0] - event.at[0]) / 1e6, run.observed, event.at)
+    deadline = until
+    if not isinstance(found, Unknown):
+        deadline = min(until, (event.at[0] + round(found.measure.bound * 1e6), until[1]))
+    counts = run.counts(event.at, deadline)
+    if counts is False:
+        return
+    time = deadline[0]
+    why = next((each.why for each in (event, counts, found) if isinstance(each, Happening | Unknown) and each.why), "")
+    if why or isinstance(found, Unknown):
+        yield Judgement(None, time, why)
+        return
+    is_late = found.measure.excess > 0
+    if answer is not None and not (is_late and answer.why):
+        yield Judgement(not is_late, until[0], said, found.measure)
+    elif answer is not None:
+        yield Judgement(None, time, answer.why)
+    elif is_late:
+        yield Judgement(False, time, never, found.measure)
+    else:
+        yield None if run.is_cut_off else Judgement(None, time, "the run ended before the time was over")

@@ -1,0 +1,42 @@
+"""`sum of X, Y takes at most d`: the durations of some nodes in a run, added up."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.limits import compared
+from btq_lang.evidence.model import UNKNOWN_END
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.requirements.model import Claim
+
+
+def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
+    """Whether they last as long together as they should."""
+    starts = run.starts()
+    sure = sum(each.end - each.begin for each, counts in starts if counts is True and each.timing == "exact")
+    unclear = next((counts.why for _, counts in starts if isinstance(counts, Unknown)), UNKNOWN_END)
+    least = _judged(claim, run, sure)
+    most = _judged(claim, run, sum(each.end - each.begin for each, _ in starts))
+    if least is not None and most is not None and least.holds is most.holds:
+        yield least
+    elif least is None and most is None:
+        yield None
+    else:
+        yield Judgement(None, run.root.end, unclear)
+
+
+def _judged(claim: Claim, run: OverRun, total: int) -> Judgement | None:
+    """What a sum in µs says; None: nothing, for the log ends before the run does."""
+    assert claim.limit is not None, "a time has a bound"
+    found = compared(claim.limit, total / 1e6, run.observed, run.observed.begin)
+    if isinstance(found, Unknown):
+        return Judgement(None, run.root.end, found.why)
+    holds = found.kept(not run.is_cut_off)
+    said = VERBS["takes"].said.replace("{}", "{} together")
+    return Judgement(holds, run.root.end, said, found.measure) if holds is not None else None

@@ -1,0 +1,46 @@
+"""`uses at most x of k`: by how much a level is lower, or a counter higher, at the end of an activation than at its
+start."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.limits import compared
+from btq_lang.evidence.model import CLOCK_SET_BACK
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verbs import Judgement
+from btq_lang.evidence.verbs.takes import is_left_out, judged
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.observed import Observed
+    from btq_lang.requirements.model import Claim, Signal
+
+
+def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement | None:
+    """Whether an activation uses as much as it should."""
+    assert claim.limit is not None, "the use has a bound"
+    assert claim.signal is not None, "the clause names what is used"
+    if is_left_out(claim.limit, activation):
+        return None
+    used = _used(claim.signal, activation, observed)
+    found = used if isinstance(used, Unknown) else compared(claim.limit, used, observed, activation.started)
+    if isinstance(found, Unknown):
+        return Judgement(None, activation.end, found.why)
+    return judged(found, activation, VERBS["uses"].said)
+
+
+def _used(signal: Signal, activation: Activation, observed: Observed) -> float | Unknown:
+    if activation.timing == "broken":
+        return Unknown(CLOCK_SET_BACK)
+    if signal.behaviour == "gauge":
+        return Unknown(f"`{signal.name}` is neither a level nor a counter")
+    levels: list[float] = []
+    for moment in (activation.started, activation.ended):
+        value = observed.reading(signal, moment)
+        if isinstance(value, Unknown):
+            return value
+        assert not isinstance(value, str), "what is used is a number"
+        levels.append(float(value))
+    before, after = levels
+    return before - after if signal.behaviour == "level" else after - before
