@@ -10,6 +10,8 @@
     [rules]
     missing-port = "warning"          # error, warning, info, hint, off
 
+    [evidence]                        # logs of what robots did: see project_evidence.py
+
 One invariant: every text gives a project and never an exception; what is wrong in it is left out and told.  Not known
 here: the disk, and where the file was found.
 """
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from typing import Any, Literal, TypeAlias
 
     from btq_lang.diagnostics import Diagnostic
+    from btq_lang.project_evidence import Evidence
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of those in a folder counts
@@ -50,6 +53,7 @@ class Project(Record):
         ignore: rules not to apply.
         exclude: patterns of what a folder's check leaves out.
         folders: those that people work in: an editor's folders, or the current one.
+        evidence: what it says about logs; None where it says nothing.
     """
 
     root: str = "."
@@ -62,6 +66,7 @@ class Project(Record):
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
+    evidence: Evidence | None = None
 
     def shown(self, path: str) -> str:
         """A path as people read it: relative to the folder that they work in where it is inside one, else as it is."""
@@ -241,6 +246,13 @@ def _severities(key: str, value: object) -> _Read:
     return tuple(severities), complaints
 
 
+def _evidence(key: str, value: object) -> _Read:
+    from btq_lang.project_evidence import read_evidence  # few projects have logs
+
+    found, complaints = read_evidence(value)
+    return found, [_Complaint(message, below) for message, below in complaints]
+
+
 _SEVERITIES: dict[str, Severity | None] = {**{severity.value: severity for severity in Severity}, "off": None}
 _KEYS = {
     "engine": ("engines", _engines),
@@ -250,6 +262,7 @@ _KEYS = {
     "select": ("select", _rule_names),
     "ignore": ("ignore", _rule_names),
     "rules": ("severities", _severities),
+    "evidence": ("evidence", _evidence),
 }
 
 

@@ -134,3 +134,16 @@ def late_ends(messages: Sequence[Message], root: int = 1) -> list[Message]:
             found.append((topic, received, STORE.types[TREE_LOG](message.timestamp, [*kept, *changes])))
             kept = []
     return found
+
+
+def number(topic: str, time: int, value: float, received: int | None = None) -> Message:
+    """A `std_msgs/Float64`, which has no header; times: µs since the epoch."""
+    return topic, (time if received is None else received) * 1000, STORE.types["std_msgs/msg/Float64"](data=value)
+
+
+def stamped(topic: str, time: int, value: float, received: int | None = None) -> Message:
+    """A `geometry_msgs/PointStamped` with a value as x; times: µs since the epoch."""
+    header = STORE.types["std_msgs/msg/Header"](stamp=stamp(STORE, time), frame_id="")
+    point = STORE.types["geometry_msgs/msg/Point"](x=value, y=0.0, z=0.0)
+    message = STORE.types["geometry_msgs/msg/PointStamped"](header=header, point=point)
+    return topic, (time if received is None else received) * 1000, message

@@ -55,6 +55,7 @@ ROWS: tuple[frozenset[str], ...] = (
         {
             "toml_places",
             "project",
+            "project_evidence",
             "name_kinds",
             "symbols",
             "constraints",

@@ -222,7 +222,7 @@ def test_a_diff_says_what_the_page_shows(tmp_path: Path) -> None:
 # ---- settings ----
 
 
-@pytest.mark.parametrize("block", blocks("toml", "commands.md", "language.md"))
+@pytest.mark.parametrize("block", blocks("toml", "commands.md", "evidence.md", "language.md"))
 def test_a_project_file_is_read(block: str, tmp_path: Path) -> None:
     (tmp_path / "btq.toml").write_text(block, encoding="utf-8")
     found = find_project(str(tmp_path))

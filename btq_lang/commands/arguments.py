@@ -208,9 +208,10 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     )
     parser.add_argument(
         "logs",
-        nargs="+",
+        nargs="*",
         metavar="LOG",
-        help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), ROS 2 bags (.mcap, .db3, folders), folders",
+        help="files of FileLogger2 (.btlog) or SqliteLogger (.db3), ROS 2 bags (.mcap, .db3, folders), folders;"
+        " default: `logs` in [evidence] of btq.toml",
     )
     parser.add_argument(
         "--mission",

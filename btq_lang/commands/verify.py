@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from argparse import Namespace
+from glob import glob
 
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path, xml_path
@@ -13,6 +14,7 @@ from btq_lang.checks import check
 from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.signal_sources import signal_sources
 from btq_lang.commands.verdict_formats import FORMATS, WRITERS, Judged
 from btq_lang.evidence import verify
 from btq_lang.evidence.identity import Candidate
@@ -35,14 +37,16 @@ if TYPE_CHECKING:
 
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
+    from btq_lang.project import Project
 
 
 def run(options: Namespace) -> int:
     """Read the logs and print the verdicts."""
     problems: list[str] = []
     logs, missions, samples = _given(options, problems)
+    sources, of_files = signal_sources(missions, problems)
     if not problems:
-        report = verify(logs, missions, samples, shown)
+        report = verify(logs, missions, samples, shown, sources, of_files)
         problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
         for note in _ignored(options.signals, samples, missions):
             print(f"btq verify: {note}", file=sys.stderr)
@@ -67,11 +71,16 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     if problem := usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS):
         problems.append(problem)
         return (), (), {}
-    files, unreachable = collect(options.logs, find_project(".").project, (*SUFFIXES, METADATA))
+    project = find_project(".").project
+    asked = options.logs or _logs_of(project)
+    if not asked:
+        problems.append("no log given; name one, or set `logs` in [evidence] of btq.toml")
+        return (), (), {}
+    files, unreachable = collect(asked, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
     problems += map(str, unreachable)
     if not logs and not unreachable:
-        problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(options.logs)}")
+        problems.append(f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(asked)}")
     special = [path for path in (*logs, *filter(None, [options.signals])) if is_special(path)]
     problems += [f"{shown(path)}: {IS_SPECIAL}" for path in special]
     samples: dict[str, Series] = {}
@@ -83,6 +92,15 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
         except OSError as error:
             problems.append(f"{options.signals}: cannot be read: {error.strerror or error}")
     return logs, _missions(options.mission, logs, problems), samples
+
+
+def _logs_of(project: Project) -> Sequence[str]:
+    """The paths that the project's patterns match; a pattern that matches none is itself, to be reported."""
+    found: list[str] = []
+    for pattern in project.evidence.logs if project.evidence is not None else ():
+        path = os.path.join(project.root, pattern)
+        found += sorted(glob(path, recursive=True)) or [path]
+    return found
 
 
 def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) -> Sequence[Candidate]:

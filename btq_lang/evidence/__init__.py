@@ -26,15 +26,21 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
+    from btq_lang.project_evidence import SignalSource
 
 
 def verify(
-    logs: Iterable[str], missions: Sequence[Candidate], samples: Mapping[str, Series], shown: Callable[[str], str]
+    logs: Sequence[str],
+    missions: Sequence[Candidate],
+    samples: Mapping[str, Series],
+    shown: Callable[[str], str],
+    sources: Sequence[SignalSource] = (),
+    of_files: Mapping[str, Series] | None = None,
 ) -> Report:
     """The verdicts of missions by what logs say.
 
@@ -42,12 +48,15 @@ def verify(
         logs: the files; one that cannot be read is a problem of the report, and the others are judged.
         samples: of signals, by the signal's name or its entry.
         shown: a path as people read it.
+        sources: where samples come from that count after those; topics are read from the bags among the logs.
+        of_files: the samples of the sources that are files.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
     from btq_lang.evidence.identity import difference
     from btq_lang.evidence.named_runs import joined_sessions
-    from btq_lang.evidence.readers import NotALog, read
+    from btq_lang.evidence.readers import NotALog, read, samples_of_bags
     from btq_lang.evidence.runs import count_runs
+    from btq_lang.evidence.signals import by_signal
     from btq_lang.evidence.verdicts import Foreign, Report
 
     evaluations = {mission.path: MissionEvaluation(mission) for mission in missions}
@@ -55,15 +64,19 @@ def verify(
     differences: dict[tuple[str, str], str] = {}
     problems: list[str] = []
     runs = 0
-    for log in logs:
+    elsewhere, remarks, bags = samples_of_bags(logs, sources)
+    for log in (each for each in logs if each not in bags):
         try:
-            for source, session, joined in joined_sessions(read(log), missions, shown(log)):
+            for source, session, joined in joined_sessions(read(log, sources), missions, shown(log)):
                 if isinstance(joined, str):
                     foreign[source, joined] = foreign.get((source, joined), 0) + count_runs(session)
                     if (source, joined) not in differences:
                         differences[source, joined] = difference(missions, session.tree)
                 else:
-                    runs += evaluations[joined.mission.path].read(session, joined, samples, runs + 1, source)
+                    signals = joined.mission.requirements.signals.values()
+                    given = by_signal(signals, samples, of_files or {}, session.signals, elsewhere)
+                    session.remarks.extend(remarks)
+                    runs += evaluations[joined.mission.path].read(session, joined, given, runs + 1, source)
         except NotALog as error:
             problems.append(f"{shown(log)}: {error}")
         except OSError as error:

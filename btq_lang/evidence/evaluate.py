@@ -58,7 +58,7 @@ class MissionEvaluation:
         """Judge the runs of a session; how many there are.
 
         Args:
-            given: the samples of `--signals`, by signal or entry.
+            given: samples by signal, which count before the log's own.
             first_run: the number of the first run.
             source: the file, as people read it.
         """

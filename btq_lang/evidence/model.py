@@ -13,8 +13,10 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from typing import Final, Literal, TypeAlias
+
+    from btq_lang.units import Unit
 
     Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
     SampleValue: TypeAlias = float | bool | str
@@ -118,9 +120,14 @@ class Activation:
 
 
 class Series:
-    """The samples of one signal, in the order of their times."""
+    """The samples of one signal, in the order of their times.
 
-    def __init__(self) -> None:
+    Attributes:
+        unit: of the values; None: the signal's own.
+    """
+
+    def __init__(self, unit: Unit | None = None) -> None:
+        self.unit: Final = unit
         self.times: Final = array("q")
         self.values: Final[list[SampleValue]] = []
 
@@ -159,6 +166,7 @@ class Session:
     Attributes:
         transitions: in the order of the file.
         samples: of the log's own entries, by entry; they grow while the transitions are read.
+        signals: those of signals that the project file says are in the log, by signal.
         remarks: what is to be said of the file, complete when the transitions have been read.
     """
 
@@ -168,10 +176,12 @@ class Session:
         transitions: Iterator[Transition],
         samples: dict[str, Series] | None = None,
         remarks: list[str] | None = None,
+        signals: Mapping[str, Series] | None = None,
     ) -> None:
         self.tree: Final = tree
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
+        self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
         self.remarks: Final = [] if remarks is None else remarks
 
 
@@ -183,6 +193,7 @@ class NamedLog(Record):
         nodes: uid and name of each node; the uid is 0 where the log has none.
         times, changed, statuses: of each status change its time, the index of its node, and its new status.
         trees: those that the file has beside the changes, in their order.
+        signals: samples of signals that the project file says are in the log, by signal.
         remarks: what is to be said of the file.
     """
 
@@ -192,6 +203,7 @@ class NamedLog(Record):
     changed: array[int]
     statuses: array[int]
     trees: Sequence[LoggedTree]
+    signals: Mapping[str, Series]
     remarks: Sequence[str]
 
 

@@ -1,4 +1,4 @@
-"""What signals were at a moment, from samples: those of `--signals` first, else the log's own entries.
+"""What signals were at a moment, from samples: of `--signals`, of `[evidence.signals]`, or the log's own entries.
 
 One invariant: an answer is a value in SI, or the reason why it is unknown; a value holds until the next sample, at most
 for `fresh within`.
@@ -13,11 +13,12 @@ from btq_lang.units import to_si
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from typing import Final
 
     from btq_lang.evidence.model import SampleValue
     from btq_lang.requirements.model import Signal
+    from btq_lang.units import Unit
 
 
 class Unknown(Record):
@@ -27,7 +28,7 @@ class Unknown(Record):
 
 
 class Signals:
-    """The samples that a session is judged with.
+    """The samples that a session is judged with: those given by signal, else the log's own.
 
     Attributes:
         logged: of the session's own entries, by entry.
@@ -46,7 +47,7 @@ class Signals:
         sampled, value = found
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
             return Unknown(f"the last sample of `{signal.name}` is too old")
-        return _as_declared(signal, value)
+        return _as_declared(signal, value, series.unit if series is not None else None)
 
     def sampled(self, signal: Signal, time: int) -> int | None:
         """When the sample was taken that a signal has at a time."""
@@ -99,11 +100,8 @@ class Signals:
             series.forget_before(time)
 
     def _series(self, signal: Signal) -> Series | None:
-        entry = (signal.key or "").removeprefix("@")
-        for series in (self._given.get(signal.name), self._given.get(entry), self.logged.get(entry)):
-            if series is not None:
-                return series
-        return None
+        series = self._given.get(signal.name)
+        return series if series is not None else self.logged.get(_entry(signal))
 
 
 def _initially(signal: Signal, is_sampled: bool) -> SampleValue | Unknown:
@@ -118,8 +116,8 @@ def _none_of(signal: Signal) -> str:
     return f"{NO_SAMPLES} `{signal.name}`"
 
 
-def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:
-    """A sample in the unit of its signal as what the signal is declared as."""
+def _as_declared(signal: Signal, value: SampleValue, unit: Unit | None) -> SampleValue | Unknown:
+    """A sample as what its signal is declared as; unit: that it is in, None for the signal's."""
     if signal.sort == "text":
         return value if isinstance(value, str) else f"{value:g}"
     if signal.sort == "bool":
@@ -130,7 +128,24 @@ def _as_declared(signal: Signal, value: SampleValue) -> SampleValue | Unknown:
         return bool(value)
     if isinstance(value, str):
         return Unknown(f"a sample of `{signal.name}` is `{value}`, which is not a number")
-    return to_si(value, signal.unit) if signal.unit is not None else float(value)
+    unit = unit or signal.unit
+    return to_si(value, unit) if unit is not None else float(value)
+
+
+def by_signal(signals: Iterable[Signal], *sources: Mapping[str, Series]) -> dict[str, Series]:
+    """The samples of signals, each from the first source that has it by its name or its entry."""
+    names = {signal.name: (signal.name, _entry(signal)) for signal in signals}
+    found: dict[str, Series] = {}
+    for signal, keys in names.items():
+        for source in sources:
+            if (key := next((key for key in keys if key in source), None)) is not None:
+                found[signal] = source[key]
+                break
+    return found
+
+
+def _entry(signal: Signal) -> str:
+    return (signal.key or "").removeprefix("@")
 
 
 NO_SAMPLES: Final = "no samples of"

@@ -8,39 +8,74 @@ from __future__ import annotations
 
 import os
 
+from btq_lang.evidence.model import Series
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.tree import NotALog as NotALog
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
+    from types import ModuleType
     from typing import Final
 
     from btq_lang.evidence.model import NamedLog, Session
+    from btq_lang.project_evidence import SignalSource
 
 SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of what is read below a folder
 
 
-def read(path: str) -> Iterator[Session | NamedLog]:
+def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[Session | NamedLog]:
     """The sessions of a log, each to be read before the next one is asked for.
 
     Args:
         path: of a file, or of the folder of a ROS 2 bag.
+        sources: where samples of signals come from; those that are topics are read from bags.
 
     Raises:
         NotALog: no format fits, or the file is damaged where nothing of it can be used.
         OSError: it cannot be read.
     """
+    reader = _reader(path)
+    return tree_log.read(path, sources) if reader is tree_log else reader.read(path)
+
+
+def samples_of_bags(
+    paths: Iterable[str], sources: Sequence[SignalSource]
+) -> tuple[dict[str, Series], list[str], set[str]]:
+    """The samples of bags that have no log of a tree: by signal, what is to be said of them, and which bags these are.
+
+    A file that cannot be read is passed over; `read` says what is wrong with it.
+    """
+    found: dict[str, Series] = {}
+    remarks: list[str] = []
+    bags = set()
+    for path in paths if any(source.topic for source in sources) else ():
+        try:
+            samples = tree_log.samples(path, sources) if _reader(path) is tree_log else None
+        except (NotALog, OSError):
+            continue
+        if samples is not None:
+            bags.add(path)
+            remarks += samples[1]
+            for signal, series in samples[0].items():
+                into = found.setdefault(signal, Series(series.unit))
+                for time, value in zip(series.times, series.values, strict=True):
+                    into.add(time, value)
+    return found, remarks, bags
+
+
+def _reader(path: str) -> ModuleType:
+    """The module that reads a file."""
     if os.path.isdir(path):
-        return tree_log.read(path)
+        return tree_log
     with open(path, "rb") as file:
         start = file.read(_LONGEST)
     if start.startswith(btlog.MAGIC):
-        return btlog.read(path)
+        return btlog
     if start.startswith(bag.MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):
-        return tree_log.read(path)
+        return tree_log
     if start.startswith(sqlite.MAGIC):
-        return sqlite.read(path)
+        return sqlite
     raise NotALog(
         "expected a BehaviorTree.CPP log (.btlog from FileLogger2, .db3 or .btdb from SqliteLogger) or a ROS 2 bag"
         " (.mcap, .db3, or a folder with metadata.yaml)"

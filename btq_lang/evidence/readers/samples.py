@@ -1,4 +1,4 @@
-"""Samples of signals in a CSV file: the first column is the time, the others are named as signals or their entries.
+"""Samples of signals in a CSV file: a column with times, the first one unless another is named, and columns of values.
 
 One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
 error with its line.
@@ -7,23 +7,30 @@ error with its line.
 from __future__ import annotations
 
 import csv
+import os
 from math import isfinite
 
 from btq_lang.evidence.model import Series, is_sample
+from btq_lang.near import did_you_mean, near
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from typing import Final
 
     from btq_lang.evidence.model import SampleValue
+    from btq_lang.project_evidence import SignalSource
 
 
 class NoSamples(Exception):
     """A file is not the table of samples that it was taken for; the message says what was expected."""
 
 
-def read(path: str) -> dict[str, Series]:
+def read(path: str, time: str = "") -> dict[str, Series]:
     """The samples of a file, by the names of their columns.
+
+    Args:
+        time: the column with the time in seconds since the epoch; empty: the first one.
 
     Raises:
         NoSamples: it is not such a table.
@@ -35,18 +42,62 @@ def read(path: str) -> dict[str, Series]:
             names = [name.strip() for name in next(rows, [])]
             if len(names) < 2:
                 raise NoSamples("expected a line of column names: the time first, then signals or their entries")
-            if twice := next((name for name in names[1:] if names[1:].count(name) > 1), None):
+            at = names.index(_known(time, names)) if time else 0
+            others = [name for column, name in enumerate(names) if column != at]
+            if twice := next((name for name in others if others.count(name) > 1), None):
                 raise NoSamples(f"two columns are named `{twice}`")
-            found = {name: Series() for name in names[1:]}
+            found = {name: Series() for name in others}
             for row in rows:
                 if row:
-                    time = _time(row[0], rows.line_num)
-                    for name, cell in zip(names[1:], row[1:], strict=False):
-                        if (value := _value(cell.strip())) is not None:
-                            found[name].add(time, value)
+                    moment = _time(row[at] if at < len(row) else "", rows.line_num)
+                    for column, cell in enumerate(row[: len(names)]):
+                        if column != at and (value := _value(cell.strip())) is not None:
+                            found[names[column]].add(moment, value)
         except csv.Error as error:
             raise NoSamples(f"line {rows.line_num}: {error}") from error
     return found
+
+
+def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Series]:
+    """The samples of signals that come from files.
+
+    Args:
+        folder: that their paths are relative to.
+
+    Raises:
+        NoSamples: a file is not as its source says.
+        OSError: it cannot be read.
+    """
+    files: dict[tuple[str, str], dict[str, Series]] = {}
+    found: dict[str, Series] = {}
+    for source in sources:
+        if not source.file:
+            continue
+        key = source.file, source.time
+        try:
+            if key not in files:
+                files[key] = read(os.path.join(folder, source.file), source.time)
+            column = files[key][_known(source.column, files[key])]
+        except NoSamples as error:
+            raise NoSamples(f"{source.file}: {error}") from error
+        series = found[source.signal] = Series(source.unit)
+        for time, value in zip(column.times, column.values, strict=True):
+            series.add(time, scaled(value, source))
+    return found
+
+
+def scaled(value: SampleValue, source: SignalSource) -> SampleValue:
+    """A value in the unit of its source."""
+    if isinstance(value, str) or (source.scale == 1 and source.offset == 0):
+        return value
+    return value * source.scale + source.offset
+
+
+def _known(column: str, names: Iterable[str]) -> str:
+    if column not in (there := [*names]):
+        meant = did_you_mean(near(column, there, 1)) or f"; it has {', '.join(there)}"
+        raise NoSamples(f"no column `{column}`{meant}")
+    return column
 
 
 def _time(cell: str, line: int) -> int:

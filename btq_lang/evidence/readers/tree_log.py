@@ -10,21 +10,25 @@ from __future__ import annotations
 
 from array import array
 
-from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, LoggedTree, NamedLog
+from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, LoggedTree, NamedLog, Series
 from btq_lang.evidence.readers.bag import TEXT, TREE_LOG, opened
+from btq_lang.evidence.readers.topics import Clock, Topics
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from typing import Any, Final
 
+    from btq_lang.project_evidence import SignalSource
 
-def read(path: str) -> Iterator[NamedLog]:
+
+def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
     """The logs in a bag, one for each topic that behavior trees are logged on.
 
     Args:
         path: of a folder or a file.
+        sources: of signals, those that are topics.
 
     Raises:
         NotALog: it is not a bag, or nothing of it can be used.
@@ -34,14 +38,25 @@ def read(path: str) -> Iterator[NamedLog]:
         logs = {each.topic: _Changes() for each in bag.of_type(TREE_LOG)}
         if not logs:
             raise NotALog(f"expected a topic of type {TREE_LOG}, such as /behavior_tree_log; the bag has none")
+        topics = Topics(sources, [each.topic for each in bag.connections], map(_namespace, logs))
         trees: dict[str, dict[str, LoggedTree]] = {}
         malformed = 0
-        for topic, _, message in bag.messages([*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]):
+        wanted = [*bag.of_type(TREE_LOG), *bag.of_type(TEXT)]
+        wanted += [each for each in bag.connections if each.topic in topics.names and each not in wanted]
+        for topic, received, message in bag.messages(wanted):
             if topic in logs:
-                malformed += logs[topic].add(message)
-            elif "_uid" in message.data and message.data not in (found := trees.setdefault(_namespace(topic), {})):
+                malformed += logs[topic].add(received, message)
+                continue
+            if topic in topics.names:
+                topics.add(topic, received, message)
+            text = getattr(message, "data", "")
+            if (
+                isinstance(text, str)
+                and "_uid" in text
+                and text not in (found := trees.setdefault(_namespace(topic), {}))
+            ):
                 try:
-                    found[message.data] = read_tree(message.data)
+                    found[text] = read_tree(text)
                 except NotALog as error:
                     bag.remarks.append(f"{topic}: {error}")
         remarks = bag.remarks
@@ -50,7 +65,28 @@ def read(path: str) -> Iterator[NamedLog]:
     every = [tree for found in trees.values() for tree in found.values()]
     for topic, changes in logs.items():
         own = trees.get(_namespace(topic))
-        yield changes.log(topic if len(logs) > 1 else "", [*own.values()] if own else every, remarks)
+        signals = topics.series(_namespace(topic), changes.clock())
+        yield changes.log(
+            topic if len(logs) > 1 else "", [*own.values()] if own else every, signals, [*remarks, *topics.remarks]
+        )
+        topics.remarks.clear()
+
+
+def samples(path: str, sources: Iterable[SignalSource]) -> tuple[dict[str, Series], list[str]] | None:
+    """The samples in a bag that has no log of a tree, and what is to be said of them; None where it has one.
+
+    Raises:
+        NotALog: it is not a bag, or a topic is not as its source says.
+        OSError: it cannot be read.
+    """
+    with opened(path) as bag:
+        topics = Topics(sources, [each.topic for each in bag.connections], ())
+        if bag.of_type(TREE_LOG) or not topics.names:
+            return None
+        for message in bag.messages([each for each in bag.connections if each.topic in topics.names]):
+            topics.add(*message)
+        found = topics.series("", Clock(array("q"), array("q")))
+        return found, [*bag.remarks, *topics.remarks]
 
 
 def _namespace(topic: str) -> str:
@@ -65,8 +101,10 @@ class _Changes:
         self._nodes: Final = array("I")
         self._statuses: Final = array("B")
         self._index: Final[dict[tuple[int, str], int]] = {}
+        self._received: Final = array("q")  # µs, of each message, as the newest stamp in it
+        self._newest: Final = array("q")
 
-    def add(self, message: Any) -> int:
+    def add(self, received: int, message: Any) -> int:
         """Add the changes in a message; how many of them have no known status."""
         index, times, nodes, statuses = self._index, self._times, self._nodes, self._statuses
         malformed = 0
@@ -80,9 +118,16 @@ class _Changes:
             times.append(stamp.sec * 1_000_000_000 + stamp.nanosec)
             nodes.append(index.setdefault(node, len(index)))
             statuses.append(status)
+        if times:
+            self._received.append(received // 1000)
+            self._newest.append(times[-1] // 1000)
         return malformed
 
-    def log(self, topic: str, trees: list[LoggedTree], remarks: list[str]) -> NamedLog:
+    def clock(self) -> Clock:
+        """The clock of the changes."""
+        return Clock(self._received, self._newest)
+
+    def log(self, topic: str, trees: list[LoggedTree], signals: dict[str, Series], remarks: list[str]) -> NamedLog:
         """What was added, in order."""
         import numpy  # `rosbags` needs it too
 
@@ -97,6 +142,7 @@ class _Changes:
             changed=array("I", nodes.tobytes()),
             statuses=array("B", statuses.tobytes()),
             trees=trees,
+            signals=signals,
             remarks=remarks,
         )
 

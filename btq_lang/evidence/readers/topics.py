@@ -1,0 +1,211 @@
+"""Samples of signals from topics of a bag, as `[evidence.signals]` of the project file names them.
+
+One invariant: a sample is placed on the clock of the tree's log: at its header's stamp if that is on this clock, else
+at its time of reception; where neither can be, it is an error and no guess.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+
+from btq_lang.evidence.model import Series, is_sample
+from btq_lang.evidence.readers.samples import scaled
+from btq_lang.evidence.readers.tree import NotALog
+from btq_lang.near import did_you_mean, near
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from typing import Any, Final
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from btq_lang.evidence.model import SampleValue
+    from btq_lang.project_evidence import SignalSource
+
+    Times = NDArray[int64]
+
+
+class Clock:
+    """The clock of a tree's log, in µs since the epoch, and how a bag's times of reception map to it.
+
+    Made of what each message of the log says: when it was received, and the newest stamp in it.
+    """
+
+    def __init__(self, received: array[int], stamped: array[int]) -> None:
+        from numpy import array as numbers
+        from numpy import median
+
+        self._received: Final[Times] = numbers(received, "int64")
+        self._stamped: Final[Times] = numbers(stamped, "int64")
+        apart = abs(self._received - self._stamped)
+        self.is_of_the_bag: Final = len(apart) == 0 or float(median(apart)) < _FAR_APART
+
+    def of_reception(self, times: Times) -> Times | None:
+        """Times of reception on this clock; None where they cannot be placed on it."""
+        if self.is_of_the_bag:
+            return times
+        from numpy import argsort, interp, unique
+
+        order = argsort(self._received, kind="stable")
+        known, first = unique(self._received[order], return_index=True)
+        there = self._stamped[order][first]
+        if len(known) < 2:
+            return times + (there[0] - known[0]) if len(self._received) == 1 else None
+        rate = (there[-1] - there[0]) / (known[-1] - known[0])
+        placed = interp(times, known, there)
+        placed[times < known[0]] = there[0] + (times[times < known[0]] - known[0]) * rate
+        placed[times > known[-1]] = there[-1] + (times[times > known[-1]] - known[-1]) * rate
+        return placed.astype("int64")
+
+    def overlaps(self, times: Times) -> bool:
+        """Whether times are about when the tree ran."""
+        begin, end = int(self._stamped.min()) - _FAR_APART, int(self._stamped.max()) + _FAR_APART
+        return begin <= int(times.max()) and int(times.min()) <= end
+
+
+class Topics:
+    """The samples on some topics of a bag.
+
+    Attributes:
+        names: of the topics.
+        remarks: what is to be said of the samples.
+    """
+
+    def __init__(self, sources: Iterable[SignalSource], topics: Iterable[str], namespaces: Iterable[str]) -> None:
+        """Find out which topics are meant.
+
+        Args:
+            topics: those of the bag.
+            namespaces: of the robots in it, where a topic is looked for first.
+        """
+        there = set(topics)
+        self._of: Final[dict[str, list[_Field]]] = {}
+        self._sources: Final = [each for each in sources if each.topic]
+        for source in self._sources:
+            for topic in {_inside(namespace, source.topic) for namespace in ("", *namespaces)} & there:
+                self._of.setdefault(topic, []).append(_Field(source, topic))
+        self.names: Final = frozenset(self._of)
+        self.remarks: Final[list[str]] = []
+
+    def add(self, topic: str, received: int, message: Any) -> None:
+        """Add what a message says; received: in ns.
+
+        Raises:
+            NotALog: it has no such field.
+        """
+        for field in self._of[topic]:
+            field.add(received, message)
+
+    def series(self, namespace: str, clock: Clock) -> dict[str, Series]:
+        """The samples of a robot by signal.
+
+        Raises:
+            NotALog: they cannot be placed on the clock.
+        """
+        found: dict[str, Series] = {}
+        for source in self._sources:
+            for topic in (_inside(namespace, source.topic), source.topic):
+                fields = [each for each in self._of.get(topic, ()) if each.source is source]
+                if fields:
+                    found[source.signal] = fields[0].series(clock, self.remarks)
+                    break
+            else:
+                self.remarks.append(f"no topic {source.topic}, where the samples of `{source.signal}` should be")
+        return found
+
+
+def _inside(namespace: str, topic: str) -> str:
+    return f"{namespace}/{topic.removeprefix('/')}"
+
+
+class _Field:
+    """A field of the messages on a topic, with what they say in it."""
+
+    def __init__(self, source: SignalSource, topic: str) -> None:
+        self.source: Final = source
+        self._topic: Final = topic
+        self._path: Final = [int(index) if index else name for index, name in _STEP.findall(source.field)]
+        self._received: Final = array("q")
+        self._stamped: Final = array("q")  # 0 where there is no header
+        self._values: Final[list[SampleValue]] = []
+
+    def add(self, received: int, message: Any) -> None:
+        value = message
+        for step in self._path:
+            if isinstance(step, int):
+                if not hasattr(value, "__len__"):
+                    raise NotALog(self._said(f"`{self.source.field}` needs a list"))
+                if step >= len(value):
+                    return
+                value = value[step]
+            else:
+                value = self._attribute(value, step)
+        value = value.item() if hasattr(value, "item") and getattr(value, "ndim", 0) == 0 else value
+        if not isinstance(value, bool | int | float | str):
+            raise NotALog(self._said(f"`{self.source.field}` is not a number, a bool or a text"))
+        if not is_sample(value):
+            return
+        stamp = getattr(getattr(message, "header", None), "stamp", None)
+        self._received.append(received // 1000)
+        self._stamped.append((stamp.sec * 1_000_000_000 + stamp.nanosec) // 1000 if stamp is not None else 0)
+        self._values.append(value)
+
+    def series(self, clock: Clock, remarks: list[str]) -> Series:
+        """The samples in the order of their times."""
+        from numpy import argsort
+
+        found = Series(self.source.unit)
+        if self._values:
+            times = self._placed(clock, remarks)
+            for index in argsort(times, kind="stable").tolist():
+                found.add(int(times[index]), scaled(self._values[index], self.source))
+        return found
+
+    def _placed(self, clock: Clock, remarks: list[str]) -> Times:
+        from numpy import array as numbers
+        from numpy import median
+
+        received: Times = numbers(self._received, "int64")
+        stamped: Times = numbers(self._stamped, "int64")
+        placed = None if len(received) > 1 and received.min() == received.max() else clock.of_reception(received)
+        if 0 in self._stamped:  # there is no header
+            if placed is None:
+                raise NotALog(self._said("has no stamps on the clock of the tree's log, and no times of reception"))
+            if not clock.is_of_the_bag:
+                remarks.append(self._said(f"the bag is {_OTHER_CLOCK}"))
+            return placed
+        if placed is None:
+            if not clock.overlaps(stamped):
+                raise NotALog(
+                    self._said(
+                        "its stamps are on another clock than the tree's log, and there are no times of"
+                        " reception to join them by"
+                    )
+                )
+            return stamped
+        lasted = stamped[-1] - stamped[0]
+        drift = abs((placed[-1] - placed[0]) - lasted)
+        if float(median(abs(placed - stamped))) < _FAR_APART and drift <= max(_DRIFT, abs(lasted) * _DRIFT_RATE):
+            return stamped
+        remarks.append(self._said(f"its stamps are {_OTHER_CLOCK}"))
+        return placed
+
+    def _attribute(self, value: Any, name: str) -> Any:
+        fields = [each for each in getattr(value, "__dataclass_fields__", ()) if each != "__msgtype__"]
+        if name not in fields:
+            names = did_you_mean(near(name, fields, 1)) or (f"; it has {', '.join(fields)}" if fields else "")
+            raise NotALog(self._said(f"no field `{name}` for `{self.source.signal}`{names}"))
+        return getattr(value, name)
+
+    def _said(self, what: str) -> str:
+        return f"{self._topic}: {what}"
+
+
+_STEP: Final = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
+_OTHER_CLOCK: Final = "on another clock than the tree's log, so samples count at their times of reception"
+_FAR_APART: Final = 60_000_000  # µs: no message takes that long
+_DRIFT: Final = 1_000_000  # µs
+_DRIFT_RATE: Final = 0.02

@@ -1,0 +1,137 @@
+"""The table `[evidence]` of a project file: which logs there are, and where the samples of signals come from.
+
+    [evidence]
+    logs = ["logs/**/*.btlog", "bags/*"]
+    store = "evidence"
+
+    [evidence.signals]
+    battery = { topic = "/battery_state", field = "percentage", scale = 100, unit = "%" }
+    energy  = { file = "power.csv", time = "t", column = "wh", unit = "Wh" }
+
+One invariant: what is wrong is left out and told, and the rest is kept.  Not known here: missions, files and topics.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from btq_lang.near import did_you_mean, near
+from btq_lang.record import Record
+from btq_lang.units import Unit, nearest_units, parse_unit
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Any, Final, TypeAlias
+
+    Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # what is wrong, and the keys below `evidence` that lead to it
+
+
+class SignalSource(Record):
+    """Where the samples of a signal come from: a field of a topic, or a column of a file.
+
+    Attributes:
+        signal: its name.
+        file: relative to the project file.
+        time: the column with the time in seconds since the epoch; empty: the first one.
+        scale, offset: the value is what is read, times the scale, plus the offset.
+        unit: of the value; None: the signal's own.
+    """
+
+    signal: str
+    topic: str = ""
+    field: str = ""
+    file: str = ""
+    time: str = ""
+    column: str = ""
+    scale: float = 1.0
+    offset: float = 0.0
+    unit: Unit | None = None
+
+
+class Evidence(Record):
+    """What a project says about logs.
+
+    Attributes:
+        logs: patterns of paths, relative to the project file.
+        store: the folder of verdicts that are kept; None where there is none.
+        signals: where samples come from, at most one source for each signal.
+    """
+
+    logs: tuple[str, ...] = ()
+    store: str | None = None
+    signals: tuple[SignalSource, ...] = ()
+
+
+def read_evidence(table: object) -> tuple[Evidence, list[Complaint]]:
+    """What a table says, and what is wrong with it."""
+    if not isinstance(table, dict):
+        return Evidence(), [("`evidence` must be a table", ())]
+    complaints: list[Complaint] = [
+        (f"unknown key `evidence.{key}`{did_you_mean(near(key, _KEYS, 1))}", (key,))
+        for key in table
+        if key not in _KEYS
+    ]
+    logs, store, signals = (table.get(key) for key in _KEYS)
+    if logs is not None and not (isinstance(logs, list) and all(isinstance(each, str) and each for each in logs)):
+        complaints.append(("`evidence.logs` must be a list of paths", ("logs",)))
+        logs = None
+    if store is not None and not (isinstance(store, str) and store):
+        complaints.append(("`evidence.store` must be the path of a folder", ("store",)))
+        store = None
+    if signals is not None and not isinstance(signals, dict):
+        complaints.append(("`evidence.signals` must be a table of signals", ("signals",)))
+        signals = None
+    sources = []
+    for name, source in (signals or {}).items():
+        wrong = [*_wrong(name, source)]
+        complaints += [(message, ("signals", name, *below)) for message, below in wrong]
+        if not wrong:
+            unit = source.get("unit")
+            sources.append(SignalSource(name, **{**source, "unit": None if unit is None else parse_unit(unit)}))
+    return Evidence(tuple(logs or ()), store, tuple(sources)), complaints
+
+
+def _wrong(name: str, source: Any) -> Iterator[Complaint]:
+    """What is wrong with the source of a signal, and below which of its keys."""
+    key = f"evidence.signals.{name}"
+    if not isinstance(source, dict):
+        yield f'`{key}` must be a table such as {{ topic = "/battery_state", field = "percentage" }}', ()
+        return
+    for each in source:
+        if each not in _OF_A_SOURCE:
+            yield f"unknown key `{key}.{each}`{did_you_mean(near(each, _OF_A_SOURCE, 1))}", (each,)
+    for each in (*_TEXTS, "unit"):
+        if each in source and not (isinstance(source[each], str) and source[each]):
+            yield f"`{key}.{each}` must be a string", (each,)
+    for each in _NUMBERS:
+        number = source.get(each, 0.0)
+        if isinstance(number, bool) or not isinstance(number, int | float) or not _is_finite(number):
+            yield f"`{key}.{each}` must be a number", (each,)
+    unit = source.get("unit")
+    if isinstance(unit, str) and unit and parse_unit(unit) is None:
+        yield f"unknown unit `{unit}`{did_you_mean(nearest_units(unit))}", ("unit",)
+    if ("topic" in source) == ("file" in source):
+        yield f"`{key}` must have either a `topic` and its `field`, or a `file` and its `column`", ()
+        return
+    kind, wanted, others = _OF_A_TOPIC if "topic" in source else _OF_A_FILE
+    if wanted not in source:
+        yield f"`{key}` must have a `{wanted}` beside its `{kind}`", ()
+    for each in others:
+        if each in source:
+            yield f"`{key}.{each}` does not go with a `{kind}`", (each,)
+
+
+def _is_finite(number: float) -> bool:
+    try:
+        return isfinite(number)
+    except OverflowError:  # a whole number that no float holds
+        return False
+
+
+_KEYS: Final = ("logs", "store", "signals")
+_TEXTS: Final = ("topic", "field", "file", "time", "column")
+_NUMBERS: Final = ("scale", "offset")
+_OF_A_SOURCE: Final = (*_TEXTS, *_NUMBERS, "unit")
+_OF_A_TOPIC: Final = ("topic", "field", ("file", "time", "column"))
+_OF_A_FILE: Final = ("file", "column", ("topic", "field"))
