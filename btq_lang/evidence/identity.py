@@ -118,7 +118,7 @@ def join(missions: Sequence[Candidate], tree: LoggedTree) -> Joined | None:
 def difference(missions: Sequence[Candidate], tree: LoggedTree) -> str:
     """What the mission that is nearest to a log's tree lacks of it; empty where no mission can be built."""
     best = _nearest(missions, tree)
-    if best is None or not tree.nodes:
+    if best is None or not any(node.kind for node in tree.nodes.values()):  # the log has no tree
         return ""
     joined = frozenset(best.uids.values())
     lacking = next((node.path for node in tree.nodes.values() if node.uid not in joined), "")

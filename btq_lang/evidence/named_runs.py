@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 OTHER: Final = "of another mission"
-SEVERAL: Final = "of one of several missions that fit"
+SEVERAL: Final = "of one of several missions"
 
 
 def joined_sessions(
@@ -135,7 +135,12 @@ class _Trees:
             builds.sort(key=lambda each: -len(each[0]))  # a short run may fit builds that the others do not
             for run in left:
                 fitting[run] += [joined for runs, joined in builds if run in runs][:1]
-        return found | {run: each[0] if len(each) == 1 else SEVERAL if each else OTHER for run, each in fitting.items()}
+        others = [run for run, each in fitting.items() if not each]
+        for run, each in fitting.items():
+            # One that names only nodes that a run of another mission names may be of that mission too.
+            is_sure = len(each) == 1 and not any(run <= other for other in others)
+            found[run] = each[0] if is_sure else SEVERAL if each else OTHER
+        return found
 
     def uids(self, tree: LoggedTree) -> dict[int, int]:
         """The uids of the log's nodes in a tree, by their index."""

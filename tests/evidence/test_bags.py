@@ -176,7 +176,23 @@ def test_a_run_that_two_missions_have_is_not_judged(small: Verify) -> None:
     write_bag(small.folder / "bag", tree_log(rows("0 1R 2R 20 2F 1F 2I 1I"), NAMES))
     small.text("bag")
     assert small.code == 2
-    assert small.errors.splitlines()[0] == "btq verify: bag: 1 run of one of several missions that fit, not judged"
+    assert small.errors.splitlines()[0] == "btq verify: bag: 1 run of one of several missions, not judged"
+
+
+def test_a_short_run_beside_runs_of_an_unknown_mission_is_not_judged(small: Verify) -> None:
+    """Its nodes are in the mission, and in the unknown one as well."""
+    short = "50 1R 2R 70 2F 1F 2I 1I"
+    write_bag(small.folder / "bag", tree_log(rows(f"0 1R 2R 8 2S 3S 1S 2I 3I 1I {short}"), OTHER_NAMES))
+    small.text("bag")
+    assert (small.code, small.errors.splitlines()[:2]) == (
+        2,
+        [
+            "btq verify: bag: 1 run of another mission, not judged",
+            "btq verify: bag: 1 run of one of several missions, not judged",
+        ],
+    )
+    write_bag(small.folder / "alone", tree_log(rows(short), OTHER_NAMES))
+    assert clause(small.json("alone")) == (1, [1])
 
 
 def test_the_tree_may_be_in_the_bag(small: Verify) -> None:
