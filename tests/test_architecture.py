@@ -94,7 +94,8 @@ READS_LOGS = PACKAGE / "evidence" / "readers"
 READS_SIBLINGS = {
     "checks": frozenset({"btcpp"}),  # whether a build enforces what it is asked to
     "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
-    "trace": frozenset({"render"}),  # how wide a text is on a terminal, and its colours
+    # how wide a text is on a terminal, and its colours; a page shows verdicts
+    "trace": frozenset({"render", "evidence"}),
     "evidence": frozenset({"btcpp", "render"}),  # which trees a build makes; the same of a text as for the trace
 }
 PROTOCOL = frozenset({"pygls", "lsprotocol"})

@@ -24,6 +24,10 @@ from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.ways import declared_ways
 from btq_lang.workspace import Workspace
 
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from btq_lang.trace.collect import SaidOf
+
 
 def run(options: Namespace) -> int:
     """Write the overview; of missions with errors what could be understood."""
@@ -53,12 +57,15 @@ def _run(options: Namespace) -> int:
     return int(errors > 0)
 
 
-def overview_of(parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False) -> tuple[Overview, int]:
+def overview_of(
+    parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, said_of: SaidOf | None = None
+) -> tuple[Overview, int]:
     """The overview of missions, and how many errors they have; where there are any something may be missing.
 
     Args:
         parts: workspaces, each with the paths of it that are asked for.
         bundled: they are built with all that they include.
+        said_of: what the boxes of nodes show beside, as `collect` takes it.
     """
     errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
     broken = frozenset(path for path, number in errors.items() if number)
@@ -69,7 +76,7 @@ def overview_of(parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool 
         is_built = is_mission(workspace, path)
         return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
 
-    return collect(parts, ways, shown), sum(errors.values())
+    return collect(parts, ways, shown, said_of), sum(errors.values())
 
 
 def built_ways(

@@ -6,9 +6,10 @@ from btq_lang.record import Record
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from typing import Final
 
+    from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.verdicts import Report
 
 
@@ -16,10 +17,12 @@ class Judged(Record):
     """What is to be written.
 
     Attributes:
+        missions: that were given; those of the report are among them.
         verbose, colour: for `table`.
     """
 
     report: Report
+    missions: Sequence[Candidate]
     verbose: bool = False
     colour: bool = False
 
@@ -54,11 +57,24 @@ def _markdown(judged: Judged) -> str:
     return markdown(judged.report)
 
 
+def _html(judged: Judged) -> str:
+    from btq_lang.commands.tracing import overview_of
+    from btq_lang.trace.page import page
+    from btq_lang.trace.verdicts import outcomes
+
+    found = judged.report.missions
+    files = {mission.file for mission in found}
+    parts = [(each.workspace, [each.path]) for each in judged.missions if each.path in files]
+    overview, _ = overview_of(parts, said_of=outcomes(found))
+    return page(overview, found)
+
+
 WRITERS: Final[dict[str, Callable[[Judged], str]]] = {
     "table": _table,
     "json": _json,
     "csv": _csv,
     "junit": _junit,
     "markdown": _markdown,
+    "html": _html,
 }
 FORMATS: Final = tuple(WRITERS)

@@ -46,7 +46,8 @@ def run(options: Namespace) -> int:
     logs, missions, samples = _given(options, problems)
     sources, of_files = signal_sources(missions, problems)
     if not problems:
-        report = verify(logs, missions, samples, shown, sources, of_files)
+        form = form_of(options, FORMATS)
+        report = verify(logs, missions, samples, shown, sources, of_files, with_timelines=form == "html")
         problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
         for note in _ignored(options.signals, samples, missions):
             print(f"btq verify: {note}", file=sys.stderr)
@@ -55,7 +56,7 @@ def run(options: Namespace) -> int:
             print(f"btq verify: {each.file}: {runs} {each.of}, not judged", file=sys.stderr)
         to_terminal = options.output is None and sys.stdout.isatty()
         colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
-        text = WRITERS[form_of(options, FORMATS)](Judged(report, options.verbose, colour))
+        text = WRITERS[form](Judged(report, missions, options.verbose, colour))
         if code := write_output("verify", options.output, text):
             return code
     for problem in problems:

@@ -16,6 +16,7 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
     tally.py, recent.py, odds.py   what was counted, all of it or lately, and how sure it makes one
     explain.py     what led to a violation
+    distribution.py, timeline.py   values and a run as the page draws them
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data
     sentences.py   what a clause came to, and what to look at
@@ -41,6 +42,8 @@ def verify(
     shown: Callable[[str], str],
     sources: Sequence[SignalSource] = (),
     of_files: Mapping[str, Series] | None = None,
+    *,
+    with_timelines: bool = False,
 ) -> Report:
     """The verdicts of missions by what logs say.
 
@@ -50,6 +53,7 @@ def verify(
         shown: a path as people read it.
         sources: where samples come from that count after those; topics are read from the bags among the logs.
         of_files: the samples of the sources that are files.
+        with_timelines: with the run of the worst violation of each clause.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
     from btq_lang.evidence.identity import difference
@@ -59,7 +63,7 @@ def verify(
     from btq_lang.evidence.signals import by_signal
     from btq_lang.evidence.verdicts import Foreign, Report
 
-    evaluations = {mission.path: MissionEvaluation(mission) for mission in missions}
+    evaluations = {mission.path: MissionEvaluation(mission, with_timelines) for mission in missions}
     foreign: dict[tuple[str, str], int] = {}
     differences: dict[tuple[str, str], str] = {}
     problems: list[str] = []

@@ -17,7 +17,7 @@ from btq_lang.evidence.verbs import Judgement, judges_of
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNKNOWN, VIOLATED, ClauseVerdict
 from btq_lang.evidence.wording import duration
 from btq_lang.record import Record, replace
-from btq_lang.requirements.model import Mission, Running, Span, Target, Total
+from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -218,6 +218,10 @@ class JudgedClause:
             return f"`{self.claim.verb}` cannot be judged of {of}"
         return ""
 
+    def is_worst_in(self, run: Run) -> bool:
+        """Whether a run has the worst violation so far; of a window nobody knows before all is read."""
+        return isinstance(self._tally, Tally) and self._tally.is_worst_in(run)
+
     def verdict(self) -> ClauseVerdict:
         """What it has come to."""
         tally = self._tally.result()
@@ -233,10 +237,11 @@ class JudgedClause:
             why = "the log ends before it does" if tally.cut_off else "it did not start in any run"
             if not tally.cut_off and self._has_run:
                 why = "nothing that it is about happened in any run"
+        goal = self.requirement.goal
         said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
         said += [self.requirement.odds.text] if self.requirement.odds is not None else []
         said += [self.requirement.window.text] if self.requirement.window is not None else []
-        said += [f"goal {self.requirement.goal.text}"] if self.requirement.goal is not None else []
+        said += [f"goal {goal.text}"] if goal is not None else []
         return ClauseVerdict(
             text=" ".join(said),
             path=", ".join(self._paths),
@@ -252,6 +257,7 @@ class JudgedClause:
             more=tally.more(),
             violations=tuple(tally.violations),
             why=why,
+            histogram=tally.distribution.histogram(goal if isinstance(goal, Value) else None),
         )
 
 

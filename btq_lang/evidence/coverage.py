@@ -8,9 +8,11 @@ from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Final
 
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
+    from btq_lang.requirements.model import SourceNode
 
 
 class Coverage:
@@ -29,12 +31,16 @@ class Coverage:
         self._repeated: dict[int, list[tuple[_Repeated, int]]] = {}  # what a start of them counts for
         self._runs = 1
 
-    def expect(self, tree: LoggedTree) -> None:
-        """The nodes of a log may run."""
-        self._now = {
-            uid: self._nodes.setdefault((uid, node.path), _Node(node.path, node.kind, tree.last[uid] == uid))
-            for uid, node in tree.nodes.items()
-        }
+    def expect(self, tree: LoggedTree, written: Mapping[int, SourceNode]) -> None:
+        """The nodes of a log may run.
+
+        Args:
+            written: as what they are written, by uid.
+        """
+        self._now = {}
+        for uid, node in tree.nodes.items():
+            new = _Node(node.path, node.kind, tree.last[uid] == uid, written.get(uid))
+            self._now[uid] = self._nodes.setdefault((uid, node.path), new)
         self._repeated = {}
         for uid, node in tree.nodes.items():
             if node.kind in _RETRYING and tree.last[uid] > uid:
@@ -75,12 +81,13 @@ class Coverage:
 class _Node:
     """What was counted of a node."""
 
-    def __init__(self, path: str, kind: str, is_leaf: bool) -> None:
+    def __init__(self, path: str, kind: str, is_leaf: bool, written: SourceNode | None) -> None:
         self.began = 0
         self.ticks: Final = array("q")
         self._path: Final = path
         self._kind: Final = kind
         self._is_leaf: Final = is_leaf
+        self._written: Final = written
         self._outcomes: Final[dict[Outcome, int]] = {"S": 0, "F": 0, "H": 0, "O": 0}
         self._times: Final = array("q")  # of those that succeeded or failed, in µs
         self._runs = self._run = 0
@@ -109,6 +116,7 @@ class _Node:
             p95=_percentile(times, 95),
             tick_p95=_percentile(ticks, 95),
             tick_worst=_percentile(ticks, 100),
+            written=self._written,
         )
 
 

@@ -17,7 +17,8 @@ from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
 from btq_lang.evidence.ticks import timed
-from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
+from btq_lang.evidence.timeline import Timelines
+from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
 from btq_lang.record import replace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -33,7 +34,11 @@ if TYPE_CHECKING:
 class MissionEvaluation:
     """A mission's requirements, while logs of it are read."""
 
-    def __init__(self, mission: Candidate) -> None:
+    def __init__(self, mission: Candidate, with_timelines: bool = False) -> None:
+        """
+        Args:
+            with_timelines: keep the runs that broke clauses worst.
+        """
         self.mission: Final = mission
         found = mission.requirements
         clauses = [
@@ -53,6 +58,7 @@ class MissionEvaluation:
         self._sources: Final[list[Source]] = []
         self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(_OUTCOMES, 0)
         self._coverage: Final = Coverage()
+        self._timelines: Final = Timelines() if with_timelines else None
 
     def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
         """Judge the runs of a session; how many there are.
@@ -73,7 +79,7 @@ class MissionEvaluation:
         explainer = Explainer(tree, at, signals)
         for clause in self._clauses:
             clause.explain = partial(explainer.chain, clause.claim)
-        self._coverage.expect(tree)
+        self._coverage.expect(tree, joined.written())
         begin: int | None = None
         end = 0
         runs = 0
@@ -81,6 +87,8 @@ class MissionEvaluation:
             self._coverage.count(activation)
             origin = explainer.see(activation)
             history.add(activation)
+            if self._timelines is not None:
+                self._timelines.see(activation)
             if activation.uid in guards.concerned:  # few of the nodes are
                 for refusal in guards.refused(activation):
                     for clause in at[refusal.uid]:
@@ -98,6 +106,8 @@ class MissionEvaluation:
                 for clause in self._clauses:
                     clause.end_run(run, activation)
                 history.clear()
+                if self._timelines is not None:
+                    self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
                 signals.forget_before(end)
         self._add(
             Source(
@@ -119,7 +129,7 @@ class MissionEvaluation:
         found = self.mission.requirements
         by_requirement: dict[str, list[ClauseVerdict]] = {name: [] for name in found.all}
         for clause in self._clauses:
-            by_requirement[clause.requirement.name].append(clause.verdict())
+            by_requirement[clause.requirement.name].append(self._verdict(clause))
         return MissionVerdicts(
             name=self.mission.name,
             file=self.mission.path,
@@ -140,6 +150,12 @@ class MissionEvaluation:
             recoveries=self._coverage.recoveries.summary(),
             by_people=tuple(each.name for each in found.all.values() if each.claims and _is_by_people(each)),
         )
+
+    def _verdict(self, clause: JudgedClause) -> ClauseVerdict:
+        verdict = clause.verdict()
+        if self._timelines is None or verdict.verdict != VIOLATED:
+            return verdict
+        return replace(verdict, timeline=self._timelines.of(clause))
 
     def _add(self, source: Source) -> None:
         """Add what was read of a session to what was read of its file."""

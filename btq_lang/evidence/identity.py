@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements import Requirements
-    from btq_lang.requirements.model import Target
+    from btq_lang.requirements.model import SourceNode, Target
     from btq_lang.workspace import Workspace
 
 
@@ -75,6 +75,15 @@ class Joined(Record):
         """The paths of the instances of a written node, each with its uid in the log; None where it is not there."""
         uids = [(each, self.uids.get(_number(each))) for each in self.build.running.instances(target)]
         return [(self.tree.nodes[uid].path if uid is not None else each.path, uid) for each, uid in uids]
+
+    def written(self) -> dict[int, SourceNode]:
+        """As what the nodes of the log are written, by uid."""
+        found: dict[int, SourceNode] = {}
+        for instance, node in self.build.running.all:
+            uid = self.uids.get(_number(instance))
+            if node is not None and uid is not None:
+                found[uid] = node
+        return found
 
     def enforcing(self) -> dict[int, str]:
         """The nodes of the log that a build has put around others, with the requirement of each."""

@@ -5,6 +5,7 @@ One invariant: what was counted is enough for the verdict, so no judgement is ke
 
 from __future__ import annotations
 
+from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
 from btq_lang.evidence.wording import quantity
@@ -33,6 +34,7 @@ class Tally:
 
     Attributes:
         counted, violated, unknown, cut_off, why, violations, worst: as of a `ClauseVerdict`.
+        distribution: of what was measured.
     """
 
     def __init__(self, odds: Odds | None, confidence: float | None, most: int | None = None) -> None:
@@ -47,6 +49,7 @@ class Tally:
         self.why = ""
         self.violations: Final[list[Violation]] = []
         self.worst: Worst | None = None
+        self.distribution: Final = Distribution()
         self.counts_runs: Final = odds is not None and odds.experiments == "runs"
         self._odds: Final = odds
         self._confidence: Final = confidence
@@ -71,6 +74,8 @@ class Tally:
         else:
             self._broken.append((judgement, path, chain))
         measure = judgement.measure
+        if measure is not None:
+            self.distribution.add(measure)
         if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
             self._worst_now = measure
 
@@ -95,6 +100,13 @@ class Tally:
         self._broken.clear()
         self._kept = self._unclear = 0
         self._worst_now = None
+
+    def is_worst_in(self, run: Run) -> bool:
+        """Whether a run that has been counted has what is shown as the worst violation: the one furthest beyond the
+        bound, else the first."""
+        if not self.violations or self.violations[-1].run != run.number:
+            return False
+        return self.violations[0].run == run.number or (self.worst is not None and self.worst.run == run.number)
 
     def result(self) -> Tally:
         """All that was counted."""

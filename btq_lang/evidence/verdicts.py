@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Final, Literal, TypeAlias
 
+    from btq_lang.evidence.model import Outcome
+    from btq_lang.requirements.model import SourceNode
+    from btq_lang.units import Unit
+
     Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
 
 VIOLATED: Final = "violated"
@@ -75,6 +79,57 @@ class Worst(Record):
     run: int
 
 
+class Histogram(Record):
+    """How the values that were measured are distributed, in SI.
+
+    Attributes:
+        low, step: where the first step begins, and how large each is.
+        counts: how many values are in each.
+        bound, goal: beside which they are seen; goal: None for none.
+        unit: of the bound, to say values in.
+    """
+
+    low: float
+    step: float
+    counts: tuple[int, ...]
+    bound: float
+    bound_text: str
+    goal: float | None
+    goal_text: str
+    unit: Unit | None
+
+
+class Bar(Record):
+    """An activation in a run.
+
+    Attributes:
+        depth: of its node in the tree.
+        begin, end: in seconds since the run's start.
+    """
+
+    path: str
+    depth: int
+    begin: float
+    end: float
+    outcome: Outcome
+
+
+class Timeline(Record):
+    """A run.
+
+    Attributes:
+        start: in µs since the epoch.
+        bars: in the order of the nodes.
+        left_out: how many activations are not among them.
+    """
+
+    run: int
+    source: str
+    start: int
+    bars: tuple[Bar, ...]
+    left_out: int
+
+
 class ClauseVerdict(Record):
     """A clause at a written node.
 
@@ -90,6 +145,8 @@ class ClauseVerdict(Record):
         more: how many more runs (or activations) without a violation decide; None: no number is known to.
         violations: the first thousand of them.
         why: why the verdict is unknown; else empty.
+        histogram: of what was measured; None where nothing was.
+        timeline: the run of the worst violation; None without any.
     """
 
     text: str
@@ -106,6 +163,8 @@ class ClauseVerdict(Record):
     more: int | None
     violations: tuple[Violation, ...]
     why: str
+    histogram: Histogram | None
+    timeline: Timeline | None = None
 
 
 class RequirementVerdict(Record):
@@ -149,6 +208,7 @@ class NodeSummary(Record):
         failures_began: in how many failed runs the failure began at it.
         p50, p95: what half, and 95 of 100, of its activations to a result do not exceed, in seconds; None without any.
         tick_p95, tick_worst: how long its `tick()` takes, likewise, where the log shows it.
+        written: as what; None of a node that the mission does not have.
     """
 
     path: str
@@ -164,6 +224,7 @@ class NodeSummary(Record):
     p95: float | None
     tick_p95: float | None
     tick_worst: float | None
+    written: SourceNode | None
 
 
 class Repeats(Record):

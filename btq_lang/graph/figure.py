@@ -51,6 +51,7 @@ class Box(Record):
         link: where a page leads from it.
         name: the names on the way to it, where subtrees can be folded: the same after an edit elsewhere.
         hidden: how many nodes are folded away below it.
+        state: a class of the drawing; empty: nothing is known.
     """
 
     key: str
@@ -63,6 +64,7 @@ class Box(Record):
     link: str = ""
     name: str = ""
     hidden: int = 0
+    state: str = ""
 
 
 class Figure(Record):

@@ -122,7 +122,8 @@ def _box(placed: PlacedBox, above: str) -> Iterator[str]:
     told = f' data-notes="{escape(names)}"' if names else ""
     if box.name:  # what a page needs to fold it
         told += f' data-name="{escape(box.name)}" data-parent="{escape(above)}" data-hidden="{box.hidden}"'
-    yield f'<g class="box {box.outline}" id="{escape(box.key)}"{told}>'
+    state = f" {box.state}" if box.state else ""
+    yield f'<g class="box {box.outline}{state}" id="{escape(box.key)}"{told}>'
     yield f"<title>{escape(box.text or box.title)}</title>"
     yield from _opened(box.link)
     yield _outline(box.outline, at)

@@ -6,6 +6,7 @@ One invariant: everything is said once, in a row with a key, and the same missio
     collect.py     a workspace as an overview
     ways.py        how clauses are held
     meanings.py    what quality names mean
+    verdicts.py    what the page shows of verdicts
     table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers
 """
 

@@ -11,9 +11,10 @@ from functools import cache
 
 from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics import Place
-from btq_lang.graph.figure import Note
+from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
 from btq_lang.placeholders import is_placeholder
+from btq_lang.record import replace
 from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
 from btq_lang.syntax import QualityDecl
@@ -35,17 +36,20 @@ from btq_lang.workspace import Workspace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
+    from typing import Final, TypeAlias
 
     from btq_lang.catalog.qualities import Edition
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways
+
+    SaidOf: TypeAlias = Callable[[SourceNode], tuple[tuple[str, ...], str]]
 
 
 def collect(
     parts: Sequence[tuple[Workspace, Sequence[str]]],
     ways: Ways = declared_ways,
     shown: Callable[[str], str] = str,
+    said_of: SaidOf | None = None,
 ) -> Overview:
     """The overview of missions.
 
@@ -54,8 +58,9 @@ def collect(
             part of that mission.
         ways: how clauses are held.
         shown: a path as people read it.
+        said_of: lines that the box of a node shows below its own, and its class in the drawing.
     """
-    collector = _Collector(ways, shown)
+    collector = _Collector(ways, shown, said_of)
     files: list[str] = []
     for workspace, given in parts:
         included = {path for each in given for path in workspace.closure(each) if path != each}
@@ -68,8 +73,9 @@ def collect(
 class _Collector:
     """What was seen so far: rows by what they stand for."""
 
-    def __init__(self, ways: Ways, shown: Callable[[str], str]) -> None:
+    def __init__(self, ways: Ways, shown: Callable[[str], str], said_of: SaidOf | None) -> None:
         self._ways = ways
+        self._said_of = said_of
         self._shown = shown
         self._edition: Edition | None = None
         self._nodes: dict[int, _Node] = {}  # by `id` of the syntax, which all missions share
@@ -203,7 +209,14 @@ class _Collector:
             rows = [self._nodes[id(source.node)] for source in group]
             is_bare = all(row.carries != "own" for row in rows)
             drawn = figure(group, keys, notes, links)
+            if self._said_of is not None:
+                drawn = replace(drawn, boxes=tuple(map(_said_in, drawn.boxes, map(self._said_of, group))))
             yield TreeRow(group[0].tree or "", rows[0].tree, tuple(row.key for row in rows), is_bare, drawn)
+
+
+def _said_in(box: Box, said: tuple[tuple[str, ...], str]) -> Box:
+    lines, state = said
+    return replace(box, lines=(*box.lines, *lines), text="; ".join((box.text, *lines)), state=state)
 
 
 # ---- rows while they are made ----

@@ -15,32 +15,42 @@ from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
 from btq_lang.trace.overview import At, NodeRow, Overview, RequirementRow, TreeRow
 from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
+from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, counted, shown_quality, summary, told
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from typing import Final
 
-
-def page(overview: Overview) -> str:
-    """The whole page."""
-    return "\n".join(_lines(overview)) + "\n"
+    from btq_lang.evidence.verdicts import MissionVerdicts
 
 
-def _lines(overview: Overview) -> Iterator[str]:
-    title = f"Requirements and qualities: {_title(overview)}"
+def page(overview: Overview, missions: Sequence[MissionVerdicts] = ()) -> str:
+    """The whole page.
+
+    Args:
+        missions: with the verdicts that are shown.
+    """
+    return "\n".join(_lines(overview, missions)) + "\n"
+
+
+def _lines(overview: Overview, missions: Sequence[MissionVerdicts]) -> Iterator[str]:
+    title = f"{'Verdicts' if missions else 'Requirements and qualities'}: {_title(overview)}"
     yield "<!DOCTYPE html>"
     yield '<html lang="en">'
     yield '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     yield f"<title>{escape(title)}</title>"
-    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}</style>"
+    yield f"<style>\n{STYLE}{colours(False)}{PAGE_STYLE}{VERDICT_STYLE if missions else ''}</style>"
     yield f'<style media="screen and (prefers-color-scheme: dark)">\n{colours(True)}</style></head>'
     yield "<body>"
     yield '<a class="skip" href="#requirements">To the requirements</a>'
     yield f"<header><h1>{escape(title)}</h1><p>{escape(summary(overview))}</p>"
-    yield from _navigation(overview)
+    yield from _navigation(overview, bool(missions))
     yield "</header>"
-    yield '<main><div class="beside">'
+    yield "<main>"
+    if missions:
+        yield from verdicts(missions, {each.name: each.key for each in overview.requirements})
+    yield '<div class="beside">'
     yield from _tables(overview)
     yield from _trees(overview)
     yield "</div></main>"
@@ -54,8 +64,9 @@ def _title(overview: Overview) -> str:
     return ", ".join(files) if len(files) <= _FILES else f"{files[0]} and {counted(len(files) - 1, 'other file')}"
 
 
-def _navigation(overview: Overview) -> Iterator[str]:
+def _navigation(overview: Overview, has_verdicts: bool) -> Iterator[str]:
     sections = [("requirements", "Requirements"), ("concerns", "Qualities"), ("gaps", "Gaps"), ("totals", "Totals")]
+    sections = [("verdicts", "Verdicts"), *sections] if has_verdicts else sections
     links = "".join(f'<li><a href="#{key}">{name}</a></li>' for key, name in (*sections, ("trees", "Trees")))
     yield f'<nav aria-label="Sections"><ul>{links}</ul></nav>'
     yield '<form class="filter" hidden role="search" aria-label="Filter">'

@@ -60,7 +60,8 @@ small { color: var(--soft); }
 .way.none, .missing { color: var(--missing); }
 .numbers td { text-align: right; font-variant-numeric: tabular-nums; }
 .numbers thead th:not(:first-child) { text-align: right; }
-@media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; } }
+@media (max-width: 700px) { .numbers th, .numbers td { padding: .3rem .2rem; font-size: .75rem; hyphens: auto; }
+  .numbers thead th { overflow-wrap: anywhere; } }
 .empty { color: var(--soft); }
 .legend { margin: .25rem 0; font-size: .85rem; }
 .key { padding: 0 .5rem; margin-right: .35rem; border: 1.5px dashed #a8650f; border-radius: 3px; }

@@ -35,7 +35,7 @@ def problems(path: Path) -> tuple[str, ...]:
     """What cannot be read of a log; the rest is judged, and written in every form."""
     report = verify_logs([str(path)], [MISSION], {}, lambda each: Path(each).name)
     for write in WRITERS.values():
-        write(Judged(report, verbose=True))
+        write(Judged(report, [MISSION], verbose=True))
     return report.problems
 
 

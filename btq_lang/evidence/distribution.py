@@ -1,0 +1,62 @@
+"""How measured values are distributed, counted in equal steps.
+
+One invariant: whatever comes, few steps are kept: they double when they get too many, and the bound is the edge of one.
+"""
+
+from __future__ import annotations
+
+from math import floor
+
+from btq_lang.evidence.verdicts import Histogram
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Final
+
+    from btq_lang.evidence.verbs import Measure
+    from btq_lang.requirements.model import Value
+
+
+class Distribution:
+    """The values that were measured for a clause."""
+
+    def __init__(self) -> None:
+        self._counts: dict[int, int] = {}  # by how many steps above the bound
+        self._last: Measure | None = None
+        self._origin = 0.0
+        self._step = 0.0
+
+    def add(self, measure: Measure) -> None:
+        """Count a value."""
+        if self._last is None:
+            self._origin = measure.bound
+            self._step = abs(measure.bound) / _FINEST or 1.0 / _FINEST
+        self._last = measure
+        at = floor((measure.si - self._origin) / self._step)
+        self._counts[at] = self._counts.get(at, 0) + 1
+        while max(self._counts) - min(self._counts) >= _MOST_STEPS:
+            doubled: dict[int, int] = {}
+            for at, number in self._counts.items():
+                doubled[at // 2] = doubled.get(at // 2, 0) + number
+            self._counts = doubled
+            self._step *= 2
+
+    def histogram(self, goal: Value | None) -> Histogram | None:
+        """The counts beside the bound and a goal; None where nothing was measured."""
+        if self._last is None:
+            return None
+        low, high = min(self._counts), max(self._counts)
+        return Histogram(
+            low=self._origin + low * self._step,
+            step=self._step,
+            counts=tuple(self._counts.get(at, 0) for at in range(low, high + 1)),
+            bound=self._last.bound,
+            bound_text=self._last.bound_text,
+            goal=goal.si if goal is not None else None,
+            goal_text=goal.text if goal is not None else "",
+            unit=self._last.unit,
+        )
+
+
+_FINEST: Final = 64  # steps from 0 to the bound
+_MOST_STEPS: Final = 48
