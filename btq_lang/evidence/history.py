@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
+from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -42,11 +43,14 @@ class History:
         found = [activation for uid in uids for activation in self._by_node[uid]]
         return sorted(found, key=_started) if len(uids) > 1 else found
 
-    def runs(self, uid: int, moment: Moment) -> bool:
+    def runs(self, uid: int, moment: Moment) -> bool | Unknown:
         """Whether a node runs: from the row with which it starts to the row with which it ends."""
         kept = self._by_node[uid]
         index = bisect_right(kept, moment, key=_started) - 1
-        return index >= 0 and moment <= kept[index].ended
+        if index < 0 or moment > kept[index].ended:
+            return False
+        is_known = kept[index].timing != "latest" or moment == kept[index].started
+        return True if is_known else Unknown(UNKNOWN_END)
 
     def clear(self) -> None:
         """The run has ended."""
@@ -90,7 +94,8 @@ class Nearby:
         found = self._found[target]
         if isinstance(found, Unknown):
             return found
-        return any(self._history.runs(uid, moment) for uid in found)
+        running = [self._history.runs(uid, moment) for uid in found]
+        return True in running or next((each for each in running if isinstance(each, Unknown)), False)
 
 
 def near(uid: int, others: Sequence[int], tree: LoggedTree) -> tuple[int, ...]:

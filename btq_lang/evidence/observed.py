@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import fsum, sqrt
 
+from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import (
     Aggregate,
@@ -72,6 +73,8 @@ class Observed:
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """A function of the samples from beginning to end; the value that the signal begins with is one of them."""
         begin, end = self.begin[0], self.end[0]
+        if not self.is_end_known and self._signals.changes(signal, begin, end):
+            return Unknown(UNKNOWN_END)
         if function == "count":
             return self._signals.number(signal, begin, end)
         values = self._signals.values(signal, begin, end)
@@ -96,7 +99,8 @@ class Observed:
                 elif isinstance(each, Running):
                     for activation in self._nodes.activations(each.target):
                         stopped = activation.end, activation.last + 1
-                        found.update([at for at in (activation.started, stopped) if begin < at <= end])
+                        since = activation.begin, activation.first + 1  # if its end is not known, it is unknown
+                        found.update([at for at in (activation.started, since, stopped) if begin < at <= end])
         return sorted(found)
 
 

@@ -308,6 +308,11 @@ def test_sums(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("Move needs node Alarm", "0 1R 3R 5R 20 3S 5S 1S", "violated 1/1"),
         ("Move leaves node Alarm or battery > 90 %", "0 1R 3R 5R 20 3S 5S 1S", "satisfied 0/1"),
         ("Move needs not node Alarm", BACK, "unknown 0/0 ?1"),
+        # Move had ended by 50, and may have before Alarm started.
+        ("Alarm never node Move", "0 1R 2R 3R 10 5R 20 5S 50 2F 1F", "unknown 0/0 ?1"),
+        ("Alarm takes at most 5 ms\nwhile node Move", "0 1R 2R 3R 10 5R 20 5S 50 2F 1F", "unknown 0/0 ?1"),
+        ("Alarm keeps node Move", "0 1R 2R 5R 3R 20 2F 30 5S 1S", "violated 1/1"),
+        ("Task keeps node Move", "0 1R 3R 2R 20 2F 30 1S", "unknown 0/0 ?1"),
         ("Grip never node Put", "0 1R 8R 13R 5 8S 10 13S 1S", "satisfied 0/1"),
         ("Grip never node Put", "0 1R 12R 13R 5 12S 10 13S 1S", "violated 1/1"),
         ("Grip never node First/Put", "0 1R 12R 9R 5 12S 10 9S 1S", "violated 1/1"),

@@ -244,10 +244,14 @@ def test_summaries_of_samples_that_are_missing_or_old(
 
 
 def test_a_summary_is_known_at_the_end(verify: Verify) -> None:
-    """So an activation that ended at some time before does not break it for certain."""
+    """So an activation that ended at some time before neither breaks nor keeps it, unless nothing changed meanwhile."""
     given = samples("battery", SAMPLES)
     found = verify.clause("Move keeps max(battery) < 50 %", UNWRITTEN, given, before=LEVEL)
-    assert (count(found), found["why"]) == ("unknown 0/0 ?1", "the log does not say whether it was still running")
+    assert (count(found), found["why"]) == ("unknown 0/0 ?1", "the log does not say when it was halted")
+    found = verify.clause("Move keeps min(battery) < 40 %", UNWRITTEN, given, before=LEVEL)
+    assert (count(found), found["why"]) == ("unknown 0/0 ?1", "the log does not say when it was halted")
+    steady = verify.clause("Move keeps max(battery) < 50 %", UNWRITTEN, samples("battery", {-5: 50}), before=LEVEL)
+    assert count(steady) == "violated 1/1"
     (broken,) = verify.clause("Move never max(battery) > 40 %", LONG, given, before=LEVEL)["violations"]
     assert (broken["at"], broken["why"], broken["bound"]) == (0.03, "`max(battery)` was 50 %", "40 %")
 

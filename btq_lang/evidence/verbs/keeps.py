@@ -32,7 +32,7 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
         found = judged_at(condition, moment, observed, said)
         if found.holds is False:
             at = activation.end if is_of_all else found.at
-            if activation.timing == "exact" or at == activation.begin:
+            if activation.timing == "exact" or found.at == activation.begin:
                 return replace(found, at=at)
             return Judgement(None, at, "the log does not say whether it was still running")
         if found.holds is None:
