@@ -179,7 +179,7 @@ class JudgedClause:
             firsts = self._instances(joined, _known(subject.first.subject))
             groups: dict[tuple[int, ...], tuple[int, ...]] = {}
             lasts = self._instances(joined, _known(subject.last.subject))
-            for uid in firsts or [ROOT]:
+            for uid in firsts if subject.first.subject is not None else [ROOT]:
                 together = near(uid, lasts, joined.tree)
                 groups[together] = (*groups.get(together, ()), uid)
             return [*groups.values()] if not self._missing else []

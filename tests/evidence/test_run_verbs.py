@@ -367,6 +367,13 @@ def test_what_is_not_known_over_a_run(
     assert (count(found), found["why"]) == (expected, why)
 
 
+def test_a_span_from_a_node_that_is_not_in_the_tree(verify: Verify) -> None:
+    mission = f"{MISSION}BehaviorTree Other\n    Action Spare\nAction Spare\n"
+    demand = "from Spare finishes to Pick starts takes at most 1 ms"
+    found = verify.clause(demand, TWICE, None, mission=mission, xml=XML, before=LOW)
+    assert count(found) == "never exercised 0/0"
+
+
 # ---- what is reported ----
 
 
