@@ -495,3 +495,9 @@ def test_more_runs_replace_what_is_in_the_window(verify: Verify) -> None:
     demand = "Move succeeds\nin at least 50 % of runs\nconfidence 95 %\nover last 5 runs"
     found = clause(verify, demand, several("F", "S", "S", "S", "S"))
     assert (found["verdict"], found["counted"], found["more"]) == ("undecided", 5, 5)
+
+
+def test_a_window_of_time_has_what_ended_in_it(verify: Verify) -> None:
+    """However early the sample was that came closest to the bound."""
+    demand = "Move keeps battery >= 5 %\nin at least 90 % of activations\nover last 25 ms"
+    assert come_to(verify, demand, "0 1R 3R 30 3S 1S", samples("battery", {-1: 5, 2: 50})) == "satisfied 0/1"

@@ -41,7 +41,7 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
             closest = found
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    return result
+    return replace(result, at=activation.end)
 
 
 def _excess(judgement: Judgement) -> float:
