@@ -217,6 +217,9 @@ def test_starts_and_ends(demand: str, runs: str, expected: str, verify: Verify) 
         ("Pick follows Move halts", "0 1R 2R 3R 20 2F 2R 4S 50 2F 1F", "satisfied 0/1"),
         ("Pick follows Move halts", "0 1R 2R 3R 10 4S 20 2F 1F", "unknown 0/0 ?1"),
         ("Pick follows Move succeeds\nwhen low", TWICE, "never exercised 0/0"),
+        ("Pick follows Move halts\nwhen not low", "0 1R 2R 3R 10 4S 20 2F 1F", "never exercised 0/0"),
+        ("Pick follows Move succeeds", CUT, "never exercised 0/0 |1"),
+        ("Pick follows Alarm succeeds", CUT, "violated 1/1"),
         ("Pick follows Alarm succeeds\nwhen not low", TWICE, "violated 1/1"),
     ],
 )
@@ -365,6 +368,25 @@ def test_what_is_not_known_over_a_run(
 ) -> None:
     found = clause(verify, demand, TWICE, samples("battery", given), FRESH)
     assert (count(found), found["why"]) == (expected, why)
+
+
+@pytest.mark.parametrize(
+    "demand",
+    [
+        "Alarm starts within 40 ms after Move fails\nwhen low",
+        "Task ends within 50 ms after Task starts\nwhen low",
+        "from Move fails to Pick succeeds takes at most 40 ms\nwhen low",
+        "Pick follows Move succeeds\nwhen low",
+    ],
+)
+def test_what_the_end_of_the_log_cuts_off_is_left_out_whether_it_counts_or_not(demand: str, verify: Verify) -> None:
+    assert come_to(verify, demand, CUT) == "never exercised 0/0 |1"
+
+
+def test_what_the_end_of_the_log_cuts_off_may_have_broken_the_clause(verify: Verify) -> None:
+    demand = "Move tries at most 1\nwhen low"
+    found = clause(verify, demand, CUT, samples("battery", {-1: 10}), FRESH)
+    assert (count(found), found["why"]) == ("unknown 0/0 ?1", "the last sample of `battery` is too old")
 
 
 def test_a_span_from_a_node_that_is_not_in_the_tree(verify: Verify) -> None:

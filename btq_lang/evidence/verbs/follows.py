@@ -29,7 +29,9 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
         unclear = counts.why if isinstance(counts, Unknown) else ""
         if not is_sure and found:
             unclear = unclear or found[0].why
-        if unclear:
+        if is_sure and counts is not False and start.outcome == "O":
+            yield None
+        elif unclear and counts is not False:
             yield Judgement(None, start.begin, unclear)
         elif counts:
             said = f"followed `{name}`" if is_sure else f"`{name}` did not happen {since}"

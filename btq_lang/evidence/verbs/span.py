@@ -51,6 +51,10 @@ def _judged(
     if counts is False:
         return
     found = compared(claim.limit, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
+    is_late = isinstance(found, Unknown) or (found.is_upper and found.measure.excess > 0)
+    if last is None and not is_late and not first.why and not unclear and run.is_cut_off:
+        yield None
+        return
     why = first.why
     for each in (counts, found):
         why = why or (each.why if isinstance(each, Unknown) else "")
@@ -58,14 +62,11 @@ def _judged(
         yield Judgement(None, until[0], why)
         return
     said = VERBS["takes"].said
-    is_late = found.is_upper and found.measure.excess > 0
     if unclear and (is_late or last is None or not (found.is_upper and found.is_lone)):
         yield Judgement(None, until[0], unclear)
     elif last is not None:
         yield Judgement(found.measure.excess <= 0, until[0], said, found.measure)
     elif is_late:
         yield Judgement(False, until[0], "had not come to an end after {}", found.measure)
-    elif run.is_cut_off:
-        yield None
     elif claim.limit.relation not in (">=", ">"):
         yield Judgement(False, until[0], "its last event did not happen before the run ended")

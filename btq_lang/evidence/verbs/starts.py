@@ -47,11 +47,14 @@ def judged(
     if counts is False:
         return
     time = deadline[0]
+    is_late = isinstance(found, Unknown) or found.measure.excess > 0
+    if answer is None and not is_late and not event.why and run.is_cut_off:
+        yield None
+        return
     why = next((each.why for each in (event, counts, found) if isinstance(each, Happening | Unknown) and each.why), "")
     if why or isinstance(found, Unknown):
         yield Judgement(None, time, why)
         return
-    is_late = found.measure.excess > 0
     if answer is not None and not (is_late and answer.why):
         yield Judgement(not is_late, until[0], said, found.measure)
     elif answer is not None:
@@ -59,4 +62,4 @@ def judged(
     elif is_late:
         yield Judgement(False, time, never, found.measure)
     else:
-        yield None if run.is_cut_off else Judgement(None, time, "the run ended before the time was over")
+        yield Judgement(None, time, "the run ended before the time was over")

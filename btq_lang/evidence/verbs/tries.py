@@ -32,7 +32,8 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
         sure = [each for each, counts in inside if counts is True]
         least = _judged(claim, run, period, sure)
         most = _judged(claim, run, period, [each for each, _ in inside])
-        if least is not None and most is not None and least.holds is not most.holds:
+        may_break = most is not None and most.holds is False
+        if (least is None and may_break) or (least is not None and most is not None and least.holds is not most.holds):
             why = next(counts.why for _, counts in inside if isinstance(counts, Unknown))
             yield Judgement(None, period.end, why)
         elif least is not None or period.outcome == "O":
