@@ -70,6 +70,7 @@ class Log:
         self.activations = activations(tree, rows)
         self.runs = self.of(ROOT)
         self.changes = {each.start for each in self.activations}
+        self.changes |= {(each.begin, each.first + 1) for each in self.activations}
         self.changes |= {(each.end, each.last + 1) for each in self.activations}
         for name, series in samples.items():
             self.changes.update((time, -1) for time, _ in series)
@@ -150,13 +151,13 @@ class Log:
 
     def aggregate(self, function: str, signal: Signal, a: Activation) -> float | None:
         """Over what a signal was in an activation: as it began, if that is known, and each sample since."""
+        sampled = [time for time, _ in self.samples.get(signal.name, ()) if a.begin < time <= a.end]
         times = sorted({a.begin, *(time for time, _ in self.changes if a.begin < time <= a.end)})
         known = [(time, self.sample(signal, time)) for time in times]
         while known and known[0][1] is None:
             known.pop(0)
-        sampled = {time for time, _ in self.samples.get(signal.name, ())}
         values = [value for time, value in known if time == a.begin or time in sampled]
-        if not values or any(value is None for _, value in known) or (not a.is_exact and len(known) > 1):
+        if not values or any(value is None for _, value in known) or (sampled and not a.is_exact):
             return None
         if function == "change":
             return values[-1] - values[0]

@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Happening:
-    """An event: from when on and by when it happened; is_sure: once, and just then."""
+    """An event: from when on and by when it happened, if it did; is_sure: it did, just then."""
 
     after: Moment
     by: Moment
     is_sure: bool = True
+    has_happened: bool = True
 
 
 class OverRuns(OfActivations):
@@ -41,7 +42,7 @@ class OverRuns(OfActivations):
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
             verdicts = judge(uid, own, run, claim, requirement)
-            found += [Judged(run.run, uid, run.end, verdict) for verdict in verdicts]
+            found += [Judged(run.run, uid, verdict, run.end) for verdict in verdicts]
         return found
 
     def tries(
@@ -144,7 +145,7 @@ class OverRuns(OfActivations):
         found: list[Verdict] = []
         for x in own:
             maybe = [each for each in events if before < each.by and each.after <= x.start]
-            is_sure = any(each.is_sure and before < each.after and each.by <= x.start for each in maybe)
+            is_sure = any(each.has_happened and before < each.after and each.by <= x.start for each in maybe)
             verdict: Verdict = True if is_sure else None if maybe else False
             found.append(counted(self.counts(x, requirement), OPEN if is_sure and x.outcome == "O" else verdict))
             before = x.start
@@ -159,7 +160,7 @@ class OverRuns(OfActivations):
                 lasts = self.events(span.last, replace(run, uid=uid))
                 for first in self.events(span.first, replace(run, uid=uid), only=True):
                     after = first.after if span.first != span.last else (first.after[0], first.after[1] + 1)
-                    closing = [each.by for each in lasts if each.is_sure and each.by >= after]
+                    closing = [each.by for each in lasts if each.has_happened and each.after >= after]
                     by = min(closing, default=run.stop)
                     unclear = any(not each.is_sure and each.by >= first.after and each.after <= by for each in lasts)
                     at = between(run, uid, first.after, by)
@@ -206,7 +207,7 @@ class OverRuns(OfActivations):
             end: Moment | None = None
             for part, is_sure in self.stretches([event.condition], run):
                 if not is_sure:
-                    found.append(Happening(part.start, part.stop, False))
+                    found.append(Happening(part.start, part.stop, False, False))
                 elif part.start != end:
                     found.append(Happening(part.start, part.start))
                 end = None if is_sure else part.stop

@@ -24,8 +24,8 @@ class Judged:
 
     run: int
     uid: int
-    at: int
     verdict: Verdict
+    at: int
 
 
 class OfActivations(Log):
@@ -34,8 +34,17 @@ class OfActivations(Log):
     def of_activations(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
         """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node."""
         if claim.verb in ("keeps", "never"):
-            return [judged(each, self.keeps(each, claim, requirement)) for each in self.of(uid)]
-        return [judged(each, self.scoped(each, self.whole(each, claim), requirement)) for each in self.of(uid)]
+            return [Judged(each.run, uid, *self.keeps(each, claim, requirement)) for each in self.of(uid)]
+        is_early = claim.verb == "needs"
+        return [
+            Judged(
+                each.run,
+                uid,
+                self.scoped(each, self.whole(each, claim), requirement),
+                each.begin if is_early else each.end,
+            )
+            for each in self.of(uid)
+        ]
 
     def whole(self, a: Activation, claim: Claim) -> Verdict:
         """What one activation comes to, whatever the scope; not of keeps and never, where that is a matter of time."""
@@ -60,20 +69,24 @@ class OfActivations(Log):
             used = -used
         return self.bounded(a, used, claim.limit)
 
-    def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> Verdict:
-        """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
+    def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> tuple[Verdict, int]:
+        """keeps, never: a sample in [b, e] with C that breaks it, and when; it counts if C holds at all meanwhile."""
+        times = self.moments(a)
         moments = [
             (
                 self.holds_all("while", requirement, moment, a),
                 negated(self.holds(claim.condition, moment, a), claim.verb == "never"),
             )
-            for moment in self.moments(a)
+            for moment in times
         ]
         if not a.is_exact:  # it may have ended right after its start
             moments[1:] = [(None if counts else counts, holds) for counts, holds in moments[1:]]
         counts = both(self.holds_all("when", requirement, a.start, a), either(*(counts for counts, _ in moments)))
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
-        return counted(counts, OPEN if kept and a.outcome == "O" else kept)
+        broken = next(
+            (time for (time, _), moment in zip(times, moments, strict=True) if moment == (True, False)), a.end
+        )
+        return counted(counts, OPEN if kept and a.outcome == "O" else kept), broken
 
     def bounded(self, a: Activation, measured: float | None, limit: Limit | None) -> Verdict:
         """A measure that grows while the activation lasts, against its bound."""
@@ -116,7 +129,7 @@ class OfActivations(Log):
 
 def judged(a: Activation, verdict: Verdict) -> Judged:
     """What an activation came to."""
-    return Judged(a.run, a.uid, a.end, verdict)
+    return Judged(a.run, a.uid, verdict, a.end)
 
 
 def counted(counts: Truth, verdict: Verdict) -> Verdict:

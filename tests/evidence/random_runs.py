@@ -95,7 +95,8 @@ def mission(chance: random.Random) -> str:
     """The text of a mission."""
     tree = Trees(chance)
     main = [f"BehaviorTree {name}\n" + "\n".join(lines) for name, lines in tree.all().items()]
-    demands = [requirement(chance, f"r{number}", tree.labels) for number in range(chance.randint(2, 6))]
+    labels = [*tree.labels, *tree.labels[: len(tree.labels) // 2 + 1]]  # what comes first runs more often
+    demands = [requirement(chance, f"r{number}", labels) for number in range(chance.randint(2, 6))]
     return "\n".join(["Root Main", *declarations(chance), *demands, *main]) + "\n"
 
 
@@ -191,18 +192,19 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
         if chance.random() < 0.6:
             lines.append(f"confidence {chance.choice(['60 %', '90 %', '95 %'])}")
         if chance.random() < 0.2:
-            lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
+            is_over_run = any(f" {verb} " in f"{line} " for line in lines for verb in (*_OVER_RUN, "from", "sum"))
+            lines.append(f"over last {chance.choice(['5 activations', '2 runs', *([] if is_over_run else ['4 s'])])}")
     return "\n    ".join([head, *lines]) + apply
 
 
 def claim(chance: random.Random, labels: list[str]) -> str:
     """A subject and a verb."""
     subject = chance.choice([*labels, *labels, "mission", "Part", *(f"every {action}" for action in ACTIONS)])
-    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum" if len(labels) > 1 else "span"])
+    verb = chance.choice([*_VERBS, *_VERBS, "span", "sum" if len({*labels}) > 1 else "span"])
     if verb == "span":
         return f"from {event(chance, labels)} to {event(chance, labels)} takes at most {seconds(chance)}"
     if verb == "sum":
-        return f"sum of {', '.join(chance.sample(labels, 2))} takes at most {seconds(chance)}"
+        return f"sum of {', '.join(chance.sample(sorted({*labels}), 2))} takes at most {seconds(chance)}"
     operand = {
         "takes": lambda: bound(chance, labels, lambda: seconds(chance)),
         "succeeds": lambda: f"within {value(chance, labels, lambda: seconds(chance))}" if chance.random() < 0.6 else "",
@@ -218,20 +220,8 @@ def claim(chance: random.Random, labels: list[str]) -> str:
     return f"{subject} {verb} {operand}".rstrip()
 
 
-_VERBS = (
-    "takes",
-    "succeeds",
-    "needs",
-    "keeps",
-    "never",
-    "leaves",
-    "uses",
-    "tries",
-    "runs",
-    "starts",
-    "ends",
-    "follows",
-)
+_OVER_RUN = ("tries", "runs", "starts", "ends", "follows")  # when they are judged is not told to the moment
+_VERBS = ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", *_OVER_RUN)
 
 
 def uses(chance: random.Random, labels: list[str]) -> str:
@@ -264,7 +254,10 @@ def seconds(chance: random.Random) -> str:
 def event(chance: random.Random, labels: list[str]) -> str:
     if chance.random() < 0.2:
         return f"when {condition(chance, labels)}"
-    return f"{chance.choice(labels)} {chance.choice(['starts', 'succeeds', 'fails', 'finishes', 'halts'])}"
+    return f"{chance.choice(labels)} {chance.choice(_HAPPENINGS)}"
+
+
+_HAPPENINGS = ("starts", "starts", "finishes", "finishes", "succeeds", "fails", "halts")
 
 
 def condition(chance: random.Random, labels: list[str], depth: int = 2) -> str:
