@@ -129,17 +129,17 @@ class Series:
     def __init__(self, unit: Unit | None = None) -> None:
         self.unit: Final = unit
         self.times: Final = array("q")
-        self.values: Final[list[SampleValue]] = []
+        self.values: Final[list[SampleValue | None]] = []
 
-    def add(self, time: int, value: SampleValue) -> None:
-        """Add a sample, mostly the latest one; of two at one time the later one counts."""
+    def add(self, time: int, value: SampleValue | None) -> None:
+        """Add a sample, mostly the latest one; of two at one time the later one counts.  None: it has no value then."""
         at = len(self.times)
         if at and time < self.times[-1]:
             at = bisect_right(self.times, time)
         self.times.insert(at, time)
         self.values.insert(at, value)
 
-    def at(self, time: int) -> tuple[int, SampleValue] | None:
+    def at(self, time: int) -> tuple[int, SampleValue | None] | None:
         """The last sample with a time up to this one, with its time; None before the first."""
         index = bisect_right(self.times, time) - 1
         return (self.times[index], self.values[index]) if index >= 0 else None

@@ -45,6 +45,8 @@ class Signals:
         if found is None:
             return _initially(signal, is_sampled=bool(series is not None and series.times))
         sampled, value = found
+        if value is None:
+            return Unknown(f"`{signal.name}` was not on the blackboard")
         if signal.fresh is not None and time - sampled > round(signal.fresh * 1e6):
             return Unknown(f"the last sample of `{signal.name}` is too old")
         return _as_declared(signal, value, series.unit if series is not None else None)

@@ -241,7 +241,7 @@ def test_rows_that_no_engine_writes_are_left_out_and_reported(verify: Verify) ->
         ("t,a,a\n", "two columns are named `a`"),
         ("t,battery\n1,2\nnoon,3\n", "line 3: `noon` is not a time in seconds since the epoch"),
         ("t,battery\nnan,2\n", "line 2: `nan` is not a time in seconds since the epoch"),
-        ("t,battery\n1e300,2\n", "line 2: `1e300` is not a time in seconds since the epoch"),
+        ("t,battery\n1e300,2\n", "line 2: `1e+300` is not a time in seconds since the epoch"),
     ],
 )
 def test_what_is_not_a_table_of_samples(text: str, problem: str, verify: Verify) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import sys
 
+import duckdb
 import numpy
 import pytest
 from evidence_bags import LOG, STORE, Message, names_of, number, stamp, stamped, tree_log, write_bag
@@ -225,6 +227,96 @@ def test_sources_that_do_not_fit(table: str, error: str, robot: Verify) -> None:
     (robot.folder / "btq.toml").write_text(f"[evidence.signals]\n{table}\n", encoding="utf-8")
     robot.text("run.btlog")
     assert (robot.code, robot.errors) == (2, f"btq verify: {error}\n")
+
+
+def test_a_parquet_file(robot: Verify) -> None:
+    """Times as points in time or in seconds; a value that is missing, or has no finite number, is not a sample."""
+    (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, RUNS))
+    early, late = START / 1e6 - 1, START / 1e6 + 0.05
+    values = f"({early}, 50::DECIMAL(5,2)), ({late - 0.01}, NULL), ({late}, 10::DECIMAL(5,2))"
+    for name, time in (("seconds", "t"), ("moments", "make_timestamp((t * 1e6)::BIGINT)")):
+        duckdb.sql(
+            f"COPY (SELECT {time} AS t, battery, [1] AS other FROM (VALUES {values}) AS v(t, battery))"
+            f" TO '{robot.folder / name}.parquet' (FORMAT parquet)"
+        )
+        assert levels(robot, "run.btlog", "--signals", f"{name}.parquet") == (
+            2,
+            [(2, "`battery` was 10 % at the start")],
+        )
+    (robot.folder / "b.parquet").write_bytes(b"PAR1 and no more")
+    robot.text("run.btlog", "--signals", "b.parquet")
+    assert robot.code == 2
+    assert robot.errors.startswith("btq verify: b.parquet: ")
+
+
+def test_without_duckdb_a_line_says_what_to_install(robot: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, RUNS))
+    (robot.folder / "b.parquet").write_bytes(b"PAR1")
+    robot.text("run.btlog", "--signals", "b.parquet")
+    assert (robot.code, robot.errors) == (
+        2,
+        "btq verify: b.parquet: Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'\n",
+    )
+
+
+# ---- klein's blackboard beside a log ----
+
+
+def blackboard(robot: Verify, *lines: object, header: object = None) -> None:
+    """A log, and what klein recorded beside it."""
+    first = {"klein_blackboard": 1, "first_timestamp": START, "tree_id": "Main"} if header is None else header
+    (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, RUNS))
+    text = "".join(f"{json.dumps(line)}\n" for line in (first, *lines))
+    (robot.folder / "run.bb.jsonl").write_text(text, encoding="utf-8")
+
+
+def entry(ms: float, value: object, board: str = "Main", key: str = "level") -> dict[str, object]:
+    return {"t": round(ms * 1000), "board": board, "key": key, "value": value}
+
+
+def test_the_entries_that_klein_recorded(robot: Verify) -> None:
+    blackboard(robot, entry(0, 50), entry(0, {"x": 1}, key="pose"), entry(50, 7))
+    assert levels(robot, "run.btlog") == (2, [(2, "`battery` was 7 % at the start")])
+    assert robot.json("run.btlog")["sources"][0]["remarks"] == []
+
+
+def test_an_entry_that_was_removed_has_no_value(robot: Verify) -> None:
+    removed = {"t": 50_000, "board": "Main", "key": "level", "removed": True}
+    blackboard(robot, entry(0, 50), removed)
+    clause = robot.json("run.btlog")["requirements"][0]["clauses"][0]
+    assert (clause["counted"], clause["unknown"], clause["why"]) == (1, 1, "`battery` was not on the blackboard")
+
+
+def test_the_main_tree_counts_before_subtrees(robot: Verify) -> None:
+    blackboard(robot, entry(0, 50), entry(0, 5, "Sub::3"))
+    assert levels(robot, "run.btlog") == (2, [])
+    blackboard(robot, entry(0, 5, "Sub::3"))
+    assert levels(robot, "run.btlog")[0] == 2
+    blackboard(robot, entry(0, 5, "Sub::3"), entry(0, 50, "Sub::7"))  # which of them is meant is not known
+    assert levels(robot, "run.btlog") == (0, [])
+
+
+@pytest.mark.parametrize(
+    ("header", "lines", "remark"),
+    [
+        ({"klein_blackboard": 2}, [], "run.bb.jsonl: expected a first line with `klein_blackboard` 1; left out"),
+        ([], [], "run.bb.jsonl: expected a first line with `klein_blackboard` 1; left out"),
+        (
+            {"klein_blackboard": 1, "first_timestamp": "noon"},
+            [],
+            "run.bb.jsonl: expected `first_timestamp` in the first line; left out",
+        ),
+        (
+            None,
+            [3, {"t": True, "board": "Main", "key": "level", "value": 1}, {"t": 1, "board": "Main", "key": "level"}],
+            "run.bb.jsonl: lines that cannot be read, left out: 3",
+        ),
+    ],
+)
+def test_what_klein_did_not_write(header: object, lines: list[object], remark: str, robot: Verify) -> None:
+    blackboard(robot, *lines, header=header)
+    assert robot.json("run.btlog")["sources"][0]["remarks"] == [remark]
 
 
 # ---- logs of the project ----

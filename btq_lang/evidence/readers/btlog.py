@@ -12,6 +12,7 @@ import os
 from struct import Struct
 
 from btq_lang.evidence.model import Session
+from btq_lang.evidence.readers import klein
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -46,7 +47,7 @@ def read(path: str) -> Iterator[Session]:
             raise NotALog(f"its tree and start should take {length} and {_START.size} bytes, and {left} are left")
         tree = read_tree(file.read(length))
         (start,) = _START.unpack(file.read(_START.size))
-        session = Session(tree, _transitions(file, start))
+        session = Session(tree, _transitions(file, start), *klein.read(path))
         if rest := (left - length - _START.size) % _RECORD.size:
             session.remarks.append(f"cut off: the last {rest} bytes are not a whole transition and are left out")
         yield session

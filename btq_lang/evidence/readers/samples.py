@@ -1,4 +1,4 @@
-"""Samples of signals in a CSV file: a column with times, the first one unless another is named, and columns of values.
+"""Samples of signals in a CSV or Parquet file: a column with times, the first one by default, and columns of values.
 
 One invariant: a cell that is empty, or not a finite number, is not a sample, and a time that cannot be read is an
 error with its line.
@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import csv
 import os
-from math import isfinite
 
 from btq_lang.evidence.model import Series, is_sample
+from btq_lang.evidence.readers import parquet
 from btq_lang.near import did_you_mean, near
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from typing import Final
 
     from btq_lang.evidence.model import SampleValue
@@ -36,26 +36,43 @@ def read(path: str, time: str = "") -> dict[str, Series]:
         NoSamples: it is not such a table.
         OSError: it cannot be read.
     """
-    with open(path, encoding="utf-8-sig", errors="replace", newline="") as file:
-        rows = csv.reader(file)
-        try:
-            names = [name.strip() for name in next(rows, [])]
-            if len(names) < 2:
-                raise NoSamples("expected a line of column names: the time first, then signals or their entries")
-            at = names.index(_known(time, names)) if time else 0
-            others = [name for column, name in enumerate(names) if column != at]
-            if twice := next((name for name in others if others.count(name) > 1), None):
-                raise NoSamples(f"two columns are named `{twice}`")
-            found = {name: Series() for name in others}
-            for row in rows:
-                if row:
-                    moment = _time(row[at] if at < len(row) else "", rows.line_num)
-                    for column, cell in enumerate(row[: len(names)]):
-                        if column != at and (value := _value(cell.strip())) is not None:
-                            found[names[column]].add(moment, value)
-        except csv.Error as error:
-            raise NoSamples(f"line {rows.line_num}: {error}") from error
+    with open(path, "rb") as file:
+        is_parquet = file.read(len(parquet.MAGIC)) == parquet.MAGIC
+    try:
+        if is_parquet:
+            names, rows = parquet.read(path)
+            return _table(names, time, ((f"row {number}", row) for number, row in enumerate(rows, start=1)))
+        with open(path, encoding="utf-8-sig", errors="replace", newline="") as text:
+            lines = csv.reader(text)
+            try:
+                names = [name.strip() for name in next(lines, [])]
+                return _table(names, time, ((f"line {lines.line_num}", _values(row)) for row in lines if row))
+            except csv.Error as error:
+                raise NoSamples(f"line {lines.line_num}: {error}") from error
+    except parquet.NotParquet as error:
+        raise NoSamples(str(error)) from error
+
+
+def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:
+    """The columns of a table; rows: each with where it is in the file."""
+    if len(names) < 2:
+        raise NoSamples("expected a line of column names: the time first, then signals or their entries")
+    at = names.index(_known(time, names)) if time else 0
+    others = [name for column, name in enumerate(names) if column != at]
+    if twice := next((name for name in others if others.count(name) > 1), None):
+        raise NoSamples(f"two columns are named `{twice}`")
+    found = {name: Series() for name in others}
+    for place, row in rows:
+        moment = _time(row[at] if at < len(row) else None, place)
+        for column, value in enumerate(row[: len(names)]):
+            if column != at and isinstance(value, bool | int | float | str) and is_sample(value):
+                found[names[column]].add(moment, value)
     return found
+
+
+def _values(row: list[str]) -> list[object]:
+    """What the cells of a line say; None for an empty one."""
+    return [_value(cell.strip()) for cell in row]
 
 
 def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Series]:
@@ -86,9 +103,9 @@ def read_sources(sources: Iterable[SignalSource], folder: str) -> dict[str, Seri
     return found
 
 
-def scaled(value: SampleValue, source: SignalSource) -> SampleValue:
+def scaled(value: SampleValue | None, source: SignalSource) -> SampleValue | None:
     """A value in the unit of its source."""
-    if isinstance(value, str) or (source.scale == 1 and source.offset == 0):
+    if value is None or isinstance(value, str) or (source.scale == 1 and source.offset == 0):
         return value
     return value * source.scale + source.offset
 
@@ -100,23 +117,18 @@ def _known(column: str, names: Iterable[str]) -> str:
     return column
 
 
-def _time(cell: str, line: int) -> int:
-    """µs since the epoch, of a cell with seconds."""
-    try:
-        seconds = float(cell)
-    except ValueError:
-        seconds = float("nan")
-    if not isfinite(seconds) or abs(seconds) > _LATEST:
-        raise NoSamples(f"line {line}: `{cell}` is not a time in seconds since the epoch")
-    return round(seconds * 1e6)
+def _time(value: object, place: str) -> int:
+    """µs since the epoch, of a value in seconds."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LATEST:
+        raise NoSamples(f"{place}: `{'' if value is None else value}` is not a time in seconds since the epoch")
+    return round(value * 1e6)
 
 
 def _value(cell: str) -> SampleValue | None:
     try:
-        number = float(cell)
+        return float(cell)
     except ValueError:
         return cell or None
-    return number if is_sample(number) else None
 
 
 _LATEST: Final = 9e12  # s since the epoch, in µs still 64 bits

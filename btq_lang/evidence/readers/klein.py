@@ -1,0 +1,87 @@
+"""`<name>.bb.jsonl` beside `<name>.btlog`: what was on the blackboard, as klein records it from a running robot.
+
+One invariant: a line that cannot be read is left out and counted, and nothing in the file spoils the log beside it.
+
+A header, then a line for each change, in time: µs since the header's time, the blackboard, the entry and its value, or
+that it was removed.  Source: `export_blackboard` in klein/btlog.py of johanubbink/klein-bt.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+
+from btq_lang.evidence.model import Series, is_sample
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from typing import Any, Final
+
+
+def read(log: str) -> tuple[dict[str, Series], list[str]]:
+    """The samples beside a log by entry, and what is to be said of them; neither where there is no such file.
+
+    An entry is the main tree's; of a subtree's it is one whose name no other blackboard has.
+    """
+    path = f"{os.path.splitext(log)[0]}{SUFFIX}"
+    name = os.path.basename(path)
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            header = _object(file.readline())
+            if header is None or header.get("klein_blackboard") != _VERSION:
+                return {}, [f"{name}: expected a first line with `klein_blackboard` {_VERSION}; left out"]
+            start = _time(header.get("first_timestamp"))
+            if start is None:
+                return {}, [f"{name}: expected `first_timestamp` in the first line; left out"]
+            boards: dict[str, dict[str, Series]] = {}
+            malformed = 0
+            for line in file:
+                malformed += not _add(boards, _object(line), start)
+    except FileNotFoundError:
+        return {}, []
+    except OSError as error:
+        return {}, [f"{name}: cannot be read: {error.strerror or error}; left out"]
+    remarks = [f"{name}: lines that cannot be read, left out: {malformed}"] if malformed else []
+    return _by_entry(boards, header.get("tree_id")), remarks
+
+
+def _add(boards: dict[str, dict[str, Series]], line: dict[str, Any] | None, start: int) -> bool:
+    """Add the sample of a line, if it is one; whether the line could be read."""
+    if line is None:
+        return False
+    time, board, key = _time(line.get("t")), line.get("board"), line.get("key")
+    if not (time is not None and isinstance(board, str) and isinstance(key, str)):
+        return False
+    is_removed = line.get("removed") is True
+    if is_removed or is_sample(line.get("value")):
+        series = boards.setdefault(board, {}).setdefault(key, Series())
+        series.add(start + time, None if is_removed else line["value"])
+    return is_removed or "value" in line
+
+
+def _by_entry(boards: dict[str, dict[str, Series]], main: object) -> dict[str, Series]:
+    found = dict(boards.pop(main, {})) if isinstance(main, str) else {}
+    for board in boards.values():
+        for key, series in board.items():
+            if sum(key in each for each in boards.values()) == 1:
+                found.setdefault(key, series)
+    return found
+
+
+def _object(line: str) -> dict[str, Any] | None:
+    try:
+        found = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _time(value: object) -> int | None:
+    if isinstance(value, bool) or not isinstance(value, int) or abs(value) > _LATEST:
+        return None
+    return value
+
+
+SUFFIX: Final = ".bb.jsonl"
+_VERSION: Final = 1
+_LATEST: Final = 1 << 61  # µs

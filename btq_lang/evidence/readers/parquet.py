@@ -1,0 +1,63 @@
+"""The columns of a Parquet file, read by DuckDB.
+
+One invariant: whatever DuckDB trips over is one NotParquet that says what was expected.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Any, Final
+
+MAGIC: Final = b"PAR1"
+
+
+class NotParquet(Exception):
+    """A file cannot be read; the message says why."""
+
+
+def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
+    """The names of the columns, and the rows; points in time are in seconds since the epoch.
+
+    Raises:
+        NotParquet: DuckDB is missing, or cannot read it, also while the rows are read.
+    """
+    try:
+        import duckdb
+    except ImportError as error:
+        raise NotParquet("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
+    database = duckdb.connect()
+    try:
+        columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
+    except duckdb.Error as error:
+        raise NotParquet(_said(error)) from error
+    names = [str(name) for name, *_ in columns]
+    asked = ", ".join(_asked(str(name), str(kind)) for name, kind, *_ in columns)
+
+    def rows() -> Iterator[tuple[Any, ...]]:
+        try:
+            found = database.execute(f"SELECT {asked} FROM read_parquet(?)", [path])
+            while block := found.fetchmany(_ROWS_AT_ONCE):
+                for row in block:
+                    yield tuple(float(value) if isinstance(value, Decimal) else value for value in row)
+        except duckdb.Error as error:
+            raise NotParquet(_said(error)) from error
+        finally:
+            database.close()
+
+    return names, rows()
+
+
+def _asked(name: str, kind: str) -> str:
+    quoted = '"' + name.replace('"', '""') + '"'
+    return f"epoch_us({quoted}) / 1e6" if kind.startswith(("TIMESTAMP", "DATE")) else quoted
+
+
+def _said(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
+_ROWS_AT_ONCE: Final = 4096
