@@ -29,9 +29,17 @@ class Progress:
 
     def step(self) -> None:
         """One more is done."""
-        self._done += 1
+        self.reached(self._done + 1)
+
+    def reached(self, done: int, more: str = "") -> None:
+        """So many are done.
+
+        Args:
+            more: what else there is to say.
+        """
+        self._done = done
         if self._done < self._total and monotonic() >= self._next and sys.stderr.isatty():
             self._next = monotonic() + _PAUSE
             self._shown = True
-            sys.stderr.write(f"\r\x1b[K{self._verb} {self._done} of {self._total} files")
+            sys.stderr.write(f"\r\x1b[K{self._verb} {self._done} of {self._total} files{more}")
             sys.stderr.flush()

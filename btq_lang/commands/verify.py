@@ -14,6 +14,7 @@ from btq_lang.checks import check
 from btq_lang.commands.as_built import Disk, as_built
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.progress import Progress
 from btq_lang.commands.signal_sources import signal_sources
 from btq_lang.commands.verdict_formats import FORMATS, WRITERS, Judged
 from btq_lang.evidence import verify
@@ -47,7 +48,17 @@ def run(options: Namespace) -> int:
     sources, of_files = signal_sources(missions, problems)
     if not problems:
         form = form_of(options, FORMATS)
-        report = verify(logs, missions, samples, shown, sources, of_files, with_timelines=form == "html")
+        with Progress(len(logs), "read") as progress:
+            report = verify(
+                logs,
+                missions,
+                samples,
+                shown,
+                sources,
+                of_files,
+                with_timelines=form == "html",
+                told=lambda files, runs: progress.reached(files, f", {runs} run{'' if runs == 1 else 's'} judged"),
+            )
         problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
         for note in _ignored(options.signals, samples, missions):
             print(f"btq verify: {note}", file=sys.stderr)

@@ -44,6 +44,7 @@ def verify(
     of_files: Mapping[str, Series] | None = None,
     *,
     with_timelines: bool = False,
+    told: Callable[[int, int], None] = lambda files, runs: None,
 ) -> Report:
     """The verdicts of missions by what logs say.
 
@@ -53,6 +54,7 @@ def verify(
         shown: a path as people read it.
         sources: where samples come from that count after those; topics are read from the bags among the logs.
         of_files: the samples of the sources that are files.
+        told: is given after each run how many logs have been read, and how many runs have been judged.
         with_timelines: with the run of the worst violation of each clause.
     """
     from btq_lang.evidence.evaluate import MissionEvaluation
@@ -63,7 +65,11 @@ def verify(
     from btq_lang.evidence.signals import by_signal
     from btq_lang.evidence.verdicts import Foreign, Report
 
-    evaluations = {mission.path: MissionEvaluation(mission, with_timelines) for mission in missions}
+    files = 0
+    evaluations = {
+        mission.path: MissionEvaluation(mission, with_timelines, lambda number: told(files, number))
+        for mission in missions
+    }
     foreign: dict[tuple[str, str], int] = {}
     differences: dict[tuple[str, str], str] = {}
     problems: list[str] = []
@@ -85,6 +91,7 @@ def verify(
             problems.append(f"{shown(log)}: {error}")
         except OSError as error:
             problems.append(f"{shown(log)}: cannot be read: {error.strerror or error}")
+        files += 1
     others = [Foreign(key[0], number, key[1], differences[key]) for key, number in foreign.items()]
     results = tuple(each.result() for each in evaluations.values())
     return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))

@@ -23,7 +23,7 @@ from btq_lang.record import replace
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from typing import Final
 
     from btq_lang.evidence.identity import Candidate, Joined
@@ -34,11 +34,15 @@ if TYPE_CHECKING:
 class MissionEvaluation:
     """A mission's requirements, while logs of it are read."""
 
-    def __init__(self, mission: Candidate, with_timelines: bool = False) -> None:
+    def __init__(
+        self, mission: Candidate, with_timelines: bool = False, ran: Callable[[int], None] = lambda number: None
+    ) -> None:
         """
         Args:
             with_timelines: keep the runs that broke clauses worst.
+            ran: is given the number of each run that has been judged.
         """
+        self._ran: Final = ran
         self.mission: Final = mission
         found = mission.requirements
         clauses = [
@@ -109,6 +113,7 @@ class MissionEvaluation:
                 if self._timelines is not None:
                     self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
                 signals.forget_before(end)
+                self._ran(run.number)
         self._add(
             Source(
                 file=source,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import re
 from xml.etree import ElementTree
 
@@ -256,3 +257,21 @@ def test_strict_wants_every_requirement_exercised(judged: Verify) -> None:
     assert judged.code == 0
     judged.text("run.btlog", "--mission", "main.btq", "--strict")
     assert judged.code == 1
+
+
+def test_progress_is_shown_to_people_at_a_terminal(judged: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = itertools.count(step=1.0)
+    monkeypatch.setattr("btq_lang.commands.progress.monotonic", lambda: next(clock))
+    (judged.folder / "again.btlog").write_bytes((judged.folder / "run.btlog").read_bytes())
+    printed = judged.text(".", "--mission", "main.btq")
+    assert judged.errors == ""  # the test's streams are no terminal
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    assert judged.text(".", "--mission", "main.btq") == printed
+    shown = [line for line in judged.errors.split("\r\x1b[K") if line]
+    assert shown == [
+        "read 0 of 2 files, 1 run judged",
+        "read 0 of 2 files, 2 runs judged",
+        "read 1 of 2 files, 3 runs judged",
+        "read 1 of 2 files, 4 runs judged",
+    ]
+    assert judged.errors.endswith("\r\x1b[K")
