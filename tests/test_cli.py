@@ -16,6 +16,9 @@ import pytest
 
 from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
+from btq_lang.catalog.verdicts import VERDICTS
+from btq_lang.evidence.verdicts import WORST_FIRST
+from btq_lang.project import parse_project
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
@@ -595,6 +598,31 @@ def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_p
     assert btq("format", "--check", "robot").returncode == 0
     again = btq("init", "robot")
     assert (again.returncode, "nothing was written" in again.stderr) == (2, True)
+
+
+def test_init_offers_a_table_for_logs(btq: Run, tmp_path: Path) -> None:
+    """What is commented out in btq.toml is read when it is not."""
+    btq("init", ".")
+    text = (tmp_path / "btq.toml").read_text(encoding="utf-8")
+    before, _, offered = text.partition("# [evidence]\n")
+    lines = ["[evidence]", *(line.removeprefix("# ").removeprefix("#") for line in offered.splitlines())]
+    project, problems = parse_project("\n".join((before, *lines)), str(tmp_path))
+    assert [*problems] == []
+    assert project.evidence is not None
+    assert project.evidence.logs == ("logs/**/*.btlog",)
+    assert [each.signal for each in project.evidence.signals] == ["battery"]
+
+
+@pytest.mark.parametrize("name", WORST_FIRST)
+def test_explain_knows_every_verdict(btq: Run, name: str) -> None:
+    verdict = VERDICTS[name]
+    for words in ([name], name.split()):
+        done = btq("explain", *words)
+        assert (done.returncode, done.stdout.partition("\n")[0]) == (0, f"# {name}")
+    assert verdict.brief in done.stdout
+    assert verdict.then in done.stdout
+    assert f"{name:<20} {verdict.brief}\n" in btq("explain", "verdict").stdout
+    assert [*VERDICTS] == [*WORST_FIRST]
 
 
 def test_what_is_next_can_be_pasted(btq: Run, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`btq explain`: what a rule, a node, a quality, a word or sign of the language, an attribute, a port or a unit is."""
+"""`btq explain`: what a rule, a node, a quality, a word of the language, a port, a verdict or a unit is."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from btq_lang.catalog.language import PHRASES, SIGNS, Phrase, phrases_of
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
+from btq_lang.catalog.verdicts import VERDICTS, Verdict
 from btq_lang.features.describe import in_si, si_symbol
 from btq_lang.near import near
 from btq_lang.quantities import parse_quantity
@@ -54,6 +55,10 @@ def _pages(name: str) -> Iterator[str]:
     for quality in (match.quality,) if match.quality else match.candidates:
         yield "\n".join(_quality(quality, name, match.explanation))
     yield from map(_phrase, phrases_of(name))
+    if name in VERDICTS:
+        yield _verdict(VERDICTS[name])
+    if name in ("verdict", "verdicts"):
+        yield "\n".join(("# Verdicts of `btq verify`", "", *_verdicts(), "", "`btq explain` explains each of them."))
     if name in RESERVED_ATTRIBUTES:
         yield _attribute(RESERVED_ATTRIBUTES[name])
     yield from _ports(name)
@@ -159,6 +164,15 @@ def _unit(name: str) -> Iterator[str]:
         yield f"# {name} (unit)\n\nMeasures {dimension_name(unit)}.{value}{beside}"
 
 
+def _verdict(verdict: Verdict) -> str:
+    return f"# {verdict.name}\n\nA verdict: {verdict.brief}.\n\n{verdict.when}\n\n## What to do\n\n{verdict.then}"
+
+
+def _verdicts() -> Iterator[str]:
+    for verdict in VERDICTS.values():
+        yield f"{verdict.name:<20} {verdict.brief}"
+
+
 def _likely(name: str) -> tuple[str, ...]:
     """What looks like it, or else what it is a part of."""
     names = _names()
@@ -185,6 +199,8 @@ def _overview() -> Iterator[str]:
     yield "\n# Attributes of nodes"
     for attribute in RESERVED_ATTRIBUTES.values():
         yield f"{attribute.name:<20} {attribute.doc}"
+    yield "\n# Verdicts"
+    yield from _verdicts()
     yield "\n# Units"
     for measured, units in _by_dimension(symbols()):
         yield f"{measured:<22} {' '.join(units)}"
@@ -200,7 +216,7 @@ def _by_dimension(units: tuple[Unit, ...]) -> Iterator[tuple[str, list[str]]]:
 def _names() -> list[str]:
     words = [spelling for kind in BUILTINS.values() for spelling in spellings(kind)]
     ports = {port.name for kind in BUILTINS.values() for port in kind.ports}
-    known = [*RULES, *words, *ports, *RESERVED_ATTRIBUTES, *(unit.symbol for unit in symbols())]
+    known = [*RULES, *words, *ports, *VERDICTS, *RESERVED_ATTRIBUTES, *(unit.symbol for unit in symbols())]
     return [*known, *(quality.id for quality in qualities()), *(phrase.words for phrase in PHRASES)]
 
 

@@ -17,6 +17,13 @@ include-paths = ["."]
 
 [rules]
 # unknown-node = "error"
+
+# Logs of what the robots did: `btq verify` gives each requirement a verdict.
+# [evidence]
+# logs = ["logs/**/*.btlog"]
+#
+# [evidence.signals]
+# battery = { topic = "/battery_state", field = "percentage", scale = 100, unit = "%" }
 """
 
 _SKILLS = """\
