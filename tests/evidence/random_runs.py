@@ -192,7 +192,7 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
         if chance.random() < 0.6:
             lines.append(f"confidence {chance.choice(['60 %', '90 %', '95 %'])}")
         if chance.random() < 0.2:
-            is_over_run = any(f" {verb} " in f"{line} " for line in lines for verb in (*_OVER_RUN, "from", "sum"))
+            is_over_run = any(f" {verb} " in f" {line} " for line in lines for verb in (*_OVER_RUN, "from", "sum"))
             lines.append(f"over last {chance.choice(['5 activations', '2 runs', *([] if is_over_run else ['4 s'])])}")
     return "\n    ".join([head, *lines]) + apply
 
