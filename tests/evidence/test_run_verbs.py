@@ -246,6 +246,7 @@ def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("from Move starts to Pick succeeds takes at most 50 ms", BACK, "unknown 0/0 ?1"),
         ("from Move starts to Move halts takes at most 50 ms", UNWRITTEN, "satisfied 0/2"),
         ("from Move starts to Move halts takes at most 29 ms", UNWRITTEN, "unknown 0/0 ?2"),
+        ("from Pick succeeds to Move halts takes at most 99 ms", "0 1R 2R 3R 10 4S 50 2F 1F", "unknown 0/0 ?1"),
         # Each use of a subtree by itself; the nodes of two uses together with one outside.
         ("from Grip starts to Put succeeds takes at most 10 ms", "0 1R 8S 12S 10 9S 20 13S 1S", "violated 1/2"),
         ("from Grip starts to Put succeeds takes at most 20 ms", "0 1R 8S 12S 10 9S 20 13S 1S", "satisfied 0/2"),

@@ -30,7 +30,7 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
     next_after = bisect_right if first == span.last else bisect_left  # an event is not the next one after itself
     for event in run.happenings(first, run.own if first.condition is None else None):
         index = next_after(moments, event.at)
-        end = certain[index].until if index < len(certain) else None
+        end = next((each.until for each in certain[index:] if each.at >= event.at), None)
         until = end if end is not None else run.root.ended
         unclear = next((each.why for each in lasts if each.why and each.until >= event.at and each.at <= until), "")
         yield from _judged(claim, run, event, end, unclear)
