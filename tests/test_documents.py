@@ -40,6 +40,9 @@ RUN_BY = {
     "commands.md text": "test_a_diff_says_what_the_page_shows",
     "evidence.md text": "evidence/test_page.py",
     "console": "test_requirements_page.py",
+    "day-in-the-life.md console": "evidence/test_day.py",
+    "nav2.md console": "evidence/test_recipes.py",
+    "nav2.md text": "evidence/test_recipes.py",
     "sh": "test_a_shell_block_runs",
     "editors.md sh": "editors/test_neovim.py",
     "python": "test_the_python_of_a_page",
@@ -222,7 +225,7 @@ def test_a_diff_says_what_the_page_shows(tmp_path: Path) -> None:
 # ---- settings ----
 
 
-@pytest.mark.parametrize("block", blocks("toml", "commands.md", "evidence.md", "language.md"))
+@pytest.mark.parametrize("block", blocks("toml", "commands.md", "evidence.md", "language.md", "nav2.md"))
 def test_a_project_file_is_read(block: str, tmp_path: Path) -> None:
     (tmp_path / "btq.toml").write_text(block, encoding="utf-8")
     found = find_project(str(tmp_path))
@@ -277,7 +280,9 @@ def test_the_extension_is_packed_and_installed(page: str, tmp_path: Path) -> Non
 def test_ci_knows_its_names() -> None:
     """Hooks, the action's inputs and outputs, and the commands of the page are those there are."""
     text = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
-    hooks, workflow, gitlab = (yaml.safe_load(match[2]) for match in BLOCK.finditer(text) if match[1] == "yaml")
+    hooks, workflow, simulation, gitlab = (
+        yaml.safe_load(match[2]) for match in BLOCK.finditer(text) if match[1] == "yaml"
+    )
     known = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
     assert hooks["repos"][0]["hooks"] == [{"id": hook["id"]} for hook in known]
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
@@ -285,4 +290,5 @@ def test_ci_knows_its_names() -> None:
     assert set(step["with"]) <= set(action["inputs"])
     assert re.findall(r"steps\.btq\.outputs\.(\w+)", json.dumps(comment)) == ["diff", "diff"]
     assert "diff" in action["outputs"]
+    assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipes.py runs it
     assert gitlab["btq"]["script"][1].startswith("btq check --output-format junit")
