@@ -245,6 +245,7 @@ class JudgedClause:
         return ClauseVerdict(
             text=" ".join(said),
             path=", ".join(self._paths),
+            of=self.claim.text.partition(f" {self.claim.verb} ")[0] if isinstance(self._subject, Span | Total) else "",
             verdict=verdict,
             counted=tally.counted,
             violated=tally.violated,

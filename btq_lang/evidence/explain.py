@@ -11,6 +11,7 @@ from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration
 from btq_lang.record import Record
+from btq_lang.requirements.model import Span, Total
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -85,11 +86,17 @@ class Explainer:
         """What led to the violation of a clause by the activation that has just ended of the node with a path."""
         if claim.condition is not None:
             return tuple(self._sample(claim, judgement.at, path))
+        if isinstance(claim.subject, Span | Total):
+            return ()  # it is about more than one node
         for activation, sums, origin in self._ended.values():
             if activation.end == judgement.at and self._tree.nodes[activation.uid].path == path:
                 parts = tuple(self._parts(activation, sums))
-                is_late = judgement.measure is not None
-                return parts if is_late or origin is None else (self._origin(activation, sums, origin), *parts)
+                if judgement.measure is None and origin is not None:
+                    return (self._origin(activation, sums, origin), *parts)
+                if parts or claim.verb not in ("takes", "succeeds"):
+                    return parts
+                text = f"it ran {duration(activation.seconds)}"
+                return (Link("self", path, text, activation.seconds, 1, int(activation.outcome == "F")),)
         return ()
 
     def _add(self, parent: int, activation: Activation, sums: Sums | None) -> None:

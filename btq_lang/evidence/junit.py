@@ -66,7 +66,7 @@ def _case(requirement: RequirementVerdict, mission: MissionVerdicts) -> Iterator
 def _details(clause: ClauseVerdict, mission: MissionVerdicts) -> Iterator[str]:
     yield f"{clause.text} at {clause.path}: {clause.verdict}, {result(clause)}"
     if clause.verdict == VIOLATED:
-        yield from (f"  {explained(each, mission.medians)}" for each in clause.violations[:_SHOWN])
+        yield from (f"  {explained(clause, each, mission.medians)}" for each in clause.violations[:_SHOWN])
 
 
 _SHOWN = 10  # violations of a clause

@@ -35,9 +35,9 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
         medians: how long nodes take, in seconds by path.
     """
     if clause.interval is None:
-        return explained(worst_violation(clause), medians)
+        return explained(clause, worst_violation(clause), medians)
     first, *others = clause.violations
-    line = f"{first.path}: {clause.violated} of {clause.counted} {clause.unit} broke it"
+    line = f"{clause.of or first.path}: {clause.violated} of {clause.counted} {clause.unit} broke it"
     causes = Counter(each.chain[0].path for each in clause.violations if each.chain)
     if causes and (cause := causes.most_common(1)[0])[0] != first.path:
         line += f", {cause[1]} of them at {cause[0]}"
@@ -50,15 +50,17 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
     return f"{line} ({_where(first)}{also})"
 
 
-def explained(violation: Violation, medians: Mapping[str, float]) -> str:
-    """Of one violation: what was measured, the first link of each kind that led to it, and where to find it."""
-    parts = [f"{violation.path}: {violation.why}" + (f", bound {violation.bound}" if violation.bound else "")]
+def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str, float]) -> str:
+    """Of one violation of a clause: what was measured, the first link of each kind that led to it, and where to find it."""
+    parts = [
+        f"{clause.of or violation.path}: {violation.why}" + (f", bound {violation.bound}" if violation.bound else "")
+    ]
     kinds = {link.kind: link for link in reversed(violation.chain)}
     if "origin" in kinds:
         kinds.pop("part", None)
-    parts += [link.text for link in violation.chain if kinds.get(link.kind) is link]
-    if not violation.chain and violation.path in medians:
+    if "self" in kinds and violation.path in medians:  # how long it ran has been said
         parts.append(f"its median is {duration(medians[violation.path])}")
+    parts += [link.text for link in violation.chain if kinds.get(link.kind) is link and link.kind != "self"]
     return f"{'; '.join(parts)} ({_where(violation)})"
 
 

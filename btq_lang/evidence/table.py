@@ -88,9 +88,9 @@ def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: b
     yield headline(clause, medians)
     if verbose:
         worst = worst_violation(clause)
-        yield from (f"  - {link.text}" for link in worst.chain)
+        yield from (f"  - {link.text}" for link in worst.chain if link.kind != "self")
         others = [each for each in clause.violations if each is not worst]
-        yield from (explained(each, medians) for each in others[:_FURTHER])
+        yield from (explained(clause, each, medians) for each in others[:_FURTHER])
         if clause.violated - 1 > _FURTHER:
             yield f"… {clause.violated - 1 - _FURTHER} more; --format json has them"
 

@@ -30,7 +30,7 @@ class Link(Record):
     """Something that led to a violation.
 
     Attributes:
-        kind: `part`: a node below it that took a share of its time; `origin`: where a failure began; `sample`: what a
+        kind: `part`: a node below it that took a share of its time; `self`: the node, which took all of it; `origin`: where a failure began; `sample`: what a
             condition was judged by; `failure`: a leaf that had failed before in the run.
         path: of the node; of a sample the leaf that ran when it was taken, empty where none did.
         text: in words.
@@ -38,7 +38,7 @@ class Link(Record):
         activations, failed: of the node meanwhile.
     """
 
-    kind: Literal["part", "origin", "sample", "failure"]
+    kind: Literal["part", "self", "origin", "sample", "failure"]
     path: str
     text: str
     seconds: float
@@ -136,6 +136,7 @@ class ClauseVerdict(Record):
     Attributes:
         text: as typed, with its scopes and odds.
         path: of the node, as the engine names it; of a subtree that is used several times all of them.
+        of: what it measures where that is more than a node: `from … to …`, `sum of …`; else empty.
         counted: how many activations, or with odds of runs how many runs, were judged true or false.
         violated, unknown: how many of them, and of those beside them.
         cut_off: activations that were left out, for the log ends while they are open.
@@ -151,6 +152,7 @@ class ClauseVerdict(Record):
 
     text: str
     path: str
+    of: str
     verdict: Verdict
     counted: int
     violated: int

@@ -54,6 +54,18 @@ LINES = [
         " (run 3 of lab.btlog, 392 ms after its start at 2026-11-20 21:22:21.135 UTC)",
     ),
     (
+        "lab",
+        "from PickTube/Pick starts to PickTube/Place succeeds takes at most 127 ms",
+        "from PickTube/Pick starts to PickTube/Place succeeds: took 128 ms, bound 127 ms"
+        " (run 136 of lab.btlog, 533 ms after its start at 2026-11-20 21:23:27.778 UTC)",
+    ),
+    (
+        "lab",
+        "MoveToStation uses at most 3 % of battery",
+        "MoveToStation: used 4 %, bound 3 %"
+        " (run 1 of lab.btlog, 186 ms after its start at 2026-11-20 21:22:20.034 UTC)",
+    ),
+    (
         "nav",
         "mission takes at most 1.05 s",
         "NavigateRecovery: took 1.16 s, bound 1.05 s;"

@@ -416,7 +416,16 @@ def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
             "measured": "0.0372 s",
             "bound": "0.03 s",
             "why": "took 0.0372 s",
-            "chain": [],
+            "chain": [
+                {
+                    "kind": "self",
+                    "path": "Move::2",
+                    "text": "it ran 37.2 ms",
+                    "seconds": pytest.approx(0.0372),
+                    "activations": 1,
+                    "failed": 0,
+                }
+            ],
         }
     ]
 
