@@ -51,10 +51,9 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
 
 
 def explained(clause: ClauseVerdict, violation: Violation, medians: Mapping[str, float]) -> str:
-    """Of one violation of a clause: what was measured, the first link of each kind that led to it, and where to find it."""
-    parts = [
-        f"{clause.of or violation.path}: {violation.why}" + (f", bound {violation.bound}" if violation.bound else "")
-    ]
+    """Of one violation of a clause: what was measured, the first link of each kind that led to it, and where it is."""
+    bound = f", bound {violation.bound}" if violation.bound else ""
+    parts = [f"{clause.of or violation.path}: {violation.why}{bound}"]
     kinds = {link.kind: link for link in reversed(violation.chain)}
     if "origin" in kinds:
         kinds.pop("part", None)

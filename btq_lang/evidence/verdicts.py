@@ -30,8 +30,9 @@ class Link(Record):
     """Something that led to a violation.
 
     Attributes:
-        kind: `part`: a node below it that took a share of its time; `self`: the node, which took all of it; `origin`: where a failure began; `sample`: what a
-            condition was judged by; `failure`: a leaf that had failed before in the run.
+        kind: `part`: a node below it that took a share of its time; `self`: the node, which took all of it; `origin`:
+            where a failure began; `sample`: what a condition was judged by; `failure`: a leaf that had failed before in
+            the run.
         path: of the node; of a sample the leaf that ran when it was taken, empty where none did.
         text: in words.
         seconds: how long the node ran; of a sample its age.
