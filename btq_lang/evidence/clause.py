@@ -106,7 +106,7 @@ class JudgedClause:
         self._has_run = True
         if guard is not None and self._is_own(guard):
             said = f"stopped by its own guard after {duration(activation.seconds)}"
-            self._add(Judgement(False, activation.end, said), path)
+            self._add(Judgement(False, activation.end, said), path, activation.end)
         elif self._judge is not None and self._running:
             self._waiting.append((activation, path))
         elif self._judge is not None:
@@ -118,7 +118,9 @@ class JudgedClause:
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
         if own or (self.claim.verb == "succeeds" and refusal.verb == "needs"):
             self._has_run = True
-            self._add(Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path)
+            self._add(
+                Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path, refusal.time
+            )
 
     def end_run(self, run: Run, root: Activation) -> None:
         """The run that was open has ended.
@@ -164,13 +166,13 @@ class JudgedClause:
 
     def _count(self, judgement: Judgement | None, of: Activation, path: str) -> None:
         if judgement is not None:
-            self._add(judgement, path)
+            self._add(judgement, path, of.end)
         else:
             self._tally.cut_off += of.outcome == "O"
 
-    def _add(self, judgement: Judgement, path: str) -> None:
+    def _add(self, judgement: Judgement, path: str, end: int) -> None:
         explain = self.explain if judgement.holds is False else None
-        self._tally.add(judgement, path, explain(judgement, path) if explain is not None else ())
+        self._tally.add(judgement, path, end, explain(judgement, path) if explain is not None else ())
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for: together are those that are judged as one."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import Link
     from btq_lang.requirements.model import Odds, Window
 
-    _Entry: TypeAlias = tuple[Judgement, str, tuple[Link, ...]]
+    _Entry: TypeAlias = tuple[Judgement, str, int, tuple[Link, ...]]
 
 
 class Recent:
@@ -38,19 +38,19 @@ class Recent:
         self._kept: Final[list[tuple[Run, list[_Entry]]]] = []  # the earliest run first
         self._end = 0  # of the last run
 
-    def add(self, judgement: Judgement, path: str, chain: tuple[Link, ...] = ()) -> None:
-        """Count what an activation of the run that is open came to.
+    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
+        """Count what an activation of the run that is open, or the run, came to.
 
         Args:
-            chain: what led to it.
+            end, chain: as of `Tally.add`.
         """
-        self._now.append((judgement, path, chain))
+        self._now.append((judgement, path, end, chain))
 
     def end_run(self, run: Run) -> None:
         """The run that was open has ended."""
         self._end = max(self._end, run.end)
         if self._now:
-            found = sorted(self._now, key=lambda each: each[0].at)
+            found = sorted(self._now, key=_end)
             insort(self._kept, (run, found), key=lambda each: each[0].begin)
             self._now.clear()
         self._leave_out()
@@ -73,7 +73,7 @@ class Recent:
             assert self._window.seconds is not None, "a window is a number or a time"
             begin = self._end - round(self._window.seconds * 1e6)
             for _, judgements in kept:
-                judgements[:] = [each for each in judgements if each[0].at >= begin]
+                judgements[:] = [each for each in judgements if _end(each) >= begin]
             kept[:] = [each for each in kept if each[1]]
         elif self._window.experiments == "runs":
             del kept[: max(len(kept) - count, 0)]
@@ -85,3 +85,7 @@ class Recent:
                 del judgements[:gone]
                 if not judgements:
                     del kept[0]
+
+
+def _end(entry: _Entry) -> int:
+    return entry[2]

@@ -59,10 +59,11 @@ class Tally:
         self._kept = self._unclear = 0  # likewise
         self._worst_now: Measure | None = None
 
-    def add(self, judgement: Judgement, path: str, chain: tuple[Link, ...] = ()) -> None:
-        """Count what an activation of the run that is open came to.
+    def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
+        """Count what an activation of the run that is open, or the run, came to.
 
         Args:
+            end: of the activation, or of the run.
             chain: what led to it.
         """
         if judgement.holds is None:

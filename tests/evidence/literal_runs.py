@@ -70,14 +70,14 @@ def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation
             if opened is not None:
                 if of == uid and _completes(rows, index):
                     continue
-                outcome, is_exact, end = above.get(index, "H"), of == uid and status != RUNNING, time
+                outcome, is_exact, last, end = above.get(index, "H"), of == uid and status != RUNNING, index, time
                 if of == uid == ROOT and status == RUNNING:
                     outcome = "O"
                 elif of == uid and status in (SUCCESS, FAILURE):
                     outcome = "S" if status == SUCCESS else "F"
                 if outcome == "O":
-                    is_exact, end = True, rows[index - 1][0]
-                found.append(Activation(uid, opened, index, rows[opened][0], end, outcome, is_exact))
+                    is_exact, last, end = True, index - 1, rows[index - 1][0]
+                found.append(Activation(uid, opened, last, rows[opened][0], end, outcome, is_exact))
                 closed.append(since)
                 ends[uid][index] = "O" if outcome == "O" else "H"
                 opened = None

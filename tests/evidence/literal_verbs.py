@@ -20,7 +20,7 @@ OPEN, OUT = "open", "out"  # cut off by the end of the log before it breaks anyt
 
 @dataclass(frozen=True)
 class Judged:
-    """What one activation came to: true, false, unknown, open, or not counted; at: when it had."""
+    """What one activation came to: true, false, unknown, open, or not counted; at: its end."""
 
     run: int
     uid: int
@@ -34,17 +34,8 @@ class OfActivations(Log):
     def of_activations(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
         """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node."""
         if claim.verb in ("keeps", "never"):
-            return [Judged(each.run, uid, *self.keeps(each, claim, requirement)) for each in self.of(uid)]
-        is_early = claim.verb == "needs"
-        return [
-            Judged(
-                each.run,
-                uid,
-                self.scoped(each, self.whole(each, claim), requirement),
-                each.begin if is_early else each.end,
-            )
-            for each in self.of(uid)
-        ]
+            return [judged(each, self.keeps(each, claim, requirement)) for each in self.of(uid)]
+        return [judged(each, self.scoped(each, self.whole(each, claim), requirement)) for each in self.of(uid)]
 
     def whole(self, a: Activation, claim: Claim) -> Verdict:
         """What one activation comes to, whatever the scope; not of keeps and never, where that is a matter of time."""
@@ -69,24 +60,20 @@ class OfActivations(Log):
             used = -used
         return self.bounded(a, used, claim.limit)
 
-    def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> tuple[Verdict, int]:
-        """keeps, never: a sample in [b, e] with C that breaks it, and when; it counts if C holds at all meanwhile."""
-        times = self.moments(a)
+    def keeps(self, a: Activation, claim: Claim, requirement: Requirement) -> Verdict:
+        """keeps, never: a sample in [b, e] with C that breaks it; it counts if C holds at all meanwhile."""
         moments = [
             (
                 self.holds_all("while", requirement, moment, a),
                 negated(self.holds(claim.condition, moment, a), claim.verb == "never"),
             )
-            for moment in times
+            for moment in self.moments(a)
         ]
         if not a.is_exact:  # it may have ended right after its start
             moments[1:] = [(None if counts else counts, holds) for counts, holds in moments[1:]]
         counts = both(self.holds_all("when", requirement, a.start, a), either(*(counts for counts, _ in moments)))
         kept = both(*(either(negated(counts, True), holds) for counts, holds in moments))
-        broken = next(
-            (time for (time, _), moment in zip(times, moments, strict=True) if moment == (True, False)), a.end
-        )
-        return counted(counts, OPEN if kept and a.outcome == "O" else kept), broken
+        return counted(counts, OPEN if kept and a.outcome == "O" else kept)
 
     def bounded(self, a: Activation, measured: float | None, limit: Limit | None) -> Verdict:
         """A measure that grows while the activation lasts, against its bound."""

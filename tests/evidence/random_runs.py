@@ -192,8 +192,7 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
         if chance.random() < 0.6:
             lines.append(f"confidence {chance.choice(['60 %', '90 %', '95 %'])}")
         if chance.random() < 0.2:
-            is_over_run = any(f" {verb} " in f" {line} " for line in lines for verb in (*_OVER_RUN, "from", "sum"))
-            lines.append(f"over last {chance.choice(['5 activations', '2 runs', *([] if is_over_run else ['4 s'])])}")
+            lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
     return "\n    ".join([head, *lines]) + apply
 
 
@@ -220,8 +219,10 @@ def claim(chance: random.Random, labels: list[str]) -> str:
     return f"{subject} {verb} {operand}".rstrip()
 
 
-_OVER_RUN = ("tries", "runs", "starts", "ends", "follows")  # when they are judged is not told to the moment
-_VERBS = ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", *_OVER_RUN)
+_VERBS = (
+    *("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses"),
+    *("tries", "runs", "starts", "ends", "follows"),
+)
 
 
 def uses(chance: random.Random, labels: list[str]) -> str:

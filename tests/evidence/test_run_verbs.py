@@ -245,6 +245,8 @@ def test_follows(demand: str, runs: str, expected: str, verify: Verify) -> None:
         ("from Move starts to Pick succeeds takes at most 49 ms", CUT, "violated 1/1 |1"),
         ("from Move starts to Pick succeeds takes at most 50 ms", BACK, "unknown 0/0 ?1"),
         ("from Move starts to Move halts takes at most 50 ms", UNWRITTEN, "satisfied 0/2"),
+        # That had happened by 50, but perhaps before Pick started, and not again.
+        ("from Pick starts to Move halts takes at most 1 s", "0 1R 2R 3R 10 4R 20 4S 50 2F 1F", "unknown 0/0 ?1"),
         ("from Move starts to Move halts takes at most 29 ms", UNWRITTEN, "unknown 0/0 ?2"),
         ("from Pick succeeds to Move halts takes at most 99 ms", "0 1R 2R 3R 10 4S 50 2F 1F", "unknown 0/0 ?1"),
         # Each use of a subtree by itself; the nodes of two uses together with one outside.
@@ -486,6 +488,19 @@ def several(*runs: str) -> str:
 )
 def test_windows(demand: str, runs: list[str], expected: str, verify: Verify) -> None:
     assert come_to(verify, f"Move succeeds\n{demand}", several(*runs)) == expected
+
+
+@pytest.mark.parametrize(
+    ("window", "expected"),
+    [
+        ("over last 10 ms", "violated 1/1"),  # both runs end in it
+        ("over last 9 ms", "never exercised 0/0"),
+    ],
+)
+def test_what_ends_in_a_window_counts_whenever_it_was_broken(window: str, expected: str, verify: Verify) -> None:
+    runs = "0 1R 3R 30 3S 1S 35 1R 40 1S"
+    demand = f"Move keeps battery >= 20 %\n{window}"
+    assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 8: 50})) == expected
 
 
 def test_what_is_last_is_told_by_its_time(verify: Verify) -> None:

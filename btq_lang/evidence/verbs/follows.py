@@ -20,20 +20,19 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
     events = run.happenings(claim.event)
     name = claim.text.partition(" follows ")[2]
     before = (run.root.begin, -1)  # of the run
-    since = "before it in the run"
     for start in run.own:
         found = [each for each in events if each.until > before and each.at <= start.started]
         is_sure = any(each.is_certain and before < each.at and each.until <= start.started for each in found)
+        since = "since its last start" if before[1] >= 0 else "before it in the run"
         before = start.started
         counts = run.counts_one(start)
-        unclear = counts.why if isinstance(counts, Unknown) else ""
-        if not is_sure and found:
-            unclear = unclear or found[0].why
-        if is_sure and counts is not False and start.outcome == "O":
+        if counts is False:
+            continue
+        unclear = counts.why if isinstance(counts, Unknown) else found[0].why if found and not is_sure else ""
+        if is_sure and start.outcome == "O":
             yield None
-        elif unclear and counts is not False:
+        elif unclear:
             yield Judgement(None, start.begin, unclear)
-        elif counts:
+        else:
             said = f"followed `{name}`" if is_sure else f"`{name}` did not happen {since}"
             yield Judgement(is_sure, start.begin, VERBS["follows"].said.replace("{}", said))
-        since = "since its last start"

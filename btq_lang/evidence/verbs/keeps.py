@@ -31,17 +31,16 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
     for moment in observed.moments(condition):
         found = judged_at(condition, moment, observed, said)
         if found.holds is False:
-            at = activation.end if is_of_all else found.at
-            if activation.timing == "exact" or found.at == activation.begin:
-                return replace(found, at=at)
-            return Judgement(None, at, "the log does not say whether it was still running")
+            if activation.timing == "exact" or moment == observed.begin:
+                return replace(found, at=activation.end) if is_of_all else found
+            return Judgement(None, found.at, "the log does not say whether it was still running")
         if found.holds is None:
             unknown = unknown or found
         elif closest is None or _excess(found) > _excess(closest):
             closest = found
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    return replace(result, at=activation.end)
+    return result
 
 
 def _excess(judgement: Judgement) -> float:

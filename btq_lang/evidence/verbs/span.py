@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from itertools import accumulate
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
@@ -25,14 +26,16 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
     assert isinstance(span, Span), "the time between two events"
     first = span.first
     lasts = run.happenings(span.last)
-    certain = sorted([each for each in lasts if each.is_certain], key=lambda each: each.until)
-    moments = [each.until for each in certain]
+    certain = [each for each in lasts if each.is_certain]
+    moments = [each.at for each in certain]
+    ends = [*accumulate((each.until for each in reversed(certain)), min)][::-1]  # of those from each one on, the first
+    unsure = [each for each in lasts if each.why]
     next_after = bisect_right if first == span.last else bisect_left  # an event is not the next one after itself
     for event in run.happenings(first, run.own if first.condition is None else None):
         index = next_after(moments, event.at)
-        end = next((each.until for each in certain[index:] if each.at >= event.at), None)
+        end = ends[index] if index < len(ends) else None
         until = end if end is not None else run.root.ended
-        unclear = next((each.why for each in lasts if each.why and each.until >= event.at and each.at <= until), "")
+        unclear = next((each.why for each in unsure if each.until >= event.at and each.at <= until), "")
         yield from _judged(claim, run, event, end, unclear)
 
 
@@ -51,21 +54,18 @@ def _judged(
     if counts is False:
         return
     found = compared(claim.limit, (until[0] - first.at[0]) / 1e6, run.observed, first.at)
-    is_late = isinstance(found, Unknown) or (found.is_upper and found.measure.excess > 0)
-    if last is None and not is_late and not first.why and not unclear and run.is_cut_off:
-        yield None
+    if first.why or isinstance(found, Unknown):
+        yield Judgement(None, until[0], found.why if isinstance(found, Unknown) else first.why)
         return
-    why = first.why
-    for each in (counts, found):
-        why = why or (each.why if isinstance(each, Unknown) else "")
-    if why or isinstance(found, Unknown):
-        yield Judgement(None, until[0], why)
-        return
-    said = VERBS["takes"].said
+    is_late = found.is_upper and found.measure.excess > 0
     if unclear and (is_late or last is None or not (found.is_upper and found.is_lone)):
         yield Judgement(None, until[0], unclear)
+    elif last is None and not is_late and run.is_cut_off:
+        yield None
+    elif isinstance(counts, Unknown):
+        yield Judgement(None, until[0], counts.why)
     elif last is not None:
-        yield Judgement(found.measure.excess <= 0, until[0], said, found.measure)
+        yield Judgement(found.measure.excess <= 0, until[0], VERBS["takes"].said, found.measure)
     elif is_late:
         yield Judgement(False, until[0], "had not come to an end after {}", found.measure)
     elif claim.limit.relation not in (">=", ">"):

@@ -47,18 +47,18 @@ def judged(
     if counts is False:
         return
     time = deadline[0]
-    is_late = isinstance(found, Unknown) or found.measure.excess > 0
-    if answer is None and not is_late and not event.why and run.is_cut_off:
+    if event.why or isinstance(found, Unknown):
+        yield Judgement(None, time, found.why if isinstance(found, Unknown) else event.why)
+        return
+    is_late = found.measure.excess > 0
+    if answer is None and not is_late and run.is_cut_off:
         yield None
-        return
-    why = next((each.why for each in (event, counts, found) if isinstance(each, Happening | Unknown) and each.why), "")
-    if why or isinstance(found, Unknown):
-        yield Judgement(None, time, why)
-        return
-    if answer is not None and not (is_late and answer.why):
-        yield Judgement(not is_late, until[0], said, found.measure)
-    elif answer is not None:
+    elif isinstance(counts, Unknown):
+        yield Judgement(None, time, counts.why)
+    elif answer is not None and answer.why and is_late:
         yield Judgement(None, time, answer.why)
+    elif answer is not None:
+        yield Judgement(not is_late, until[0], said, found.measure)
     elif is_late:
         yield Judgement(False, time, never, found.measure)
     else:
