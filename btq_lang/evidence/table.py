@@ -5,7 +5,7 @@ from __future__ import annotations
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
-from btq_lang.evidence.wording import counted, duration, moment
+from btq_lang.evidence.wording import counted, duration, period
 from btq_lang.render.cells import laid_out, printable
 from btq_lang.render.colour import painter
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from typing import Final
 
-    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Source, Verdict
+    from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Verdict
     from btq_lang.render.colour import Paint
 
 
@@ -38,21 +38,14 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
         identity = f"{source.identity}, {found}"
         if source.joined < source.nodes:
             identity = f"{found} joined: {source.identity}"
-        period = f", {_period(source)}" if source.begin is not None else ""
-        yield printable(f"{counted(source.runs, 'run')} in {source.file}{period}, mission {mission.name} ({identity})")
+        runs = f"{counted(source.runs, 'run')} in {source.file}"
+        if source.first_run > 1:
+            runs += f", numbered from {source.first_run}"
+        if source.begin is not None and source.end is not None:
+            runs += f", {period(source.begin, source.end)}"
+        yield printable(f"{runs}, mission {mission.name} ({identity})")
         for remark in source.remarks:
             yield printable(f"  note: {remark}")
-
-
-def _period(source: Source) -> str:
-    """When the runs were, to the minute."""
-    begin = moment(source.begin) if source.begin is not None else None
-    end = moment(source.end) if source.end is not None else None
-    if begin is None or end is None:
-        return "times that no calendar has"
-    until = end.strftime("%H:%M" if begin.date() == end.date() else "%Y-%m-%d %H:%M")
-    since = begin.strftime("%Y-%m-%d %H:%M")
-    return f"{since} UTC" if since.endswith(until) else f"{since}–{until} UTC"
 
 
 def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool) -> Iterator[str]:

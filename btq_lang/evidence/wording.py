@@ -47,6 +47,16 @@ def moment(time: int) -> datetime | None:
 
 def timestamp(time: int) -> str:
     """A time as ISO 8601 has it; the bare number where no calendar has it."""
+def period(begin: int, end: int) -> str:
+    """Two times in µs since the epoch, to the minute."""
+    first, last = moment(begin), moment(end)
+    if first is None or last is None:
+        return "times that no calendar has"
+    since = first.strftime("%Y-%m-%d %H:%M")
+    until = last.strftime("%H:%M" if first.date() == last.date() else "%Y-%m-%d %H:%M")
+    return f"{since} UTC" if since.endswith(until) else f"{since}–{until} UTC"
+
+
     found = moment(time)
     return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
 

@@ -233,6 +233,12 @@ def test_runs_are_numbered_over_all_files(lab: Path) -> None:
     late = found["requirements"][0]["clauses"][0]["violations"]
     assert [each["run"] for each in late[4:]] == [each["run"] + 200 for each in late[:4]]
 
+    _, output, _ = btq(lab, "verify", ".")
+    known = "2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)"
+    assert output.splitlines()[:2] == [
+        f"200 runs in lab.btlog, {known}",
+        f"200 runs in lab.db3, numbered from 201, {known}",
+    ]
 
 def test_a_log_without_rows_to_idle_gives_the_same_verdicts(lab: Path) -> None:
     """As Nav2 writes them on demand; the laboratory halts nothing, so nothing becomes unknown."""
