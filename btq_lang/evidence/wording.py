@@ -33,8 +33,10 @@ def duration(seconds: float) -> str:
 
 
 def share(probability: float) -> str:
-    """A fraction of one as a percentage."""
-    return f"{float(f'{probability * 100:.3g}'):.15g} %"
+    """A fraction of one as a percentage, with three digits, and more where these would make it certain."""
+    percent = probability * 100
+    shown = (float(f"{percent:.{digits}g}") for digits in range(3, 16))
+    return f"{next((each for each in shown if each < 100 or percent >= 100), percent):.15g} %"
 
 
 def moment(time: int) -> datetime | None:
@@ -45,8 +47,6 @@ def moment(time: int) -> datetime | None:
         return None
 
 
-def timestamp(time: int) -> str:
-    """A time as ISO 8601 has it; the bare number where no calendar has it."""
 def period(begin: int, end: int) -> str:
     """Two times in µs since the epoch, to the minute."""
     first, last = moment(begin), moment(end)
@@ -57,6 +57,8 @@ def period(begin: int, end: int) -> str:
     return f"{since} UTC" if since.endswith(until) else f"{since}–{until} UTC"
 
 
+def timestamp(time: int) -> str:
+    """A time as ISO 8601 has it; the bare number where no calendar has it."""
     found = moment(time)
     return found.isoformat(timespec="microseconds").replace("+00:00", "Z") if found is not None else f"{time} us"
 

@@ -8,6 +8,7 @@ from math import comb, log
 import pytest
 
 from btq_lang.evidence.odds import beta_cdf, lower_limit, runs_to_decide, upper_limit
+from btq_lang.evidence.wording import share
 
 # scipy.stats.beta.ppf of SciPy 1.17.1: (k, n, confidence, lower limit, upper limit).
 GRID = (
@@ -119,3 +120,11 @@ def test_how_many_more_decide(k: int, n: int, probability: float, more: int | No
 def test_the_ends_of_the_distribution() -> None:
     assert (beta_cdf(0.0, 2, 3), beta_cdf(1.0, 2, 3)) == (0.0, 1.0)
     assert (lower_limit(0, 9, 0.95), upper_limit(9, 9, 0.95)) == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("probability", "shown"),
+    [(0.96157, "96.2 %"), (0.99967, "99.97 %"), (0.9999999, "99.99999 %"), (1.0, "100 %"), (0.0, "0 %")],
+)
+def test_only_what_is_certain_is_100_percent(probability: float, shown: str) -> None:
+    assert share(probability) == shown
