@@ -24,6 +24,7 @@ from btq_lang.evidence.readers.bag import METADATA
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
+from btq_lang.evidence.wording import period
 from btq_lang.loader import IS_SPECIAL, absolute, collect, find_project, is_special, read, shown
 from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean, near
@@ -60,7 +61,9 @@ def run(options: Namespace) -> int:
                 told=lambda files, runs: progress.reached(files, f", {runs} run{'' if runs == 1 else 's'} judged"),
             )
         problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
-        for note in _ignored(options.signals, samples, missions):
+        read_from = [(options.signals, each) for each in samples.values()]
+        read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
+        for note in (*_ignored(options.signals, samples, missions), *_of_other_times(read_from, report)):
             print(f"btq verify: {note}", file=sys.stderr)
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
@@ -193,6 +196,24 @@ def _ignored(path: str | None, samples: Iterable[str], missions: Sequence[Candid
 
 def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
     """The missions of the report in which something is wrong, so that a clause may not have been understood."""
+def _of_other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
+    """The files with samples before or after all runs, as where their times are no seconds since the epoch.
+
+    A single sample may be of something that does not change.
+    """
+    times: dict[str, set[int]] = {}
+    for file, series in read_from:
+        times.setdefault(file, set()).update(series.times)
+    begins = [each.begin for mission in report.missions for each in mission.sources if each.begin is not None]
+    ends = [each.end for mission in report.missions for each in mission.sources if each.end is not None]
+    for file, found in times.items():
+        if begins and len(found) > 1 and (max(found) < min(begins) or min(found) > max(ends)):
+            yield (
+                f"{file}: its samples are from {period(min(found), max(found))}, and the runs from"
+                f" {period(min(begins), max(ends))}; expected times in seconds since the epoch"
+            )
+
+
     judged = {mission.file for mission in report.missions}
     for mission in missions:
         if mission.path in judged:

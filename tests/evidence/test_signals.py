@@ -319,6 +319,34 @@ def test_what_klein_did_not_write(header: object, lines: list[object], remark: s
     assert robot.json("run.btlog")["sources"][0]["remarks"] == [remark]
 
 
+@pytest.mark.parametrize(
+    ("times", "period"),
+    [
+        ((0, 61), "1970-01-01 00:00–00:01 UTC"),
+        ((START / 1e6 + 3600, START / 1e6 + 90000), "2026-11-20 22:22–2026-11-21 22:22 UTC"),
+        ((START / 1e3, START / 1e3 + 1000), "times that no calendar has"),
+    ],
+)
+def test_samples_of_another_time_than_the_runs(times: tuple[float, float], period: str, robot: Verify) -> None:
+    """As where the times are counted from the start of the robot, in another zone, or in ms."""
+    (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, RUNS))
+    lines = ["t,battery", *[f"{time},50" for time in times]]
+    (robot.folder / "b.csv").write_text("\n".join(lines), encoding="utf-8")
+    told = (
+        f"btq verify: b.csv: its samples are from {period}, and the runs from 2026-11-20 21:22 UTC;"
+        " expected times in seconds since the epoch\n"
+    )
+    robot.text("run.btlog", "--signals", "b.csv")
+    assert robot.errors == told
+    table = '[evidence.signals]\nbattery = { file = "b.csv", column = "battery" }\n'
+    (robot.folder / "btq.toml").write_text(table, encoding="utf-8")
+    robot.text("run.btlog")
+    assert robot.errors == told
+    (robot.folder / "b.csv").write_text("\n".join([*lines, f"{START / 1e6},50"]), encoding="utf-8")
+    robot.text("run.btlog")
+    assert robot.errors == ""
+
+
 # ---- logs of the project ----
 
 
