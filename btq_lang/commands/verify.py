@@ -86,10 +86,12 @@ def _given(options: Namespace, problems: list[str]) -> tuple[Sequence[str], Sequ
     if problem := usage_problem([*options.logs, *options.mission]) or form_problem(options, FORMATS):
         problems.append(problem)
         return (), (), {}
-    project = find_project(".").project
+    home = find_project(".")
+    project = home.project
     asked = options.logs or _logs_of(project)
     if not asked:
-        problems.append("no log given; name one, or set `logs` in [evidence] of btq.toml")
+        untold = "no log given; name one, or set `logs` in [evidence] of btq.toml"
+        problems += map(str, home.problems) if home.problems else [untold]
         return (), (), {}
     files, unreachable = collect(asked, project, (*SUFFIXES, METADATA))
     logs = whole_bags(files)
@@ -135,7 +137,7 @@ def _missions(asked: Sequence[str], logs: Sequence[str], problems: list[str]) ->
                 nodes = side.nodes if side is not None and side.mission == path else None
                 found.append(Candidate(group.workspace, path, _name(path), nodes))
     if not found and not problems:
-        problems.append("no mission found; name one with --mission FILE")
+        problems.append("no mission found; name one with --mission FILE, a .btq file or XML")
     return found
 
 
@@ -194,8 +196,6 @@ def _ignored(path: str | None, samples: Iterable[str], missions: Sequence[Candid
             yield f"{path}: column `{name}` is ignored, because no signal or entry has this name{meant}"
 
 
-def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
-    """The missions of the report in which something is wrong, so that a clause may not have been understood."""
 def _of_other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
     """The files with samples before or after all runs, as where their times are no seconds since the epoch.
 
@@ -214,6 +214,8 @@ def _of_other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> 
             )
 
 
+def _with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
+    """The missions of the report in which something is wrong, so that a clause may not have been understood."""
     judged = {mission.file for mission in report.missions}
     for mission in missions:
         if mission.path in judged:

@@ -28,6 +28,7 @@ FOREIGN = (
     "expected a BehaviorTree.CPP log (.btlog from FileLogger2, .db3 or .btdb from SqliteLogger) or a ROS 2 bag (.mcap,"
     " .db3, or a folder with metadata.yaml)"
 )
+COLUMNS = "expected a line of column names, separated by commas: the time first, then signals or their entries"
 UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree.CPP numbers them"
 
 
@@ -42,7 +43,7 @@ def problems(path: Path) -> tuple[str, ...]:
 @pytest.mark.parametrize(
     ("data", "problem"),
     [
-        (b"", FOREIGN),
+        (b"", "the file is empty"),
         (
             b"t,battery\n1,2\n",
             FOREIGN,
@@ -236,8 +237,10 @@ def test_rows_that_no_engine_writes_are_left_out_and_reported(verify: Verify) ->
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("", "expected a line of column names: the time first, then signals or their entries"),
-        ("t\n1\n", "expected a line of column names: the time first, then signals or their entries"),
+        ("", COLUMNS),
+        ("t\n1\n", COLUMNS),
+        ("t;battery\n1;2\n", COLUMNS),
+        ("t\0,\0b\0\n\0", "expected text in UTF-8, found UTF-16 or no text"),
         ("t,a,a\n", "two columns are named `a`"),
         ("t,battery\n1,2\nnoon,3\n", "line 3: `noon` is not a time in seconds since the epoch"),
         ("t,battery\nnan,2\n", "line 2: `nan` is not a time in seconds since the epoch"),

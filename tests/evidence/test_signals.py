@@ -350,6 +350,18 @@ def test_samples_of_another_time_than_the_runs(times: tuple[float, float], perio
 # ---- logs of the project ----
 
 
+@pytest.mark.parametrize("table", ['[evidence]\nlog = ["logs"]\n', '[evidence]\nlogs = "logs"\n'])
+def test_a_mistake_in_the_project_is_told_first(table: str, robot: Verify) -> None:
+    (robot.folder / "btq.toml").write_text(table, encoding="utf-8")
+    robot.text()
+    problem = (
+        "unknown key `evidence.log`; did you mean `logs`?"
+        if "log = " in table
+        else "`evidence.logs` must be a list of paths"
+    )
+    assert (robot.code, robot.errors) == (2, f"btq verify: btq.toml:2:1: {problem}\n")
+
+
 def test_the_logs_of_the_project(robot: Verify) -> None:
     robot.text()
     assert (robot.code, robot.errors) == (

@@ -20,6 +20,7 @@ LOGS = ("lab.btlog", "lab.db3")
 PICKS, PLACES = (10, 18), (11, 19)  # the uids of the two instances
 
 
+NO_MISSION = "no mission found; name one with --mission FILE, a .btq file or XML"
 SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
 
 
@@ -232,13 +233,13 @@ def test_runs_are_numbered_over_all_files(lab: Path) -> None:
     ]
     late = found["requirements"][0]["clauses"][0]["violations"]
     assert [each["run"] for each in late[4:]] == [each["run"] + 200 for each in late[:4]]
-
     _, output, _ = btq(lab, "verify", ".")
     known = "2026-11-20 21:22–21:24 UTC, mission lab (as built now, 19 of 19 nodes)"
     assert output.splitlines()[:2] == [
         f"200 runs in lab.btlog, {known}",
         f"200 runs in lab.db3, numbered from 201, {known}",
     ]
+
 
 def test_a_log_without_rows_to_idle_gives_the_same_verdicts(lab: Path) -> None:
     """As Nav2 writes them on demand; the laboratory halts nothing, so nothing becomes unknown."""
@@ -279,7 +280,7 @@ def test_exit_codes(demands: str, more: tuple[str, ...], code: int, lab: Path) -
         (("folder",), "btq verify: no .btlog, .db3, .btdb or .mcap below folder\n"),
         (("lab.btlog", "--mission", "none.btq"), "btq verify: none.btq: cannot be read: No such file or directory\n"),
         (("lab.btlog", "--signals", "none.csv"), "btq verify: none.csv: cannot be read: No such file or directory\n"),
-        (("lab.btlog", "--mission", "folder"), "btq verify: no mission found; name one with --mission FILE\n"),
+        (("lab.btlog", "--mission", "folder"), f"btq verify: {NO_MISSION}\n"),
         (("pipe", "--signals", "pipe"), f"btq verify: pipe: {SPECIAL}\n" * 2),
         (("empty.btlog",), "btq verify: no run in any log, so there is nothing to judge\n"),
     ],

@@ -70,6 +70,8 @@ def _reader(path: str) -> ModuleType:
         return tree_log
     with open(path, "rb") as file:
         start = file.read(_LONGEST)
+    if not start:
+        raise NotALog("the file is empty")
     if start.startswith(btlog.MAGIC):
         return btlog
     if start.startswith(bag.MCAP) or (start.startswith(sqlite.MAGIC) and sqlite.is_bag(path)):

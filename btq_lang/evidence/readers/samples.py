@@ -46,6 +46,8 @@ def read(path: str, time: str = "") -> dict[str, Series]:
             lines = csv.reader(text)
             try:
                 names = [name.strip() for name in next(lines, [])]
+                if any("\0" in name for name in names):
+                    raise NoSamples("expected text in UTF-8, found UTF-16 or no text")
                 return _table(names, time, ((f"line {lines.line_num}", _values(row)) for row in lines if row))
             except csv.Error as error:
                 raise NoSamples(f"line {lines.line_num}: {error}") from error
@@ -56,7 +58,9 @@ def read(path: str, time: str = "") -> dict[str, Series]:
 def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:
     """The columns of a table; rows: each with where it is in the file."""
     if len(names) < 2:
-        raise NoSamples("expected a line of column names: the time first, then signals or their entries")
+        raise NoSamples(
+            "expected a line of column names, separated by commas: the time first, then signals or their entries"
+        )
     at = names.index(_known(time, names)) if time else 0
     others = [name for column, name in enumerate(names) if column != at]
     if twice := next((name for name in others if others.count(name) > 1), None):
