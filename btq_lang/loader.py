@@ -14,7 +14,7 @@ import stat
 
 from btq_lang.file import SUFFIXES, File, Origin
 from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
-from btq_lang.record import Record
+from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import Workspace
 
@@ -123,9 +123,10 @@ def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:
             text, problem = (known[path], None) if path in known else read(path)
             if kind == "pyproject.toml" and not has_btq_table(text or ""):
                 continue
-            project, problems = parse_project(text or "", kind, root, os.path.isdir)
+            project, problems = parse_project(text or "", kind, root)
             told = tuple(LoadProblem(path, found.message, found.position) for found in problems)
-            return Found(project, path, (problem, *told) if problem else told)
+            lost = tuple(folder for folder in project.include_paths if not os.path.isdir(folder))
+            return Found(replace(project, lost_paths=lost), path, (problem, *told) if problem else told)
     return Found(Project(folder), None)
 
 

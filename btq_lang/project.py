@@ -29,7 +29,7 @@ from btq_lang.text import LineIndex, Position
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
     from typing import Any, Literal, TypeAlias
 
     from btq_lang.diagnostics import Diagnostic
@@ -95,15 +95,12 @@ class ProjectProblem(Record):
     position: Position | None = None
 
 
-def parse_project(
-    text: str, kind: Kind = "btq.toml", root: str = ".", is_folder: Callable[[str], bool] = lambda path: True
-) -> tuple[Project, tuple[ProjectProblem, ...]]:
+def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[Project, tuple[ProjectProblem, ...]]:
     """The project that a file describes, and what is wrong with the file.
 
     Args:
         kind: which of the two files it is; of a pyproject.toml only `[tool.btq]` is looked at.
         root: the folder of the file, before which relative include paths count.
-        is_folder: whether there is a folder at a path.
     """
     try:
         table: object = _toml(text)
@@ -128,13 +125,8 @@ def parse_project(
             at = _find(text, (*above, key, *complaint.below), complaint.value)
             problems.append(ProjectProblem(complaint.message, at))
     given = {field: value for field, value in fields.items() if value is not None}
-    folders = {path: _joined(root, path) for path in given.get("include_paths", ())}
-    if folders:
-        given["include_paths"] = (*folders.values(),)
-    for path in [path for path, folder in folders.items() if not is_folder(folder)]:
-        given["lost_paths"] = (*given.get("lost_paths", ()), folders[path])
-        at = _find(text, (*above, "include-paths"), path)
-        problems.append(ProjectProblem(f"`include-paths` names `{path}`, which is not a folder", at))
+    if "include_paths" in given:
+        given["include_paths"] = tuple(_joined(root, path) for path in given["include_paths"])
     return Project(**given), tuple(problems)
 
 

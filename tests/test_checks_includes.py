@@ -8,8 +8,8 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 
 from btq_lang.checks import check
-from btq_lang.commands.files import Files
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.loader import open_workspace
 from btq_lang.project import Project
 from btq_lang.rules import Severity
 from btq_lang.text import Span
@@ -213,14 +213,11 @@ def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_proj
     assert check(ignoring, "main.btq") == ()
 
 
-def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(tmp_path: Path) -> None:
     (tmp_path / "shared").mkdir()
     (tmp_path / "btq.toml").write_text('include-paths = ["shared", "lib"]\n')
     (tmp_path / "main.btq").write_text('include "skills.btq"\n')
-    ((group,), (problem,)) = Files().groups([str(tmp_path)])
-    assert str(problem).endswith("btq.toml:1:28: `include-paths` names `lib`, which is not a folder")
-    ((found,),) = [check(group.workspace, path) for path in group.given]
+    workspace = open_workspace(str(tmp_path))
+    (path,) = workspace.files
+    (found,) = check(workspace, path)
     assert found.notes == ("searched `.`, `shared`, `lib` (no folder); add folders with `include-paths` in btq.toml",)

@@ -9,17 +9,9 @@ from hypothesis import strategies as st
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.project import (
-    Project,
-    ProjectProblem,
-    configured,
-    has_btq_table,
-    include_candidates,
-    parse_project,
-    unknown_rule,
-)
+from btq_lang.project import Project, configured, has_btq_table, include_candidates, parse_project, unknown_rule
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import LineIndex, Position, Span
+from btq_lang.text import LineIndex, Span
 
 WHOLE = """\
 engine = "4.8"
@@ -147,13 +139,6 @@ def test_problems_and_their_places(text: str, expected: list[str]) -> None:
 )
 def test_problems_in_a_pyproject(text: str, expected: list[str]) -> None:
     assert problems(text, "pyproject.toml") == expected
-
-
-def test_include_paths_that_are_not_there() -> None:
-    text = '[tool.btq]\ninclude-paths = ["lib", "src"]'
-    project, (found,) = parse_project(text, "pyproject.toml", "/p", lambda path: path == "/p/src")
-    assert (project.include_paths, project.lost_paths) == (("/p/lib", "/p/src"), ("/p/lib",))
-    assert found == ProjectProblem("`include-paths` names `lib`, which is not a folder", Position(1, 17))
 
 
 def test_what_is_right_holds_beside_what_is_wrong() -> None:

@@ -26,7 +26,6 @@ MISTAKES = [
         "unknown engine version `4.11`; did you mean `4.10`? btq supports 4.6 to 4.10",
     ),
     ("engine = []\n", (0, 0, 6), "`engine` must name at least one version; btq supports 4.6 to 4.10"),
-    ('include-paths = [".", "lib"]\n', (0, 22, 27), "`include-paths` names `lib`, which is not a folder"),
     ('engine = "5.0"\n', (0, 9, 14), "unknown engine version `5.0`; btq supports 4.6 to 4.10"),
     ('[rules]\nunknwn-node = "off"\n', (1, 0, 11), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
     ("ignore = [\n  'unknwn-node']\n", (1, 2, 15), "unknown rule `unknwn-node`; did you mean `unknown-node`?"),
