@@ -36,6 +36,7 @@ from btq_lang.syntax import Signal
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
+    from typing import Final
 
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
@@ -197,20 +198,23 @@ def _ignored(path: str | None, samples: Iterable[str], missions: Sequence[Candid
 
 
 def _of_other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
-    """The files with samples before or after all runs, as where their times are no seconds since the epoch.
+    """The files with samples long before or after all runs, as where their times are no seconds since the epoch.
 
     A single sample may be of something that does not change.
     """
     times: dict[str, set[int]] = {}
     for file, series in read_from:
         times.setdefault(file, set()).update(series.times)
-    begins = [each.begin for mission in report.missions for each in mission.sources if each.begin is not None]
-    ends = [each.end for mission in report.missions for each in mission.sources if each.end is not None]
+    sources = [each for mission in report.missions for each in mission.sources]
+    begin = min((each.begin for each in sources if each.begin is not None), default=None)
+    end = max((each.end for each in sources if each.end is not None), default=None)
     for file, found in times.items():
-        if begins and len(found) > 1 and (max(found) < min(begins) or min(found) > max(ends)):
+        if begin is None or end is None or len(found) < 2:
+            continue
+        if max(found) < begin - _NEAR or min(found) > end + _NEAR:
             yield (
                 f"{file}: its samples are from {period(min(found), max(found))}, and the runs from"
-                f" {period(min(begins), max(ends))}; expected times in seconds since the epoch"
+                f" {period(begin, end)}; expected times in seconds since the epoch"
             )
 
 
@@ -235,3 +239,6 @@ def _without_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
             yield "no log matches a known mission; name the mission with --mission FILE"
     elif report.missions and not any(mission.runs for mission in report.missions):
         yield "no run in any log, so there is nothing to judge"
+
+
+_NEAR: Final = 60_000_000  # µs: a robot may log a minute before its tree starts, or after it has ended
