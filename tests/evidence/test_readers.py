@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import random
 import sqlite3
 import tracemalloc
 from pathlib import Path
@@ -97,44 +96,6 @@ def test_what_is_whole_of_a_cut_log_is_read(verify: Verify) -> None:
     ]
     assert lines[-2:-1] == ["runs: 1 succeeded, 1 interrupted"]
     assert lines[-1].startswith("nodes: exercised 3 of 3 · ")
-
-
-def test_every_prefix_of_a_log_is_read_or_is_one_error(tmp_path: Path) -> None:
-    whole = btlog(MAIN_XML, rows(TWO_RUNS))
-    header = len(btlog(MAIN_XML, []))
-    log = tmp_path / "a.btlog"
-    for length in range(len(whole) + 1):
-        log.write_bytes(whole[:length])
-        assert len(problems(log)) == (length < header), length
-
-
-def test_prefixes_of_a_database(tmp_path: Path) -> None:
-    write_db3(tmp_path / "whole.db3", MAIN_XML, [rows(TWO_RUNS)])
-    whole = (tmp_path / "whole.db3").read_bytes()
-    log = tmp_path / "a.db3"
-    for length in [*range(200), *range(200, len(whole), 97)]:
-        log.write_bytes(whole[:length])
-        assert len(problems(log)) <= 1, length
-
-
-@pytest.mark.parametrize("form", ["btlog", "db3"])
-def test_bytes_that_somebody_has_changed(form: str, tmp_path: Path) -> None:
-    log = tmp_path / f"a.{form}"
-    if form == "btlog":
-        log.write_bytes(btlog(MAIN_XML, rows(TWO_RUNS)))
-    else:
-        write_db3(log, MAIN_XML, [rows(TWO_RUNS)], {0: '{"battery": 50}'})
-    whole = log.read_bytes()
-    chance = random.Random(25)
-    for _ in range(MUTATIONS):
-        data = bytearray(whole)
-        for _ in range(chance.choice((1, 1, 2, 8))):
-            data[chance.randrange(len(data))] = chance.choice((0, 1, 0x7F, 0xFF, chance.randrange(256)))
-        log.write_bytes(data)
-        assert len(problems(log)) <= 1
-
-
-MUTATIONS = 2000
 
 
 def test_xml_that_expands_is_not_expanded(tmp_path: Path) -> None:

@@ -14,6 +14,9 @@ from contextlib import contextmanager
 from io import BufferedReader, RawIOBase
 from pathlib import Path
 
+from btq_lang.caches import cache_of
+from btq_lang.evidence.readers import sqlite
+from btq_lang.evidence.readers.bag_database import BagDatabase
 from btq_lang.evidence.readers.tree import NotALog
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
@@ -84,29 +87,62 @@ def opened(path: str) -> Iterator[Bag]:
         OSError: it cannot be read.
     """
     try:
-        from rosbags.rosbag2 import Reader
+        import rosbags.rosbag2  # noqa: F401  # is it there?
     except ImportError as error:
         raise NotALog("a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'") from error
     remarks: list[str] = []
-    if os.path.isdir(path):
-        storages = [Reader.STORAGE_PLUGINS["dir"](Path(path))]
-    else:
-        with open(path, "rb") as file:
-            is_mcap = file.read(len(MCAP)) == MCAP
-        whole = _WholeFile(path, remarks) if is_mcap else Path(path)
-        storages = [Reader.STORAGE_PLUGINS[".mcap" if is_mcap else ".db3"](whole)]  # type: ignore[arg-type]
+    storages: list[Any] = []
     try:
-        for storage in storages:
-            storage.open()
-    except OSError:
-        raise
-    except Exception as error:
-        raise NotALog(f"the bag cannot be read: {_said(error)}") from error
-    try:
+        storages += _folder(path, remarks) if os.path.isdir(path) else [_file(path, remarks)]
         yield Bag(storages, remarks)
     finally:
         for storage in storages:
             storage.close()
+
+
+def _folder(path: str, remarks: list[str]) -> list[Any]:
+    """The storage of a folder; where its metadata and its files do not agree, as in a recording that was cut off, those
+    of its files."""
+    from rosbags.rosbag2 import Reader
+
+    storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
+    try:
+        storage.open()
+    except OSError:
+        raise
+    except Exception as error:
+        files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
+        if not files:
+            raise NotALog(f"the bag cannot be read: {_said(error)}") from error
+        remarks.append(f"its files are read without {METADATA}: {_said(error)}")
+        return [_file(os.path.join(path, each), remarks) for each in files]
+    return [storage]
+
+
+def _file(path: str, remarks: list[str]) -> Any:
+    """The storage of a file.
+
+    Raises:
+        NotALog: it cannot be read.
+    """
+    from rosbags.rosbag2 import Reader
+
+    with open(path, "rb") as file:
+        is_mcap = file.read(len(MCAP)) == MCAP
+    storage: Any
+    try:
+        if is_mcap:
+            storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]
+            storage.open()
+            return storage
+        is_cut = sqlite.missing_bytes(path) > 0
+        storage = BagDatabase(path, remarks) if is_cut else Reader.STORAGE_PLUGINS[".db3"](Path(path))
+        storage.open()
+    except (OSError, NotALog):
+        raise
+    except Exception as error:
+        raise NotALog(f"the bag cannot be read: {_said(error)}") from error
+    return storage
 
 
 def files_in(folder: str) -> tuple[str, ...]:
@@ -136,34 +172,31 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
     Raises:
         NotALog: there is no definition of its type.
     """
-    from rosbags.interfaces import MessageDefinitionFormat
-    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+    from rosbags.interfaces import MessageDefinitionFormat as Format
 
-    name = connection.msgtype
-    text = connection.msgdef.data
-    store = get_typestore(Stores.EMPTY)
+    name, definition = connection.msgtype, connection.msgdef
     try:
-        if connection.msgdef.format == MessageDefinitionFormat.MSG:
-            store.register(get_types_from_msg(text, name))
-        elif connection.msgdef.format == MessageDefinitionFormat.IDL:
-            for part in text.split(_IDL_RULE):
-                store.register(get_types_from_idl(part.partition("\n")[2] if part.startswith("IDL: ") else part))
-        else:
-            store = get_typestore(Stores.LATEST)
-            if name == TREE_LOG:
-                return _either(*(_decoder(connection._replace(msgdef=each)) for each in _tree_log_definitions()))
-        store.get_msgdef(name)
+        if definition.format == Format.NONE and name == TREE_LOG:
+            # Since Jazzy, and before, when changes of status had no uid.
+            texts = (_TREE_LOG_DEFINITION.format(uid=uid) for uid in ("uint16 uid\n", ""))
+            return _either(*(_decoder_of(name, "MSG", text) for text in texts))
+        return _decoder_of(name, definition.format.name, definition.data)
     except Exception as error:
         raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
+
+
+@cache_of(64)
+def _decoder_of(name: str, form: str, text: str) -> Callable[[bytes], Any]:
+    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.LATEST if form == "NONE" else Stores.EMPTY)
+    if form == "MSG":
+        store.register(get_types_from_msg(text, name))
+    elif form == "IDL":
+        for part in text.split(_IDL_RULE):
+            store.register(get_types_from_idl(part.partition("\n")[2] if part.startswith("IDL: ") else part))
+    store.get_msgdef(name)
     return lambda data: store.deserialize_cdr(data, name)
-
-
-def _tree_log_definitions() -> Iterator[Any]:
-    """Nav2's type since Jazzy, and before, when changes of status had no uid."""
-    from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
-
-    for uid in ("uint16 uid\n", ""):
-        yield MessageDefinition(MessageDefinitionFormat.MSG, _TREE_LOG_DEFINITION.format(uid=uid))
 
 
 def _either(first: Callable[[bytes], Any], second: Callable[[bytes], Any]) -> Callable[[bytes], Any]:

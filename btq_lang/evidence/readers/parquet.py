@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+from btq_lang.caches import cache_of
+
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,9 +29,10 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     """
     try:
         import duckdb
+
+        database = _engine().cursor()
     except ImportError as error:
         raise NotParquet("Parquet is read with duckdb; install it with pip install 'btq-lang[evidence]'") from error
-    database = duckdb.connect()
     try:
         columns = database.execute("DESCRIBE SELECT * FROM read_parquet(?)", [path]).fetchall()
     except duckdb.Error as error:
@@ -49,6 +52,14 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
             database.close()
 
     return names, rows()
+
+
+@cache_of(1)
+def _engine() -> Any:
+    """DuckDB, which takes longer to start than most files take to read, and longer still with threads."""
+    import duckdb
+
+    return duckdb.connect(config={"threads": 1})
 
 
 def _asked(name: str, kind: str) -> str:

@@ -9,6 +9,7 @@ Source: src/loggers/bt_sqlite_logger.cpp.
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
 from contextlib import contextmanager
 from urllib.request import pathname2url
@@ -31,8 +32,9 @@ def read(path: str) -> Iterator[Session]:
         NotALog: it is not a database of SqliteLogger.
         OSError: it cannot be read.
     """
-    with _opened(path) as database:
-        yield from _sessions(database)
+    remarks: list[str] = []
+    with opened(path, remarks) as database:
+        yield from _sessions(database, remarks)
 
 
 def is_bag(path: str) -> bool:
@@ -42,18 +44,28 @@ def is_bag(path: str) -> bool:
         NotALog: it cannot be read as a database.
         OSError: it cannot be read.
     """
-    with _opened(path) as database:
-        return {"topics", "messages"} <= _tables(database)
+    with opened(path, []) as database:
+        return {"topics", "messages"} <= tables(database)
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[sqlite3.Connection]:
-    with open(path, "rb") as file:  # for the reason, which SQLite does not give
-        if file.read(len(MAGIC)) != MAGIC:
-            raise NotALog("expected a SQLite database, as SqliteLogger writes it")
+def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
+    """A database to be read; of one that was cut off what is there.
+
+    Args:
+        remarks: what is to be said of the file is added.
+
+    Raises:
+        NotALog: it is not a database, or is damaged where it is read.
+        OSError: it cannot be read.
+    """
+    missing = missing_bytes(path)
     database = sqlite3.connect(f"file:{pathname2url(path)}?mode=ro", uri=True)
     try:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
+        if missing:
+            remarks.append(f"cut off: the last {missing} bytes of the database are missing")
+            database.execute("PRAGMA writable_schema = ON")  # else SQLite reads nothing of it; it is read only anyway
         yield database
     except _DAMAGED as error:
         raise NotALog(f"the database cannot be read: {error}") from error
@@ -61,16 +73,43 @@ def _opened(path: str) -> Iterator[sqlite3.Connection]:
         database.close()
 
 
-def _tables(database: sqlite3.Connection) -> set[str]:
+def missing_bytes(path: str) -> int:
+    """How much of a database was cut off; 0 where nothing was, or its header does not say.
+
+    Raises:
+        NotALog: it is not a database.
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as file:  # for the reason, which SQLite does not give
+        head = file.read(_HEAD)
+        size = os.fstat(file.fileno()).st_size
+    if not head.startswith(MAGIC):
+        raise NotALog("expected a SQLite database, as SqliteLogger writes it")
+    if len(head) < _HEAD or head[24:28] != head[92:96]:  # the number of pages was written with the last change
+        return 0
+    page = int.from_bytes(head[16:18], "big")
+    return max(0, (65536 if page == 1 else page) * int.from_bytes(head[28:32], "big") - size)
+
+
+def tables(database: sqlite3.Connection) -> set[str]:
+    """The names of its tables."""
     return {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
 
 
-def _sessions(database: sqlite3.Connection) -> Iterator[Session]:
-    if missing := sorted({"Definitions", "Transitions"} - _tables(database)):
+def _sessions(database: sqlite3.Connection, of_file: list[str]) -> Iterator[Session]:
+    if missing := sorted({"Definitions", "Transitions"} - tables(database)):
         raise NotALog(f"expected the tables of SqliteLogger; missing: {', '.join(missing)}")
-    for number, xml in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id").fetchall():
+    definitions: list[tuple[int, object]] = []
+    try:
+        for definition in database.execute("SELECT session_id, xml_tree FROM Definitions ORDER BY session_id"):
+            definitions.append(definition)
+    except _DAMAGED as error:
+        if not definitions:
+            raise
+        of_file.append(f"the database is damaged, and sessions after number {definitions[-1][0]} are left out: {error}")
+    for number, xml in definitions:
         samples: dict[str, Series] = {}
-        remarks: list[str] = []
+        remarks = [*of_file]
         yield Session(read_tree(str(xml)), _transitions(database, number, samples, remarks), samples, remarks)
 
 
@@ -106,6 +145,7 @@ def _add_samples(samples: dict[str, Series], time: int, extra: object) -> None:
 
 _DAMAGED: Final = (sqlite3.Error, UnicodeDecodeError)  # which a message of SQLite may itself end in
 MAGIC: Final = b"SQLite format 3\0"
+_HEAD: Final = 100
 _TRANSITIONS: Final = (
     "SELECT timestamp, node_uid, state, extra_data FROM Transitions WHERE session_id = ? ORDER BY timestamp"
 )

@@ -61,7 +61,7 @@ def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:
                     bag.remarks.append(f"{topic}: {error}")
         remarks = bag.remarks
         if malformed:
-            remarks.append(f"status changes with an unknown status, left out: {malformed}")
+            remarks.append(f"status changes that are not as Nav2 defines them, left out: {malformed}")
     every = [tree for found in trees.values() for tree in found.values()]
     for topic, changes in logs.items():
         own = trees.get(_namespace(topic))
@@ -109,13 +109,13 @@ class _Changes:
         index, times, nodes, statuses = self._index, self._times, self._nodes, self._statuses
         malformed = 0
         for change in message.event_log:
-            status = _STATUSES.get(change.current_status)
-            if status is None:
+            try:
+                status = _STATUSES[change.current_status]
+                node = int(getattr(change, "uid", 0)), str(change.node_name)
+                times.append(change.timestamp.sec * 1_000_000_000 + change.timestamp.nanosec)
+            except (AttributeError, KeyError, TypeError, ValueError, OverflowError):  # a bag may define its own type
                 malformed += 1
                 continue
-            node = getattr(change, "uid", 0), change.node_name
-            stamp = change.timestamp
-            times.append(stamp.sec * 1_000_000_000 + stamp.nanosec)
             nodes.append(index.setdefault(node, len(index)))
             statuses.append(status)
         if times:

@@ -1,0 +1,72 @@
+"""A rosbag2 SQLite file that `rosbags` cannot open since it was cut off: what can be read of it.
+
+It is used like a storage of `rosbags`: open, connections, messages, close.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import ExitStack
+
+from btq_lang.evidence.readers import sqlite
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+    from typing import Final
+
+    from rosbags.interfaces import Connection
+
+
+class BagDatabase:
+    """The file.
+
+    Attributes:
+        connections: its topics, once it is open.
+    """
+
+    def __init__(self, path: str, remarks: list[str]) -> None:
+        self._path: Final = path
+        self._remarks: Final = remarks
+        self._stack: Final = ExitStack()
+        self._database: sqlite3.Connection | None = None
+        self.connections: list[Connection] = []
+
+    def open(self) -> None:
+        """Read the topics.
+
+        Raises:
+            sqlite3.Error: they cannot be read.
+        """
+        from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
+
+        database = self._database = self._stack.enter_context(sqlite.opened(self._path, self._remarks))
+        definitions = {}
+        if "message_definitions" in sqlite.tables(database):
+            for name, encoding, text in database.execute(
+                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+            ):
+                kind = MessageDefinitionFormat.IDL if encoding == "ros2idl" else MessageDefinitionFormat.MSG
+                definitions[name] = MessageDefinition(kind, text)
+        none = MessageDefinition(MessageDefinitionFormat.NONE, "")
+        for number, topic, name in database.execute("SELECT id, name, type FROM topics"):
+            ext = ConnectionExtRosbag2("cdr", [])
+            self.connections.append(Connection(number, topic, name, definitions.get(name, none), "", 0, ext, self))
+
+    def messages(self, connections: Collection[Connection]) -> Iterator[tuple[Connection, int, bytes]]:
+        """The messages as they were written, which is in the order of their reception.
+
+        Raises:
+            sqlite3.Error: the next one cannot be read.
+        """
+        assert self._database is not None, "the file is open"
+        wanted = {each.id: each for each in connections}
+        for topic, received, data in self._database.execute(
+            "SELECT topic_id, timestamp, data FROM messages ORDER BY id"
+        ):
+            if topic in wanted:
+                yield wanted[topic], received, data
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stack.close()
