@@ -21,13 +21,13 @@ from btq_lang.requirements.model import Mission, Running, Span, Target, Total, V
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
     from typing import Final
 
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined
-    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.model import Activation, LoggedTree
     from btq_lang.evidence.signals import Signals
     from btq_lang.evidence.tally import Run
     from btq_lang.evidence.verdicts import Link
@@ -73,7 +73,7 @@ class JudgedClause:
         self._waiting: Final[list[tuple[Activation, str]]] = []  # until it is known what else ran meanwhile
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
-        self._has_run = False
+        self._has_run = self._waits = False
         self.explain: Callable[[Judgement, str], tuple[Link, ...]] | None = None
 
     def join(self, joined: Joined, signals: Signals, history: History) -> list[int]:
@@ -104,6 +104,7 @@ class JudgedClause:
             guard: what stopped it.
         """
         self._has_run = True
+        self._waits = self._waits or activation.first != activation.last
         if guard is not None and self._is_own(guard):
             said = f"stopped by its own guard after {duration(activation.seconds)}"
             self._add(Judgement(False, activation.end, said), path, activation.end)
@@ -219,6 +220,19 @@ class JudgedClause:
             of = "the time from one event to another" if isinstance(subject, Span) else "a sum of durations"
             return f"`{self.claim.verb}` cannot be judged of {of}"
         return ""
+
+    def remark(self, tree: LoggedTree, keeping: Collection[int]) -> str | None:
+        """What is to be said of a number of starts: those of a node that completes at once and is not reset are in the
+        log only where its result is another one.
+
+        Args:
+            keeping: as of a `Session`.
+        """
+        for uid in self._places:
+            if self.claim.verb in ("tries", "runs") and not self._waits and tree.parent[uid] in keeping:
+                path = tree.nodes[uid].path
+                return f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"
+        return None
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether a run has the worst violation so far; of a window nobody knows before all is read."""

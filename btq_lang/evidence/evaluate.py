@@ -87,7 +87,8 @@ class MissionEvaluation:
         begin: int | None = None
         end = 0
         runs = 0
-        for activation in activations(timed(session, self._coverage.took)):
+        log = timed(session, self._coverage.took)
+        for activation in activations(log):
             self._coverage.count(activation)
             origin = explainer.see(activation)
             history.add(activation)
@@ -114,6 +115,9 @@ class MissionEvaluation:
                     self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
                 signals.forget_before(end)
                 self._ran(run.number)
+        session.remarks.extend(
+            [found for each in self._clauses if (found := each.remark(tree, log.keeping)) is not None]
+        )
         self._add(
             Source(
                 file=source,

@@ -167,6 +167,7 @@ class Session:
         transitions: in the order of the file.
         samples: of the log's own entries, by entry; they grow while the transitions are read.
         signals: those of signals that the project file says are in the log, by signal.
+        keeping: the nodes that start a child again without resetting it; complete when the transitions have been read.
         remarks: what is to be said of the file, complete when the transitions have been read.
     """
 
@@ -182,6 +183,7 @@ class Session:
         self.transitions: Final = transitions
         self.samples: Final = {} if samples is None else samples
         self.signals: Final[Mapping[str, Series]] = {} if signals is None else signals
+        self.keeping: Final[set[int]] = set()
         self.remarks: Final = [] if remarks is None else remarks
 
 

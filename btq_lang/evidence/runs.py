@@ -32,6 +32,8 @@ def activations(session: Session) -> Iterator[Activation]:
     begun, running = nodes.begun, nodes.running
     odd = _Oddities(session)
     idle: tuple[int, int, int] | None = None  # a halt that may turn out to be part of the node's own completion
+    done: set[int] = set()  # the nodes that have completed and have not been reset since
+    is_reset_written = False
     last = row = 0
     for row, (time, uid, status) in enumerate(session.transitions, 1):
         if uid not in parent or status not in _STATUSES:
@@ -56,20 +58,30 @@ def activations(session: Session) -> Iterator[Activation]:
             running.add(uid)
             if uid not in begun:
                 nodes.begin(uid, time, row)
+                if uid in done:
+                    session.keeping.add(parent[uid])
         elif completes:
             if uid not in begun:
                 nodes.begin(uid, time, row)
+                if uid in done:
+                    session.keeping.add(parent[uid])
+            done.add(uid)
             ended = nodes.end(uid, time, row, "S" if status == SUCCESS else "F")
             if len(ended) > 1:
                 odd.count(_UNWRITTEN, time)
             yield from ended
-        elif uid in running:
-            idle = uid, time, row
-        elif uid == ROOT and uid in begun:  # a run without a row of the root: how it ended is not known
-            yield from nodes.end(ROOT, time, row, "O", below="O")
         else:
-            nodes.forget(uid)
+            done.discard(uid)
+            is_reset_written = True
+            if uid in running:
+                idle = uid, time, row
+            elif uid == ROOT and uid in begun:  # a run without a row of the root: how it ended is not known
+                yield from nodes.end(ROOT, time, row, "O", below="O")
+            elif uid in begun:
+                nodes.forget(uid)
         last = time
+    if not is_reset_written:
+        session.keeping.clear()
     if idle is not None:
         yield from nodes.end(*idle, "H")
     if ROOT in begun:

@@ -454,6 +454,26 @@ def test_the_goal_and_the_window_are_shown_with_the_clause(verify: Verify) -> No
     assert found["verdict"] == "satisfied"
 
 
+@pytest.mark.parametrize(
+    ("demand", "runs", "remarked"),
+    [
+        # Move succeeds, fails and succeeds again and is never reset: it may have succeeded twice.
+        ("Move tries at most 9", "0 1R 5R 3S 10 3F 20 3S 30 5S 5I 1S", True),
+        ("Move runs every 1 s", "0 1R 5R 3S 10 3F 20 3S 30 5S 5I 1S", True),
+        ("Move takes at most 1 s", "0 1R 5R 3S 10 3F 20 3S 30 5S 5I 1S", False),
+        ("Pick tries at most 9", "0 1R 5R 3S 4S 10 3F 20 3S 30 5S 5I 1S", True),  # below the same parent
+        ("Alarm tries at most 9", "0 1R 5R 3S 10 3F 20 3S 30 5S 5I 1S", False),  # it takes a while, so it has rows
+        ("Move tries at most 9", "0 1R 5R 3S 3I 10 3F 3I 20 3S 30 5S 5I 1S", False),
+        ("Move tries at most 9", "0 1R 5R 3S 10 3F 20 3S 30 5S 1S", False),  # whatever was reset has no row
+    ],
+)
+def test_starts_without_a_row_are_remarked(demand: str, runs: str, remarked: bool, verify: Verify) -> None:
+    path = clause(verify, demand, runs)["path"]
+    (source,) = verify.json("run.btlog", "--mission", "main.btq")["sources"]
+    expected = [f"{path} is not reset between its starts, so rq may count too few of them"]
+    assert source["remarks"] == (expected if remarked else [])
+
+
 # ---- windows ----
 
 
