@@ -17,6 +17,8 @@ from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, rows
 from test_identity import DEMANDS
 
 from btq_lang.cli import main
+from btq_lang.evidence.model import NamedLog
+from btq_lang.evidence.readers import read
 
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
@@ -224,6 +226,19 @@ def test_a_bag_without_definitions_of_its_types(small: Verify) -> None:
         connection.executescript("DROP TABLE message_definitions; DROP TABLE schema")
         connection.close()
         assert clause(small.json(name)) == (2, [2])
+
+
+def test_a_bag_may_define_the_types_otherwise(small: Verify) -> None:
+    write_bag(small.folder / "bag", tree_log(rows(TWO_RUNS), NAMES))
+    whole = (small.folder / "bag" / "bag.mcap").read_bytes()
+    for name, other, remark in (
+        (b"current_status", b"current_statue", "status changes that are not as Nav2 defines them, left out: 14"),
+        (b"event_log", b"event_lag", "status changes that are not as Nav2 defines them, left out: 3"),
+    ):
+        (small.folder / "other.mcap").write_bytes(whole.replace(name, other))
+        (log,) = read(str(small.folder / "other.mcap"))
+        assert isinstance(log, NamedLog)
+        assert ([*log.times], log.remarks) == ([], [remark])
 
 
 def test_a_bag_that_was_cut_off(small: Verify) -> None:

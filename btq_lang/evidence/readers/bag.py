@@ -66,6 +66,7 @@ class Bag:
                     )
                     break
                 try:
+                    received = int(received)
                     message = decoders[connection.msgtype](data)
                 except Exception:
                     unread += 1

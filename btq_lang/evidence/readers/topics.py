@@ -148,9 +148,8 @@ class _Field:
             raise NotALog(self._said(f"`{self.source.field}` is not a number, a bool or a text"))
         if not is_sample(value):
             return
-        stamp = getattr(getattr(message, "header", None), "stamp", None)
         self._received.append(received // 1000)
-        self._stamped.append((stamp.sec * 1_000_000_000 + stamp.nanosec) // 1000 if stamp is not None else 0)
+        self._stamped.append(_stamp(message))
         self._values.append(value)
 
     def series(self, clock: Clock, remarks: list[str]) -> Series:
@@ -204,6 +203,17 @@ class _Field:
         return f"{self._topic}: {what}"
 
 
+def _stamp(message: Any) -> int:
+    """The time in a message's header, in µs; 0 where there is none."""
+    try:
+        stamp = message.header.stamp
+        time = (stamp.sec * 1_000_000_000 + stamp.nanosec) // 1000
+    except (AttributeError, TypeError):
+        return 0
+    return int(time) if abs(time) < _LATEST else 0
+
+
+_LATEST: Final = 1 << 61  # µs
 _STEP: Final = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 _OTHER_CLOCK: Final = "on another clock than the tree's log, so samples count at their times of reception"
 _FAR_APART: Final = 60_000_000  # µs: no message takes that long

@@ -107,8 +107,11 @@ class _Changes:
     def add(self, received: int, message: Any) -> int:
         """Add the changes in a message; how many of them have no known status."""
         index, times, nodes, statuses = self._index, self._times, self._nodes, self._statuses
+        changes = getattr(message, "event_log", None)
+        if not isinstance(changes, list):
+            return 1
         malformed = 0
-        for change in message.event_log:
+        for change in changes:
             try:
                 status = _STATUSES[change.current_status]
                 node = int(getattr(change, "uid", 0)), str(change.node_name)
