@@ -132,10 +132,14 @@ class Series:
         self.values: Final[list[SampleValue | None]] = []
 
     def add(self, time: int, value: SampleValue | None) -> None:
-        """Add a sample, mostly the latest one; of two at one time the later one counts.  None: it has no value then."""
+        """Add a sample, mostly the latest one; of several at one time only the last counts.  None: it has no value
+        then."""
         at = len(self.times)
-        if at and time < self.times[-1]:
-            at = bisect_right(self.times, time)
+        if at and time <= self.times[-1]:
+            at = bisect_left(self.times, time)
+            if self.times[at] == time:
+                self.values[at] = value
+                return
         self.times.insert(at, time)
         self.values.insert(at, value)
 

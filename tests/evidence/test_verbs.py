@@ -218,6 +218,12 @@ def test_summaries_of_samples(verb: str, condition: str, expected: str, verify: 
     assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=LEVEL)) == expected
 
 
+@pytest.mark.parametrize("condition", ["mean(battery) == 40 %", "count(battery) == 1", "min(battery) == 30 %"])
+def test_the_last_sample_of_a_time_counts(condition: str, verify: Verify) -> None:
+    given = samples("battery", {-5: 50, 10: 5, 10.0004: 30})  # two in the same µs
+    assert count(verify.clause(f"Move leaves {condition}", LONG, given, before=LEVEL)) == "satisfied 0/1"
+
+
 @pytest.mark.parametrize(
     ("demand", "given", "expected", "why"),
     [
