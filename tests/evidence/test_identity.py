@@ -280,3 +280,17 @@ def test_the_tree_of_nav2(name: str, verify: Verify, shared: Path) -> None:
         assert (planned["counted"], planned["violated"]) == (len(results), results.count("FAILURE"))
         failed = [each["run"] + 1 for each in truth if each.get("result") == "FAILURE"]
         assert (arrives["counted"], [violation["run"] for violation in arrives["violations"]]) == (40, failed)
+
+
+@pytest.mark.parametrize(
+    "options", [("--bundle",), ("--target", "4.6"), ("--target", "4.6", "--bundle", "--no-enforce")]
+)
+def test_logs_of_other_builds(options: tuple[str, ...], verify: Verify) -> None:
+    """All nodes are found, also where a build for another version of the engine has others."""
+    text = MISSION.replace("Carry/Move takes at most 10 ms", "every Move keeps speed < 1 m/s")
+    (verify.folder / "main.btq").write_text(f"{SPEED}\n{text}", encoding="utf-8")
+    xml = verify.build(f"{SPEED}\n{text}", *options)
+    (verify.folder / "run.btlog").write_bytes(btlog(xml, rows("0 1R 1S")))
+    how, joined, nodes = identity(verify)
+    assert joined == nodes == len(re.findall("_uid=", xml))
+    assert how.startswith("as built")
