@@ -10,7 +10,6 @@ of its own.
 from __future__ import annotations
 
 import json
-import resource
 import sqlite3
 import subprocess
 import sys
@@ -140,9 +139,15 @@ def memory(path: Path) -> float:
 
 
 def grown(path: Path) -> float:
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    before = peak()
     judged(path)
-    return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024  # KiB on Linux
+    return peak() - before
+
+
+def peak() -> float:
+    """The most memory that this process has had, in MB; `getrusage` would count what its parent had too."""
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    return int(status.partition("VmHWM:")[2].split()[0]) / 1024
 
 
 def main() -> None:
@@ -166,16 +171,16 @@ def main() -> None:
             "db3": best(given.rounds, lambda: bare_db3(database), lambda: judged(database)),
             "bag": best(given.rounds, lambda: bare_bag(bag), lambda: read_bag(bag)),
         }
-        peak = memory(log)
+        most = memory(log)
     ratios = {name: ours / bare for name, (bare, ours) in measured.items()}
     goals = [
         Goal(".btlog read and judged, times a bare loop (at most 6)", ratios["btlog"], ratios["btlog"] <= 6),
         Goal(".db3 read and judged, times a bare loop (at most 6)", ratios["db3"], ratios["db3"] <= 6),
         Goal("bag read, times rosbags alone (at most 1.5)", ratios["bag"], ratios["bag"] <= 1.5),
-        Goal("MB above start, .btlog judged (at most 150)", peak, peak <= 150),
+        Goal("MB above start, .btlog judged (at most 150)", most, most <= 150),
     ]
     if given.json:
-        print(json.dumps(as_data({"transitions": len(rows), "seconds": measured, "peak": peak}, goals), indent=1))
+        print(json.dumps(as_data({"transitions": len(rows), "seconds": measured, "peak": most}, goals), indent=1))
         return
     print(f"{len(rows):,} transitions, {machine()}")
     for name, (bare, ours) in measured.items():
