@@ -118,12 +118,17 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Bound | Un
 
 
 def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Reading | None:
-    """The signal and the bound of a condition that is one comparison of these; None of any other, or where unknown."""
+    """The signal and the bound of a condition that is one comparison of these, or `not A or B` with such a B where A
+    holds; None of any other, or where unknown."""
     if isinstance(condition, InContext):
         return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
         found = reading_of(condition.condition, observed, moment)
         return replace(found, excess=-found.excess) if found is not None else None
+    if isinstance(condition, Any):
+        *cases, last = condition.conditions
+        is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)
+        return reading_of(last, observed, moment) if is_last else None
     if not isinstance(condition, Compare) or len(condition.operators) != 1 or condition.operators[0] not in _MIRRORED:
         return None
     sign = condition.operators[0]

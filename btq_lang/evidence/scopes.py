@@ -9,7 +9,7 @@ from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.record import replace
-from btq_lang.requirements.model import All, Any, Not
+from btq_lang.requirements.model import Any, Not
 
 TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def within(claim: Claim, scopes: Sequence[Scope]) -> Claim:
         if scope.word == "while" and condition is not None and claim.verb == "keeps":
             claim = replace(claim, condition=Any((Not(scope.condition), condition)))
         elif scope.word == "while" and condition is not None and claim.verb == "never":
-            claim = replace(claim, condition=All((scope.condition, condition)))
+            claim = replace(claim, condition=Not(Any((Not(scope.condition), Not(condition)))))
     return claim
 
 

@@ -324,6 +324,24 @@ def test_scopes(demand: str, expected: str, verify: Verify) -> None:
 
 
 @pytest.mark.parametrize(
+    ("demand", "worst", "violations"),
+    [
+        ("Move keeps battery >= 6 %\nwhile battery >= 10 %", "30 %", []),
+        ("Move keeps battery >= 6 %\nwhile battery < 40 %", "5 %", [("5 %", "`battery` was 5 %")]),
+        ("Move never battery < 6 %\nwhile battery >= 10 %", "30 %", []),
+        ("Move never battery < 6 %\nwhile low\nwhile node Move", "5 %", [("5 %", "`battery` was 5 %")]),
+    ],
+)
+def test_what_counts_is_measured_while_it_counts(
+    demand: str, worst: str, violations: list[tuple[str, str]], verify: Verify
+) -> None:
+    before = f"{LEVEL}\ncontext low : battery < 20 %"
+    found = verify.clause(demand, LONG, samples("battery", SAMPLES), before=before)
+    assert found["worst"]["text"] == worst
+    assert [(each["measured"], each["why"]) for each in found["violations"]] == violations
+
+
+@pytest.mark.parametrize(
     ("demand", "expected"),
     [
         ("Move succeeds within 1 ms\nwhile battery >= 30 %", "unknown 0/0 ?1"),

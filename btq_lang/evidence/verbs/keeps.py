@@ -44,4 +44,4 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
 
 
 def _excess(judgement: Judgement) -> float:
-    return judgement.measure.excess if judgement.measure is not None else 0.0
+    return judgement.measure.excess if judgement.measure is not None else float("-inf")
