@@ -223,7 +223,7 @@ def _add_verify(commands: _SubParsersAction[Parser]) -> None:
     parser.add_argument(
         "--signals",
         metavar="FILE",
-        help="samples as CSV: seconds since the epoch, then one column for each signal or entry",
+        help="samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry",
     )
     parser.add_argument("--format", choices=VERDICT_FORMATS, help="default: as the file of -o ends, else table")
     parser.add_argument("-o", "--output", metavar="FILE", help="where to write; default: standard output")
