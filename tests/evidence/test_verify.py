@@ -328,6 +328,16 @@ def test_a_mission_with_errors_may_lack_clauses(lab: Path) -> None:
     assert "reliable" in output
 
 
+def test_a_clause_that_lacks_something_is_unknown(lab: Path) -> None:
+    text = (lab / "lab.btq").read_text(encoding="utf-8")
+    (lab / "lab.btq").write_text(text.replace("takes at most 280 ms", "runs at most 5 times"), encoding="utf-8")
+    code, output, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq")
+    assert (code, errors) == (2, "btq verify: lab.btq has errors, so clauses may be missing; run btq check\n")
+    (line,) = (line for line in output.splitlines() if "in_time" in line)
+    assert line.split("  ")[1] == "unknown"
+    assert line.endswith("  the clause has an error; run btq check")
+
+
 def test_xml_is_a_mission_too(lab: Path, shared: Path) -> None:
     shutil.copy(shared / "logs" / "lab.xml", lab)
     code, output, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.xml")
