@@ -36,6 +36,8 @@ def headline(clause: ClauseVerdict, medians: Mapping[str, float]) -> str:
     """
     if clause.interval is None:
         return explained(clause, worst_violation(clause), medians)
+    if not clause.violations:
+        return f"{clause.of or clause.path}: no share can be as large as the requirement asks"
     first, *others = clause.violations
     line = f"{clause.of or first.path}: {clause.violated} of {clause.counted} {clause.unit} broke it"
     causes = Counter(each.chain[0].path for each in clause.violations if each.chain)

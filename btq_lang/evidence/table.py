@@ -79,7 +79,7 @@ def _clause(clause: ClauseVerdict, requirement: RequirementVerdict) -> str:
 def _explanation(clause: ClauseVerdict, medians: Mapping[str, float], verbose: bool) -> Iterator[str]:
     """What to look at."""
     yield headline(clause, medians)
-    if verbose:
+    if verbose and clause.violations:
         worst = worst_violation(clause)
         yield from (f"  - {link.text}" for link in worst.chain if link.kind != "self")
         others = [each for each in clause.violations if each is not worst]

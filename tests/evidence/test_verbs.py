@@ -424,6 +424,15 @@ def test_odds_of_what_is_all_unknown_are_unknown(verify: Verify) -> None:
     assert count(verify.clause(demand, several(GOOD, GOOD), before=LEVEL)) == "unknown 0/0 ?2"
 
 
+@pytest.mark.parametrize("form", ["table", "junit", "csv", "markdown", "html"])
+def test_odds_that_nothing_can_reach(form: str, verify: Verify) -> None:
+    """Too few hold, and yet none broke the clause."""
+    found = verify.clause("Move succeeds\nwith probability > 100 % of runs", several(GOOD, GOOD))
+    assert (count(found), found["violations"]) == ("violated 0/2", [])
+    printed = verify.text("run.btlog", "--mission", "main.btq", "--format", form, "--verbose")
+    assert "Move::2: no share can be as large as the requirement asks" in printed
+
+
 # ---- what is reported of a violation ----
 
 
