@@ -15,7 +15,7 @@ from btq_lang.evidence.scopes import in_scope, within
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verbs import Judgement, judges_of
-from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNKNOWN, VIOLATED, ClauseVerdict
+from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict
 from btq_lang.evidence.wording import duration
 from btq_lang.record import Record, replace
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
@@ -250,7 +250,7 @@ class JudgedClause:
         why = ""
         if self._not_judged or (self._missing and verdict != VIOLATED):
             verdict, why = UNKNOWN, self._not_judged or self._missing
-        elif verdict == UNKNOWN:
+        elif verdict in (UNKNOWN, UNDECIDED):
             why = tally.why
         elif verdict == NEVER:
             why = "the log ends before it does" if tally.cut_off else "it did not start in any run"

@@ -78,7 +78,8 @@ def _counted(clause: ClauseVerdict) -> str:
         return f"{clause.why}{others}"
     if clause.verdict == NEVER:
         return clause.why
-    unknown = f", {clause.unknown} unknown" if clause.unknown else ""
+    why = f" ({clause.why})" if clause.why else ""
+    unknown = f", {clause.unknown} unknown{why}" if clause.unknown else ""
     if clause.interval is None:
         number = counted(clause.counted, clause.unit.removesuffix("s"))
         return f"{clause.violated} of {number}{unknown}" if clause.verdict == VIOLATED else f"held so far in {number}"
@@ -89,6 +90,8 @@ def _counted(clause: ClauseVerdict) -> str:
         if clause.more is not None:
             decided = f"{clause.more} more without a violation decide{'s' if clause.more == 1 else ''} it"
         return f"{of}; {decided}"
+    if not clause.counted:
+        return of
     low, high = clause.interval
     if clause.confidence is None:
         limits = f"{share(low)} to {share(high)} with confidence {share(USUAL_CONFIDENCE)} each"

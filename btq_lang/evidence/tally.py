@@ -119,14 +119,14 @@ class Tally:
         n, k, unknown = self.counted, self.counted - self.violated, self.unknown
         if n + unknown == 0:
             return NEVER
-        if self._odds is None or n == 0:
+        if self._odds is None:
             return VIOLATED if self.violated else UNKNOWN if unknown else SATISFIED
         low, high = self._by_odds(k, n + unknown), self._by_odds(k + unknown, n + unknown)
         return low if low == high else UNKNOWN
 
     def interval(self) -> tuple[float, float] | None:
-        """The limits of the probability; None without odds, or where nothing was counted."""
-        if self._odds is None or not self.counted:
+        """The limits of the probability; None without odds, or where nothing was judged."""
+        if self._odds is None or not self.counted + self.unknown:
             return None
         confidence = self._confidence if self._confidence is not None else USUAL_CONFIDENCE
         n, k = self.counted, self.counted - self.violated

@@ -146,7 +146,7 @@ class ClauseVerdict(Record):
         confidence: that the requirement asks for; None where it asks for none, and each limit has 95 %.
         more: how many more runs (or activations) without a violation decide; None: no number is known to.
         violations: the first thousand of them.
-        why: why the verdict is unknown; else empty.
+        why: why the verdict is unknown or never exercised; of an undecided one why some are unknown; else empty.
         histogram: of what was measured; None where nothing was.
         timeline: the run of the worst violation; None without any.
     """

@@ -80,8 +80,6 @@ class Literal(OverRuns):
                 return "satisfied"
             return "violated" if upper_limit(k, n, confidence) < odds.probability else "undecided"
 
-        if yes + no == 0:  # more runs like these decide nothing, so it is not undecided
-            return "unknown"
         verdicts = {judge(yes, yes + no + maybe), judge(yes + maybe, yes + no + maybe)}
         return verdicts.pop() if len(verdicts) == 1 else "unknown"
 

@@ -419,9 +419,32 @@ def test_what_is_unknown_counts_as_both(odds: str, expected: str, verify: Verify
     assert count(found) == expected
 
 
-def test_odds_of_what_is_all_unknown_are_unknown(verify: Verify) -> None:
-    demand = "Move needs battery > 1 %\nin at least 90 % of runs\nconfidence 95 %"
-    assert count(verify.clause(demand, several(GOOD, GOOD), before=LEVEL)) == "unknown 0/0 ?2"
+@pytest.mark.parametrize(
+    ("odds", "runs", "expected", "result"),
+    [
+        # 0 of 1 is within the limits of 90 %, as 1 of 1 is; 0 of 2 is below them.
+        (
+            "in at least 90 % of runs\nconfidence 95 %",
+            [GOOD],
+            "undecided 0/0 ?1",
+            "0 of 0, 1 unknown (no samples of `battery`); 45 more without a violation decide it",
+        ),
+        (
+            "in at least 90 % of runs\nconfidence 95 %",
+            [GOOD, GOOD],
+            "unknown 0/0 ?2",
+            "no samples of `battery` (2 of 2 runs)",
+        ),
+        ("in at least 90 % of runs", [GOOD], "unknown 0/0 ?1", "no samples of `battery` (1 of 1 runs)"),
+        ("with probability > 100 % of runs", [GOOD], "violated 0/0 ?1", "0 of 0, 1 unknown"),
+    ],
+)
+def test_what_is_all_unknown_counts_as_both(
+    odds: str, runs: list[str], expected: str, result: str, verify: Verify
+) -> None:
+    found = verify.clause(f"Move needs battery > 1 %\n{odds}", several(*runs), before=LEVEL)
+    assert count(found) == expected
+    assert f"  {result}" in verify.text("run.btlog", "--mission", "main.btq")
 
 
 @pytest.mark.parametrize("form", ["table", "junit", "csv", "markdown", "html"])
