@@ -155,6 +155,8 @@ class JudgedClause:
             return
         judgement = self._judge(self._judged, activation, observed)
         if activation.outcome == "O" and judgement is not None and judgement.holds:
+            # Of `needs` as well, although nothing can break it any more: with one rule for all clauses, the figures of
+            # two at one node differ by what happened, and not by where the log ends.
             judgement = None
         if judgement is not None and isinstance(counts, Unknown):
             judgement = Judgement(None, judgement.at, counts.why)

@@ -358,6 +358,16 @@ def test_a_scope_may_end_after_a_halt_that_was_not_logged(demand: str, expected:
 
 
 @pytest.mark.parametrize(
+    "demand",
+    ["needs battery >= 1 %", "keeps battery >= 1 %", "leaves battery >= 1 %", "succeeds", "takes at most 99 ms"],
+)
+def test_what_is_cut_off_is_left_out_of_each_clause(demand: str, verify: Verify) -> None:
+    """Also of one that was decided when it began, unless it was broken then."""
+    found = verify.clause(f"Move {demand}", f"{LONG} 50 1R 2R 90 3I", samples("battery", SAMPLES), before=LEVEL)
+    assert count(found) == "satisfied 0/1 |1"
+
+
+@pytest.mark.parametrize(
     ("demand", "expected"),
     [
         ("Move succeeds\nwhile battery >= 5 %", "never exercised 0/0 |1"),
