@@ -41,8 +41,8 @@ RUN_BY = {
     "evidence.md text": "evidence/test_page.py",
     "console": "test_requirements_page.py",
     "day-in-the-life.md console": "evidence/test_day.py",
-    "nav2.md console": "evidence/test_recipes.py",
-    "nav2.md text": "evidence/test_recipes.py",
+    "nav2.md console": "evidence/test_recipe_pages.py",
+    "nav2.md text": "evidence/test_recipe_pages.py",
     "sh": "test_a_shell_block_runs",
     "editors.md sh": "editors/test_neovim.py",
     "python": "test_the_python_of_a_page",
@@ -290,5 +290,5 @@ def test_ci_knows_its_names() -> None:
     assert set(step["with"]) <= set(action["inputs"])
     assert re.findall(r"steps\.btq\.outputs\.(\w+)", json.dumps(comment)) == ["diff", "diff"]
     assert "diff" in action["outputs"]
-    assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipes.py runs it
+    assert [*simulation["jobs"]] == ["simulation"]  # evidence/test_recipe_pages.py runs it
     assert gitlab["btq"]["script"][1].startswith("btq check --output-format junit")
