@@ -134,9 +134,14 @@ class JudgedClause:
             self._judge_one(activation, path, root)
         self._waiting.clear()
         if self._judge_run is not None:
-            for place in dict.fromkeys(self._places.values()):
-                for judgement in self._judge_run(self._judged, self._over(root, place)):
-                    self._count(_clocked(judgement, root), root, place.path)
+            judged = [
+                (judgement, place.path)
+                for place in dict.fromkeys(self._places.values())
+                for judgement in self._judge_run(self._judged, self._over(root, place))
+            ]
+            # Of all uses of a subtree together in the order of time, for a window may have the last ones only.
+            for judgement, path in sorted(judged, key=lambda each: each[0].at if each[0] is not None else 0):
+                self._count(_clocked(judgement, root), root, path)
         self._tally.end_run(run)
 
     def _judge_one(self, activation: Activation, path: str, root: Activation | None = None) -> None:

@@ -49,7 +49,7 @@ class Literal(OverRuns):
         else:
             judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
             judged = [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
-        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.at)))
+        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.at, each.decided)))
         experiments = [each.verdict for each in judged]
         if requirement.odds is not None and requirement.odds.experiments == "runs":
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]

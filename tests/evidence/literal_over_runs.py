@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from btq_lang.requirements.model import Claim, Condition, Event, Requirement, Span, Total
 
+    Decided = tuple[Verdict, int]  # and when that was
+
 
 @dataclass(frozen=True)
 class Happening:
@@ -42,20 +44,23 @@ class OverRuns(OfActivations):
         for run in self.runs:
             own = [each for each in self.of(uid) if each.run == run.run]
             verdicts = judge(uid, own, run, claim, requirement)
-            found += [Judged(run.run, uid, verdict, run.end) for verdict in verdicts]
+            found += [Judged(run.run, uid, verdict, run.end, decided) for verdict, decided in verdicts]
         return found
 
     def tries(
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
-    ) -> list[Verdict]:
+    ) -> list[Decided]:
         """How many starts that count lie in each activation of the other node, or in the run."""
         around = [ROOT] if claim.per is None else self.nearest(uid, self.uids(claim.per))
-        found: list[Verdict] = []
+        found: list[Decided] = []
         for p in (each for other in around for each in self.of(other) if each.run == run.run):
-            inside = [self.counts(x, requirement) for x in own if p.start <= x.start <= p.stop]
-            numbers = {inside.count(True), inside.count(True) + inside.count(None)}
+            inside = [(x, self.counts(x, requirement)) for x in own if p.start <= x.start <= p.stop]
+            sure = [x for x, counts in inside if counts]
+            numbers = {len(sure), sum(counts is not False for _, counts in inside)}
             verdicts = {self.tried(p, number, claim) for number in numbers}
-            found.append(verdicts.pop() if len(verdicts) == 1 else None)
+            verdict = verdicts.pop() if len(verdicts) == 1 else None
+            too_many = [x for number, x in enumerate(sure, 1) if self.within(number, claim.limit, p)[0] is False]
+            found.append((verdict, too_many[0].begin if verdict is False and too_many else p.end))
         return found
 
     def tried(self, p: Activation, number: int, claim: Claim) -> Verdict:
@@ -68,32 +73,32 @@ class OverRuns(OfActivations):
 
     def rate(
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
-    ) -> list[Verdict]:
+    ) -> list[Decided]:
         """runs every d, runs at least m per d: in each stretch of a run that counts."""
         scopes = [each.condition for each in requirement.scopes if each.word == "while"]
         when = record.replace(requirement, scopes=tuple(each for each in requirement.scopes if each.word == "when"))
-        found: list[Verdict] = []
+        found: list[Decided] = []
         for stretch, is_sure in self.stretches(scopes, replace(run, uid=uid)):
             inside = [(x, self.counts(x, when)) for x in own if stretch.start <= x.start <= stretch.stop]
             inside = [(x, counts) for x, counts in inside if counts is not False]
             if not is_sure or any(counts is None for _, counts in inside):
-                found.append(None)
+                found.append((None, stretch.begin))
                 continue
             times = [x.begin for x, _ in inside]
             is_open = run.outcome == "O" and stretch.stop == run.stop
             judge = self.evenly if claim.every else self.often
             found += judge(claim, replace(stretch, outcome="O" if is_open else "S"), times)
-        return [each for each in found if each != OUT]
+        return found
 
-    def evenly(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Verdict]:
+    def evenly(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Decided]:
         """Each time between two starts, and from the last one to the end."""
         if not times:
             return []
         kept = [self.within((later - before) / 1e6, claim.limit, stretch)[0] for before, later in pairwise(times)]
         tail: Verdict = self.within((stretch.end - times[-1]) / 1e6, claim.limit, stretch)[0]
-        return [*kept, OPEN if tail and stretch.outcome == "O" else tail]
+        return [*zip(kept, times[1:], strict=True), (OPEN if tail and stretch.outcome == "O" else tail, stretch.end)]
 
-    def often(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Verdict]:
+    def often(self, claim: Claim, stretch: Activation, times: list[int]) -> list[Decided]:
         """Each window of the length."""
         assert isinstance(claim.per, Value)
         length = micros(claim.per.si)
@@ -101,18 +106,23 @@ class OverRuns(OfActivations):
         if last < stretch.begin:
             return []
         begins = {stretch.begin, last, *(time + shift for time in times for shift in (0, 1, -length, 1 - length))}
-        numbers = [
-            sum(begin <= time < begin + length for time in times) for begin in begins if stretch.begin <= begin <= last
-        ]
+        inside = sorted(begin for begin in begins if stretch.begin <= begin <= last)
+        numbers = [sum(begin <= time < begin + length for time in times) for begin in inside]
         kept = both(*(both(*self.within(number, claim.limit, stretch)) for number in numbers))
-        return [OPEN if kept and stretch.outcome == "O" else kept]
+        if kept is None:
+            return [(None, stretch.begin)]
+        if kept:
+            return [(OPEN if stretch.outcome == "O" else True, stretch.end)]
+        is_above = self.within(max(numbers), claim.limit, stretch)[0] is False
+        worst = numbers.index(max(numbers) if is_above else min(numbers))
+        return [(False, inside[worst] + length)]
 
     def reactions(
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
-    ) -> list[Verdict]:
+    ) -> list[Decided]:
         """starts within d after ev, ends within d after ev: the next start, or end, after each event."""
         assert claim.event is not None
-        found: list[Verdict] = []
+        found: list[Decided] = []
         for event in self.events(claim.event, replace(run, uid=uid)):
             if claim.verb == "starts":
                 answer = next((Happening(x.start, x.start) for x in own if x.start >= event.after), None)
@@ -132,24 +142,26 @@ class OverRuns(OfActivations):
                 verdict = None
             elif kept and answer is None:
                 verdict = OPEN if run.outcome == "O" else None  # an open tail
-            found.append(counted(counts, verdict))
-        return [each for each in found if each != OUT]
+            verdict = counted(counts, verdict)
+            found.append((verdict, by[0] if verdict is False and answer is not None else until[0]))
+        return [each for each in found if each[0] != OUT]
 
     def follows(
         self, uid: int, own: Sequence[Activation], run: Activation, claim: Claim, requirement: Requirement
-    ) -> list[Verdict]:
+    ) -> list[Decided]:
         """An event since the start before, or since the run began."""
         assert claim.event is not None
         events = self.events(claim.event, replace(run, uid=uid))
         before = (run.begin, -1)
-        found: list[Verdict] = []
+        found: list[Decided] = []
         for x in own:
             maybe = [each for each in events if before < each.by and each.after <= x.start]
             is_sure = any(each.has_happened and before < each.after and each.by <= x.start for each in maybe)
             verdict: Verdict = True if is_sure else None if maybe else False
-            found.append(counted(self.counts(x, requirement), OPEN if is_sure and x.outcome == "O" else verdict))
+            verdict = OPEN if is_sure and x.outcome == "O" else verdict
+            found.append((counted(self.counts(x, requirement), verdict), x.begin))
             before = x.start
-        return [each for each in found if each != OUT]
+        return [each for each in found if each[0] != OUT]
 
     def span(self, span: Span, claim: Claim, requirement: Requirement) -> list[Judged]:
         """from e1 to e2: each e1 opens one, the next e2 closes all that are open."""
@@ -170,7 +182,8 @@ class OverRuns(OfActivations):
                         verdict = None
                     elif kept and not closing:
                         verdict = OPEN if run.outcome == "O" else False
-                    found.append(judged(replace(run, uid=uid), counted(self.counts(at, requirement), verdict)))
+                    verdict = counted(self.counts(at, requirement), verdict)
+                    found.append(Judged(run.run, uid, verdict, run.end, by[0]))
         return [each for each in found if each.verdict != OUT]
 
     def total(self, total: Total, claim: Claim, requirement: Requirement) -> list[Judged]:

@@ -20,12 +20,18 @@ OPEN, OUT = "open", "out"  # cut off by the end of the log before it breaks anyt
 
 @dataclass(frozen=True)
 class Judged:
-    """What one activation came to: true, false, unknown, open, or not counted; at: its end."""
+    """What one activation came to: true, false, unknown, open, or not counted.
+
+    Attributes:
+        at: its end, or that of the run.
+        decided: when that was decided, of several in a run that are judged when the run has ended.
+    """
 
     run: int
     uid: int
     verdict: Verdict
     at: int
+    decided: int = 0
 
 
 class OfActivations(Log):

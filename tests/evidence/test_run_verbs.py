@@ -523,6 +523,16 @@ def test_what_ends_in_a_window_counts_whenever_it_was_broken(window: str, expect
     assert come_to(verify, demand, runs, samples("battery", {-1: 50, 5: 10, 8: 50})) == expected
 
 
+@pytest.mark.parametrize(
+    ("number", "expected"), [(1, "violated 1/1"), (2, "violated 1/2"), (3, "violated 1/3"), (4, "violated 1/3")]
+)
+def test_the_last_of_a_run_is_that_of_all_uses_of_a_subtree(number: int, expected: str, verify: Verify) -> None:
+    """Though the second one's come later in the tree: Put of the first one is late at 80."""
+    first, second = "60 8S 80 9R 90 9S 7S", "10 12S 11 13R 15 13S 11S 20 11R 12R 30 12S 31 13R 35 13S 11S"
+    demand = f"Put starts within 5 ms after Grip succeeds\nover last {number} activations"
+    assert come_to(verify, demand, f"0 1R 7R 8R 11R 12R {second} {first} 100 1S") == expected
+
+
 def test_what_is_last_is_told_by_its_time(verify: Verify) -> None:
     """And not by the order of the logs."""
     mission = f"QualityReq rq : safety\n    Move succeeds\n    over last 2 runs\n{MISSION}"

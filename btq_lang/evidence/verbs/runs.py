@@ -70,10 +70,11 @@ def _in_windows(
     def number(window: int) -> int:
         return bisect_left(times, window + length) - bisect_left(times, window)
 
-    # Fewest are where one has just left; most where one is the first, or in the last window.
-    windows = [begin, *[time + 1 for time in times if time < last], *[min(time, last) for time in times]]
+    # Of those with the fewest and with the most the first: a start has just left it, or is the last in it.
+    fewest = min([begin, *[time + 1 for time in times if time < last]], key=number)
+    most = max([begin, *[max(begin, min(time + 1 - length, last)) for time in times]], key=number)
     judgements: list[Judgement] = []
-    for window in (min(windows, key=number), max(windows, key=number)):
+    for window in (fewest, most):
         found = compared(claim.limit, float(number(window)), run.observed, stretch.begin)
         if isinstance(found, Unknown):
             yield Judgement(None, stretch.begin[0], found.why)
@@ -82,4 +83,9 @@ def _in_windows(
         measure = replace(found.measure, unit=None)
         judgements.append(Judgement(measure.excess <= 0, window + length, said, measure))
     worst = max(judgements, key=lambda each: each.measure.excess if each.measure is not None else 0.0)
-    yield None if is_open and worst.holds else worst
+    if not worst.holds:
+        yield worst
+    elif is_open:
+        yield None
+    else:
+        yield replace(worst, at=stretch.end[0])
