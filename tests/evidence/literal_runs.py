@@ -89,7 +89,7 @@ def activations(tree: LoggedTree, rows: Sequence[Transition]) -> list[Activation
             opened = len(rows)  # it may have begun with a row below it
         if opened is not None and rows:
             begin = rows[min(opened, len(rows) - 1)][0]
-            found.append(Activation(uid, opened, len(rows), begin, rows[-1][0], "O", True))
+            found.append(Activation(uid, opened, len(rows) - 1, begin, rows[-1][0], "O", True))
             closed.append(since)
     for each, since in zip(found, closed, strict=True):
         below = range(each.uid + 1, tree.last[each.uid] + 1)
