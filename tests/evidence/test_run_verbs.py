@@ -442,6 +442,13 @@ def test_what_happened_in_words(
     assert (found["why"], found["measured"], found["bound"], found["at"]) == (why, measured, bound, at)
 
 
+def test_a_rate_is_exceeded_by_the_start_that_is_one_too_many(verify: Verify) -> None:
+    """In the first window that has it, which ends 1 µs after it."""
+    runs = "0 1R 2R 3R 5 3F 20 3R 25 3F 30 3R 40 3S 2S 50 1S"
+    (found,) = clause(verify, "Move runs at most 1 per 15 ms", runs)["violations"]
+    assert found["at"] == 0.030001
+
+
 def test_a_start_that_lacks_the_event_since_the_last_one(verify: Verify) -> None:
     (found,) = clause(verify, "Move follows mission starts", TWICE)["violations"]
     assert (found["why"], found["at"]) == ("`mission starts` did not happen since its last start", 0.02)
