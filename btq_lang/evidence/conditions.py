@@ -88,7 +88,7 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
         found = truth(condition.condition, observed, moment)
         return found if isinstance(found, Unknown) else not found
     if isinstance(condition, InContext):
-        return truth(condition.condition, observed, moment)
+        return observed.holds(condition, moment, lambda: truth(condition.condition, observed, moment))
     if isinstance(condition, Flag):
         return condition.value
     if isinstance(condition, Read):

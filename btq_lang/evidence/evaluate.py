@@ -8,6 +8,7 @@ from __future__ import annotations
 from functools import partial
 
 from btq_lang.evidence.clause import JudgedClause
+from btq_lang.evidence.contexts import Contexts
 from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
@@ -62,6 +63,7 @@ class MissionEvaluation:
         self._sources: Final[list[Source]] = []
         self._outcomes: Final[dict[Outcome, int]] = dict.fromkeys(_OUTCOMES, 0)
         self._coverage: Final = Coverage()
+        self._contexts: Final = Contexts(found.contexts)
         self._timelines: Final = Timelines() if with_timelines else None
 
     def read(self, session: Session, joined: Joined, given: Mapping[str, Series], first_run: int, source: str) -> int:
@@ -83,6 +85,7 @@ class MissionEvaluation:
         explainer = Explainer(tree, at, signals)
         for clause in self._clauses:
             clause.explain = partial(explainer.chain, clause.claim)
+        self._contexts.join(joined, signals, history)
         self._coverage.expect(tree, joined.written())
         begin: int | None = None
         end = 0
@@ -110,6 +113,7 @@ class MissionEvaluation:
                 self._coverage.end_run(run.number, origin.uid if origin is not None else None)
                 for clause in self._clauses:
                     clause.end_run(run, activation)
+                self._contexts.end_run(activation)
                 history.clear()
                 if self._timelines is not None:
                     self._timelines.end_run(run, tree, [each for each in self._clauses if each.is_worst_in(run)])
@@ -155,6 +159,7 @@ class MissionEvaluation:
             ),
             outcomes=tuple((_OUTCOMES[outcome], number) for outcome, number in self._outcomes.items() if number),
             nodes=self._coverage.summary(),
+            contexts=self._contexts.summary(),
             retries=self._coverage.retries.summary(),
             recoveries=self._coverage.recoveries.summary(),
             by_people=tuple(each.name for each in found.all.values() if each.claims and _is_by_people(each)),

@@ -71,6 +71,7 @@ def _mission(mission: MissionVerdicts) -> Json:
         "outcomes": dict(mission.outcomes),
         "retries": _repeats(mission.retries),
         "recoveries": _repeats(mission.recoveries),
+        "contexts": [{"name": each.name, "runs": each.runs, "unknown": each.unknown} for each in mission.contexts],
         "nodes": [{name: getattr(node, name) for name in _OF_NODES} for node in mission.nodes],
     }
 

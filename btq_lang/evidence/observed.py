@@ -44,7 +44,7 @@ class Observed:
         is_end_known: otherwise it had ended by `end`.
     """
 
-    __slots__ = ("_nodes", "_signals", "begin", "end", "is_end_known")
+    __slots__ = ("_contexts", "_nodes", "_signals", "begin", "end", "is_end_known")
 
     def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
         """
@@ -53,6 +53,7 @@ class Observed:
         """
         self._signals: Final = signals
         self._nodes: Final = nodes
+        self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
         self.begin: Final = begin
         self.end: Final = end
         self.is_end_known: Final = is_end_known
@@ -79,6 +80,15 @@ class Observed:
             return self._signals.number(signal, begin, end)
         values = self._signals.values(signal, begin, end)
         return values if isinstance(values, Unknown) else _FUNCTIONS[function](values)
+
+    def holds(self, context: InContext, moment: Moment, truth: Callable[[], bool | Unknown]) -> bool | Unknown:
+        """Whether a context holds, which is asked once: contexts that name others twice would double it each time."""
+        if self._contexts is None:
+            self._contexts = {}
+        key = context.name, moment
+        if key not in self._contexts:
+            self._contexts[key] = truth()
+        return self._contexts[key]
 
     def runs(self, target: Target, moment: Moment) -> bool | Unknown:
         """Whether a node runs."""
@@ -110,27 +120,36 @@ def signals_in(part: object) -> Iterator[Signal]:
 
 
 def parts_in(part: object) -> Iterator[Read | Aggregate | Running]:
-    """What a condition, a bound or an event reads."""
-    if isinstance(part, Read | Aggregate | Running):
-        yield part
-    elif isinstance(part, Compare):
-        yield from (found for each in part.operands for found in parts_in(each))
-    elif isinstance(part, All | Any):
-        yield from (found for each in part.conditions for found in parts_in(each))
-    elif isinstance(part, Not | InContext):
-        yield from parts_in(part.condition)
-    elif isinstance(part, Minus):
-        yield from parts_in(part.operand)
-    elif isinstance(part, Arithmetic):
-        yield from (found for each in (part.left, part.right) for found in parts_in(each))
-    elif isinstance(part, Table):
-        for case in part.cases:
-            yield from parts_in(case.value)
-            yield from parts_in(case.condition)
-    elif isinstance(part, Limit):
-        yield from (found for each in (part.value, part.upper) for found in parts_in(each))
-    elif isinstance(part, Event):
-        yield from parts_in(part.condition)
+    """What a condition, a bound or an event reads; what a context does is said once."""
+    contexts: set[str] = set()
+    waiting = [part]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, Read | Aggregate | Running):
+            yield part
+        elif isinstance(part, InContext):
+            if part.name not in contexts:
+                contexts.add(part.name)
+                waiting.append(part.condition)
+        else:
+            waiting += reversed(_inside(part))
+
+
+def _inside(part: object) -> Sequence[object]:
+    """The parts of a condition, a bound or an event."""
+    if isinstance(part, Compare):
+        return part.operands
+    if isinstance(part, All | Any):
+        return part.conditions
+    if isinstance(part, Not | Event):
+        return (part.condition,)
+    if isinstance(part, Minus):
+        return (part.operand,)
+    if isinstance(part, Arithmetic):
+        return part.left, part.right
+    if isinstance(part, Table):
+        return [each for case in part.cases for each in (case.value, case.condition)]
+    return (part.value, part.upper) if isinstance(part, Limit) else ()
 
 
 def _mean(values: Sequence[float]) -> float:

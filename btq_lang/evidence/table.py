@@ -104,6 +104,8 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
             runs.append(f"{word} {repeats.total}, at most {repeats.most} in run {repeats.run}")
     yield " · ".join(map(printable, runs))
     nodes = [f"nodes: exercised {sum(each.runs > 0 for each in mission.nodes)} of {len(mission.nodes)}"]
+    if mission.contexts:
+        nodes.append(f"contexts {sum(each.runs > 0 for each in mission.contexts)} of {len(mission.contexts)}")
     slowest = max((each for each in mission.nodes if each.is_leaf), key=lambda each: each.p95 or 0, default=None)
     if slowest is not None and slowest.p95 and slowest.p50 is not None:
         nodes.append(f"slowest: {slowest.path} p50 {duration(slowest.p50)}, p95 {duration(slowest.p95)}")

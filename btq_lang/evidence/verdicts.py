@@ -238,6 +238,14 @@ class Repeats(Record):
     run: int | None
 
 
+class ContextSummary(Record):
+    """In how many runs a context held, and in how many others it is not known whether it did."""
+
+    name: str
+    runs: int
+    unknown: int
+
+
 class MissionVerdicts(Record):
     """A mission with the files that it was judged by.
 
@@ -245,6 +253,7 @@ class MissionVerdicts(Record):
         file: of the mission.
         outcomes: how many runs ended how.
         nodes: of the logs, in the order of their numbers.
+        contexts: of the mission, in the order of their definitions.
         retries: of what Retry nodes and Nav2's RecoveryNodes repeat.
         recoveries: of what RecoveryNodes do between two tries.
         by_people: the requirements that are verified by review, test or analysis, and not judged here.
@@ -256,6 +265,7 @@ class MissionVerdicts(Record):
     requirements: tuple[RequirementVerdict, ...]
     outcomes: tuple[tuple[str, int], ...]
     nodes: tuple[NodeSummary, ...]
+    contexts: tuple[ContextSummary, ...]
     retries: Repeats
     recoveries: Repeats
     by_people: tuple[str, ...]

@@ -166,3 +166,25 @@ TreeNodesModel
     (found,) = judged(verify, "0 1R 2R 5 2F 3R 8 3S 2R 11 2F 3S 2R 15 2S 1S 1I 20 1R 2R 25 2S 1S", mission)["missions"]
     assert found["retries"] == {"total": 2, "most": 2, "run": 1}
     assert found["recoveries"] == {"total": 2, "most": 2, "run": 1}
+
+
+def test_in_how_many_runs_a_context_held(verify: Verify) -> None:
+    mission = f"""signal battery : % from {{battery_level}}
+context low : battery < 20 %
+context moving : node Drive
+context reversing : node Grip and node Drive
+context fair : not low
+{RETRY}"""
+    runs = DRIVES_TWICE + " 100 1R 2R 3R 130 3S 4R 140 4S 2S 1S"
+    (verify.folder / "battery.csv").write_text(f"t,battery\n{START / 1e6 + 0.11},30\n{START / 1e6 + 0.12},10\n")
+    (verify.folder / "main.btq").write_text(mission, encoding="utf-8")
+    (verify.folder / "run.btlog").write_bytes(btlog(verify.build(mission), rows(runs)))
+    named = ("run.btlog", "--mission", "main.btq", "--signals", "battery.csv")
+    (found,) = verify.json(*named)["missions"]
+    assert [tuple(each.values()) for each in found["contexts"]] == [
+        ("low", 1, 1),  # runs in which it held, and others in which that is unknown
+        ("moving", 2, 0),
+        ("reversing", 0, 0),
+        ("fair", 1, 1),
+    ]
+    assert "nodes: exercised 4 of 4 · contexts 3 of 4 · slowest" in verify.text(*named)

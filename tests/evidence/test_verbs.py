@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ from evidence_logs import MAIN, START, Verify, samples
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import check
+from btq_lang.evidence.signals import Signals
 from btq_lang.parser import parse
 from btq_lang.requirements import requirements
 from btq_lang.syntax import Claim
@@ -321,6 +323,18 @@ def test_a_column_may_have_the_name_of_the_entry(verify: Verify) -> None:
 def test_scopes(demand: str, expected: str, verify: Verify) -> None:
     before = f"{LEVEL}\nsignal other : % from {{other}}\ncontext low : battery < 20 %"
     assert count(verify.clause(demand, LONG, samples("battery", SAMPLES), before=before)) == expected
+
+
+def test_a_context_is_read_once_at_a_moment(verify: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = []
+    reading = Signals.reading
+    monkeypatch.setattr(Signals, "reading", lambda *asked: read.append(asked) or reading(*asked))
+    doubled = "".join(f"context c{at} : c{at - 1} and c{at - 1}\n" for at in range(1, 41))
+    before = f"{LEVEL}\ncontext c0 : battery < 90 %\n{doubled}"
+    clause = verify.clause("Move needs c40\nwhile c39", LONG, samples("battery", SAMPLES), before=before)
+    assert count(clause) == "satisfied 0/1"
+    by_moment = Counter(moment for _, _, moment in read)
+    assert max(by_moment.values()) == 2  # for the clause, and to count the runs in which contexts held
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,65 @@
+"""In how many runs each context held: a requirement about a context that never came says nothing."""
+
+from __future__ import annotations
+
+from btq_lang.evidence.conditions import truth
+from btq_lang.evidence.history import Nearby
+from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.observed import Observed, parts_in
+from btq_lang.evidence.signals import Unknown
+from btq_lang.evidence.verdicts import ContextSummary
+from btq_lang.requirements.model import InContext, Running
+
+TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Final
+
+    from btq_lang.evidence.history import History
+    from btq_lang.evidence.identity import Joined
+    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.signals import Signals
+    from btq_lang.requirements.model import Condition
+
+
+class Contexts:
+    """The contexts of a mission, while logs of it are read."""
+
+    def __init__(self, contexts: Mapping[str, Condition | None]) -> None:
+        """
+        Args:
+            contexts: by name; None: it could not be understood.
+        """
+        self._contexts: Final = [InContext(name, each) for name, each in contexts.items() if each is not None]
+        self._held: Final = dict.fromkeys(contexts, 0)
+        self._unknown: Final = dict.fromkeys(contexts, 0)
+
+    def join(self, joined: Joined, signals: Signals, history: History) -> None:
+        """Read another log."""
+        self._signals, self._nodes = signals, Nearby(ROOT, joined, history)
+        for context in self._contexts:
+            for part in parts_in(context):
+                if isinstance(part, Running):
+                    self._nodes.find(part.target)
+
+    def end_run(self, root: Activation) -> None:
+        """The run that was open has ended.
+
+        Args:
+            root: the activation of its root.
+        """
+        observed = Observed(self._signals, self._nodes, root.started, root.ended, root.timing != "latest")
+        for context in self._contexts:
+            is_unknown = False
+            for moment in observed.moments(context):
+                found = truth(context, observed, moment)
+                if found is True:
+                    self._held[context.name] += 1
+                    break
+                is_unknown = is_unknown or isinstance(found, Unknown)
+            else:
+                self._unknown[context.name] += is_unknown
+
+    def summary(self) -> tuple[ContextSummary, ...]:
+        """Each context, in the order of their definitions."""
+        return tuple(ContextSummary(name, held, self._unknown[name]) for name, held in self._held.items())
