@@ -264,6 +264,8 @@ class JudgedClause:
             if not tally.cut_off and self._has_run:
                 why = "nothing that it is about happened in any run"
         goal = self.requirement.goal
+        is_of_run = self.claim.verb == "tries" and self.claim.per is None
+        is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(self._paths) == 1)
         said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
         said += [self.requirement.odds.text] if self.requirement.odds is not None else []
         said += [self.requirement.window.text] if self.requirement.window is not None else []
@@ -277,7 +279,7 @@ class JudgedClause:
             violated=tally.violated,
             unknown=tally.unknown,
             cut_off=tally.cut_off,
-            unit="runs" if tally.counts_runs else "activations",
+            unit="runs" if tally.counts_runs or is_once_a_run else "activations",
             worst=tally.worst,
             interval=tally.interval(),
             confidence=self.requirement.confidence,

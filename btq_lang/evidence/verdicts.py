@@ -138,7 +138,8 @@ class ClauseVerdict(Record):
         text: as typed, with its scopes and odds.
         path: of the node, as the engine names it; of a subtree that is used several times all of them.
         of: what it measures where that is more than a node: `from … to …`, `sum of …`; else empty.
-        counted: how many activations, or with odds of runs how many runs, were judged true or false.
+        counted: how many activations, or of odds of runs, sums and tries in a run how many runs, were judged true or
+            false.
         violated, unknown: how many of them, and of those beside them.
         cut_off: activations that were left out, for the log ends while they are open.
         unit: what is counted: `activations` or `runs`.

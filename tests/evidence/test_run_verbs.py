@@ -576,3 +576,17 @@ def test_a_window_of_time_has_what_ended_in_it(verify: Verify) -> None:
     """However early the sample was that came closest to the bound."""
     demand = "Move keeps battery >= 5 %\nin at least 90 % of activations\nover last 25 ms"
     assert come_to(verify, demand, "0 1R 3R 30 3S 1S", samples("battery", {-1: 5, 2: 50})) == "satisfied 0/1"
+
+
+@pytest.mark.parametrize(
+    ("demand", "unit"),
+    [
+        ("Move tries at most 1", "runs"),
+        ("Grip tries at most 1", "activations"),  # each use of the subtree by itself
+        ("Move tries at most 1 per Task", "activations"),
+        ("sum of Move takes at most 1 ms", "runs"),
+        ("Move runs every 1 ms", "activations"),
+    ],
+)
+def test_what_is_counted(demand: str, unit: str, verify: Verify) -> None:
+    assert clause(verify, demand, TWICE)["unit"] == unit
