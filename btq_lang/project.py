@@ -131,7 +131,7 @@ def parse_project(text: str, kind: Kind = "btq.toml", root: str = ".") -> tuple[
 
 
 def has_btq_table(text: str) -> bool:
-    """Whether a pyproject.toml has a `tool.btq`, table or not; seen without reading it as TOML."""
+    """Whether a pyproject.toml has a table `[tool.btq]`, or one below it; seen without reading it as TOML."""
     return _BTQ_TABLE.search(text) is not None
 
 
@@ -190,7 +190,7 @@ def _engines(key: str, value: object) -> _Read:
 
 
 def _meant_engine(version: str) -> str:
-    """The near version, of the same major one: `3.8` is not a slip for 4.8."""
+    """A near version with the same major number: `3.8` is not a misspelt 4.8."""
     return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
@@ -278,11 +278,7 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 
 # ---- patterns ----
 
-_BTQ_TABLE = regex(
-    r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]"""  # [tool.btq]
-    r"""|^[ \t]*\[[ \t]*tool[ \t]*\](?:(?!\n[ \t]*\[)[^\n]*\n)*?[ \t]*["']?btq["']?[ \t]*[=.]"""  # [tool], btq = …
-    r"""|\A(?:(?![ \t]*\[)[^\n]*\n)*?[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[=.]"""  # tool.btq.engine = …
-)
+_BTQ_TABLE = regex(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
 _RELEASE_LINE = regex(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = regex(r"\d+")
 

@@ -72,7 +72,7 @@ _DESCRIPTION = "The language server of btq, for editors."
 
 
 def _is_worth_a_line(record: logging.LogRecord) -> bool:
-    """Whether a record says something new: a refusal is told to the user, and what is not JSON is logged shorter."""
+    """Whether a record belongs in the log: the user sees a refusal, and what is not JSON has its own line."""
     error = record.exc_info[1] if record.exc_info else None
     is_not_json = isinstance(error, NOT_JSON) and record.name.startswith("pygls.")
     return not (is_not_json or isinstance(error, Refused))

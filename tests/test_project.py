@@ -175,12 +175,6 @@ def test_unknown_rules_of_the_command_line() -> None:
         ("[tool.btq]", True),
         ("x = 1\n [ tool . 'btq' ]\n", True),
         ("[tool.btq.rules]", True),
-        ("[tool]\nx = 1\nbtq = 3", True),
-        ("[tool]\n'btq'.engine = '4.8'", True),
-        ("x = 1\ntool.btq.engine = '4.8'", True),
-        ("tool = { btq = 3 }", False),  # nobody writes so
-        ("[tool]\n[x]\nbtq = 3", False),
-        ("[x]\ntool.btq = 3", False),
         ("[tool.btqx]", False),
         ("# [tool.btq]", False),
         ("", False),

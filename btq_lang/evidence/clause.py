@@ -5,7 +5,6 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 
 from __future__ import annotations
 
-from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.history import Nearby, near
 from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
 from btq_lang.evidence.observed import Observed, parts_in
@@ -40,7 +39,7 @@ class _Place(Record):
 
     Attributes:
         uids: its nodes.
-        others: the nodes that it speaks of beside them.
+        others: the other nodes that it mentions.
     """
 
     path: str
@@ -224,8 +223,6 @@ class JudgedClause:
             for each in (subject, *(each.subject for each in self._events))
         ):
             return "the mission has no known main tree"
-        if not _is_whole(self.claim):
-            return "the clause has an error; run btq check"
         if self._judge is None and self._judge_run is None:
             of = "the time from one event to another" if isinstance(subject, Span) else "a sum of durations"
             return f"`{self.claim.verb}` cannot be judged of {of}"
@@ -316,19 +313,3 @@ _STOPPED_BY: Final = {
     "Timeout": frozenset(("takes", "succeeds")),
     "ReactiveSequence": frozenset(("keeps", "never", "uses", "succeeds")),
 }
-
-
-def _is_whole(claim: Claim) -> bool:
-    """Whether a clause has all that its verb needs: one with a syntax error may lack some of it."""
-    match VERBS[claim.verb].operand:
-        case "condition":
-            return claim.condition is not None
-        case "event":
-            return claim.event is not None
-        case "reaction":
-            return claim.event is not None and claim.limit is not None
-        case "use":
-            return claim.signal is not None and claim.limit is not None
-        case "rate":
-            return claim.limit is not None and (claim.every or isinstance(claim.per, Value))
-    return claim.limit is not None or claim.verb == "succeeds"

@@ -1,7 +1,6 @@
 """`over last N runs`, `over last 8 h`: what a clause has come to lately.
 
-One invariant: kept are the judgements of the window and no others; what is last is told by when it happened, in
-whatever order the logs are read.
+One invariant: only the judgements in the window are kept, the latest ones, in whatever order the logs are read.
 """
 
 from __future__ import annotations

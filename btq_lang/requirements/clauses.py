@@ -166,7 +166,7 @@ def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
     per = _per(reader, written.per)
-    if written.per is not None and per is None:
+    if per is None and (written.per is not None or (verb == "runs" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
 

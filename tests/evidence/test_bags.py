@@ -127,7 +127,7 @@ def test_a_bag_without_uids(nav: Verify, shared: Path) -> None:
 
 def test_files_of_a_bag_are_read_alone_and_as_a_folder(small: Verify) -> None:
     for storage, suffix in (("mcap", "mcap"), ("sqlite3", "db3")):
-        write_bag(small.folder / "logs" / storage, tree_log(rows(TWO_RUNS), NAMES), storage)  # type: ignore[arg-type]
+        write_bag(small.folder / "logs" / storage, tree_log(rows(TWO_RUNS), NAMES), storage)  # type: ignore[arg-type]  # a name from a list
         assert clause(small.json(f"logs/{storage}/{storage}.{suffix}")) == (2, [2])
     found = small.json("logs")
     assert [each["file"] for each in found["sources"]] == ["logs/mcap", "logs/sqlite3"]

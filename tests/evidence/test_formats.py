@@ -112,7 +112,7 @@ Drive takes at most 25 ms at Drive: violated, 1 of 2 activations, worst 30 ms in
     </testcase>
   </testsuite>
 </testsuites>
-"""  # noqa: E501
+"""  # noqa: E501  # as it is printed
 
 
 def test_junit(judged: Verify) -> None:
@@ -169,7 +169,7 @@ PULL_REQUEST = f"""\
 What to look at:
 
 * {LOOK}
-"""  # noqa: E501
+"""  # noqa: E501  # as it is printed
 
 
 def test_markdown(judged: Verify) -> None:

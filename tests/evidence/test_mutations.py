@@ -45,7 +45,7 @@ MUTATIONS = 2000
 def _bag(storage: str, compression: str = "none") -> Callable[[Path], Path]:
     def write(folder: Path) -> Path:
         extra = [number("/charge", START, 50.0), text("/tree", START, MAIN_XML)]
-        write_bag(folder / "bag", [*CHANGES, *extra], storage, compression)  # type: ignore[arg-type]
+        write_bag(folder / "bag", [*CHANGES, *extra], storage, compression)  # type: ignore[arg-type]  # a name from a list
         (file,) = (each for each in (folder / "bag").iterdir() if each.suffix in (".mcap", ".db3"))
         return file
 

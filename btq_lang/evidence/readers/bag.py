@@ -68,7 +68,7 @@ class Bag:
                 try:
                     received = int(received)
                     message = decoders[connection.msgtype](data)
-                except Exception:
+                except Exception:  # likewise
                     unread += 1
                 else:
                     yield connection.topic, received, message
@@ -111,7 +111,7 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
         storage.open()
     except OSError:
         raise
-    except Exception as error:
+    except Exception as error:  # whatever is wrong with the metadata
         files = sorted(each for each in os.listdir(path) if each.endswith((".mcap", ".db3")))
         if not files:
             raise NotALog(f"the bag cannot be read: {_said(error)}") from error
@@ -133,7 +133,7 @@ def _file(path: str, remarks: list[str]) -> Any:
     storage: Any
     try:
         if is_mcap:
-            storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]
+            storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]  # only opened
             storage.open()
             return storage
         is_cut = sqlite.missing_bytes(path) > 0
@@ -141,7 +141,7 @@ def _file(path: str, remarks: list[str]) -> Any:
         storage.open()
     except (OSError, NotALog):
         raise
-    except Exception as error:
+    except Exception as error:  # `rosbags` lets through what its parts raise
         raise NotALog(f"the bag cannot be read: {_said(error)}") from error
     return storage
 
@@ -182,7 +182,7 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
             texts = (_TREE_LOG_DEFINITION.format(uid=uid) for uid in ("uint16 uid\n", ""))
             return _either(*(_decoder_of(name, "MSG", text) for text in texts))
         return _decoder_of(name, definition.format.name, definition.data)
-    except Exception as error:
+    except Exception as error:  # a definition may hold anything
         raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
 
 
@@ -204,7 +204,7 @@ def _either(first: Callable[[bytes], Any], second: Callable[[bytes], Any]) -> Ca
     def decode(data: bytes) -> Any:
         try:
             return first(data)
-        except Exception:
+        except Exception:  # bytes of the other form may look like anything
             return second(data)
 
     return decode
