@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from build_command import btq as btq  # a fixture of every folder
 from hypothesis import settings
 
 # Without a deadline: how long one example takes on a busy machine says nothing about the code.  The usual run invents

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 
 import pytest
+from budget_missions import missions, resolved
 from check_asserts import findings, problems
 from engine_simulator import Endless, Run, Sim
 from hypothesis import given
 from hypothesis import strategies as st
-from test_budgets import missions, resolved
 
 from btq_lang.checks import check
 from btq_lang.workspace import Workspace

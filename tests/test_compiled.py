@@ -18,8 +18,8 @@ from typing import Any
 
 import pytest
 from missions import mission
+from rule_pages import blocks
 from test_plain import CLASSIC, EXAMPLES, SHORT, torn
-from test_rules import blocks
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 import pytest
-from test_xml_reader import elements
+from xml_elements import elements
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export

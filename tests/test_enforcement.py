@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from build_command import GUESSED, Btq
 from hypothesis import given
 from hypothesis import strategies as st
 from missions import mission
-from test_build import GUESSED, Btq, btq  # noqa: F401  # the fixture
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.conditions import NoScript, condition_script, real
@@ -335,7 +335,7 @@ QUICK = f"QualityReq quick\n    Move takes at most 5 s\n{FAIL}QualityReq calm\n 
 LIKELY = QUICK.replace("    on violation", "    in at least 98 % of runs\n    on violation")
 
 
-def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_a_build_tells_what_it_enforces(btq: Btq) -> None:
     btq.write(mission=QUICK)
     counted = "clauses of requirements: 1 enforced, 1 monitored\n"
     assert btq.build("mission.btq") == (0, "wrote mission.xml\nwrote mission.qreq.json\n", counted + SEEN)
@@ -354,7 +354,7 @@ def test_a_build_tells_what_it_enforces(btq: Btq) -> None:  # noqa: F811  # the 
     )
 
 
-def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:
     loose = f"signal force : N initially 0 N\n{QUICK}".replace("5 s\n", "5 s\n    never force >= 50 N\n")
     btq.write(mission=loose)
     assert btq.build("mission.btq")[2] == (
@@ -367,7 +367,7 @@ def test_a_build_tells_what_is_about_no_node(btq: Btq) -> None:  # noqa: F811  #
     assert held == [("Move takes at most 5 s", "enforced"), ("Rest takes at most 2 s", "monitored")]
 
 
-def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> None:
     rules = "QualityReq quick\n    Move takes at most 5 s\n    succeeds\nBehaviorTree Go\n    Move\n"
     main = 'include "rules.btq"\nRoot Main\nBehaviorTree Main\n    ->\n        SubTree Go\n        Rest{}\n'
     btq.write(rules=rules, mission=main.format(" satisfies quick"))
@@ -379,7 +379,7 @@ def test_what_one_mission_leaves_about_no_node_another_may_attach(btq: Btq) -> N
     )
 
 
-def test_a_build_names_trees_and_the_mission_as_the_claim_does(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_a_build_names_trees_and_the_mission_as_the_claim_does(btq: Btq) -> None:
     claims = "".join(f"    {subject} takes at most 5 s\n" for subject in ("SubTree/Go", "mission", "Go/Move"))
     trees = "BehaviorTree Main\n    ->\n        SubTree Go\n        Rest\nBehaviorTree Go\n    R->\n        Move\n"
     btq.write(mission=f"QualityReq quick\n{claims}{FAIL}Root Main\n{trees}")
@@ -391,7 +391,7 @@ def test_a_build_names_trees_and_the_mission_as_the_claim_does(btq: Btq) -> None
     )
 
 
-def test_a_plain_tree_can_be_had(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_a_plain_tree_can_be_had(btq: Btq) -> None:
     btq.write(mission=QUICK)
     for option, told in (("--no-enforce", SEEN), ("--verbatim", "")):
         assert btq.build("mission.btq", option, "--force")[2] == told
@@ -402,7 +402,7 @@ def test_a_plain_tree_can_be_had(btq: Btq) -> None:  # noqa: F811  # the fixture
     assert all("clauses" not in applied for applied in side["applied"])
 
 
-def test_the_side_file_counts_what_was_added(btq: Btq) -> None:  # noqa: F811  # the fixture
+def test_the_side_file_counts_what_was_added(btq: Btq) -> None:
     btq.write(mission=QUICK)
     btq.build("mission.btq")
     side: Any = json.loads(btq.read("mission.qreq.json"))

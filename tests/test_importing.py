@@ -9,7 +9,7 @@ from textwrap import dedent
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_xml_reader import elements
+from xml_elements import elements
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.export import export

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from html import unescape
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import ARTIFACTS, CHROMIUM, FLAGS
 from missions import mission
 
 from btq_lang.commands.tracing import built_ways
@@ -29,9 +29,6 @@ from btq_lang.trace.overview import Overview
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[1]
-ARTIFACTS = Path(__file__).parent / "artifacts"
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-extensions")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: only a browser can tell")
 

@@ -6,26 +6,12 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 from check_asserts import MARKER, assert_marked
+from rule_pages import BLOCK, PAGES, blocks
 
-from btq_lang import rules
 from btq_lang.rules import RULES, page
-
-PAGES = Path(rules.__file__).parent
-BLOCK = re.compile(r"^```(?P<language>btq|xml)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE)
-
-
-def blocks() -> list[tuple[str, str, str]]:
-    found = []
-    for rule in RULES:
-        path = PAGES / f"{rule}.md"
-        if path.exists():
-            for match in BLOCK.finditer(path.read_text(encoding="utf-8")):
-                found.append((rule, match["language"], match["text"]))
-    return found
 
 
 def test_there_is_a_page_for_every_rule_and_a_rule_for_every_page() -> None:

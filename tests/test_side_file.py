@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from build_command import Btq
+from json_schema import violations
 from missions import mission
-from test_build import Btq, btq  # noqa: F401  # the fixture
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
@@ -212,7 +213,7 @@ def test_side_files_of_missions_made_up_keep_the_schema_and_lead_back(spelling: 
 
 
 @pytest.mark.parametrize("example", ["classic", "hospital", "laboratory", "navigation", "pick-and-place"])
-def test_an_example_is_built_and_imported(btq: Btq, capsys: Capsys, example: str) -> None:  # noqa: F811
+def test_an_example_is_built_and_imported(btq: Btq, capsys: Capsys, example: str) -> None:
     shutil.copytree(ROOT / "examples" / example, btq.folder / "there")
     assert btq.build("there", "-o", "out")[0] == 0
     for xml in sorted((btq.folder / "out").rglob("*.xml")):
@@ -281,7 +282,7 @@ BUNDLED = {
 }
 
 
-def bundled(folder: Path, btq: Btq) -> Path:  # noqa: F811
+def bundled(folder: Path, btq: Btq) -> Path:
     for name, text in BUNDLED.items():
         (folder / "my" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "my" / name).write_text(text)
@@ -295,14 +296,14 @@ def below(folder: Path) -> dict[str, str]:
     return {each.relative_to(folder).as_posix(): each.read_text() for each in folder.rglob("*.*") if each.is_file()}
 
 
-def test_of_a_bundle_every_file_comes_back(btq: Btq) -> None:  # noqa: F811
+def test_of_a_bundle_every_file_comes_back(btq: Btq) -> None:
     bundled(btq.folder, btq)
     assert main(["import", "out/main.xml", "-o", "back"]) == 0
     assert below(btq.folder / "back") == BUNDLED
     assert main(["check", "back"]) == 0
 
 
-def test_files_of_a_bundle_are_written_over_if_asked(btq: Btq) -> None:  # noqa: F811
+def test_files_of_a_bundle_are_written_over_if_asked(btq: Btq) -> None:
     bundled(btq.folder, btq)
     mine = btq.folder / "back" / "shared" / "a.btq"
     mine.parent.mkdir(parents=True)
@@ -327,7 +328,7 @@ def test_files_of_a_bundle_are_written_over_if_asked(btq: Btq) -> None:  # noqa:
         "main.btq",
     ],
 )
-def test_no_file_of_a_bundle_goes_elsewhere(btq: Btq, name: str) -> None:  # noqa: F811
+def test_no_file_of_a_bundle_goes_elsewhere(btq: Btq, name: str) -> None:
     side = bundled(btq.folder, btq)
     data = json.loads(side.read_text())
     data["sources"][0]["file"] = name
@@ -340,7 +341,7 @@ def test_no_file_of_a_bundle_goes_elsewhere(btq: Btq, name: str) -> None:  # noq
     assert below(btq.folder) == known
 
 
-def test_a_mission_that_includes_what_stands_above_it_keeps_its_folder(btq: Btq) -> None:  # noqa: F811
+def test_a_mission_that_includes_what_stands_above_it_keeps_its_folder(btq: Btq) -> None:
     texts = {
         "missions/m.btq": 'include "../shared/a.btq"\nBehaviorTree M\n    SubTree A tags x\n',
         "shared/a.btq": "BehaviorTree A\n    Go\n",
@@ -353,7 +354,7 @@ def test_a_mission_that_includes_what_stands_above_it_keeps_its_folder(btq: Btq)
     assert below(btq.folder / "back") == texts
 
 
-def test_bundles_that_hold_different_files_of_one_name_are_not_mixed(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+def test_bundles_that_hold_different_files_of_one_name_are_not_mixed(btq: Btq, capsys: Capsys) -> None:
     for folder in ("one", "two"):
         (btq.folder / folder).mkdir()
         (btq.folder / folder / "a.btq").write_text(f"BehaviorTree A\n    Go {folder}\n")
@@ -369,7 +370,7 @@ def test_bundles_that_hold_different_files_of_one_name_are_not_mixed(btq: Btq, c
     assert below(btq.folder / "back") == {}
 
 
-def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) -> None:  # noqa: F811
+def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) -> None:
     bundled(btq.folder, btq)
     xml = btq.folder / "out" / "main.xml"
     xml.write_text(xml.read_text().replace("<Pick", "<Take"))
@@ -380,7 +381,7 @@ def test_of_a_bundle_that_was_edited_what_all_files_said_comes_back(btq: Btq) ->
     assert sorted(below(btq.folder / "back")) == ["main.btq"]
 
 
-def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Btq, capsys: Capsys) -> None:
     (btq.folder / "main.btq").write_text(MISSION)
     assert btq.build("main.btq", "-o", "out")[0] == 0
     xml, side = btq.folder / "out" / "main.xml", btq.folder / "out" / "main.qreq.json"
@@ -402,7 +403,7 @@ def test_what_is_lost_comes_first_and_what_a_build_put_there_in_one_line(btq: Bt
     assert capsys.readouterr().err == f"out/main.xml: {lost}{no}\n{summary.format(put)}{after}"
 
 
-def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> None:
     (btq.folder / "main.btq").write_text(
         "QualityReq quick\n    takes at most 30 s\n    on violation fail\nBehaviorTree M\n    ->\n"
         "        Go satisfies quick\n        Stay (_skipIf = off) satisfies quick\n        Go satisfies quick\n"
@@ -432,7 +433,7 @@ def test_guards_that_were_changed_by_hand_are_told(btq: Btq, capsys: Capsys) -> 
     assert told(built.replace('_skipIf="off"', '_skipIf="on"')) == []
 
 
-def test_what_a_mission_includes_is_to_be_imported_too(btq: Btq, capsys: Capsys) -> None:  # noqa: F811
+def test_what_a_mission_includes_is_to_be_imported_too(btq: Btq, capsys: Capsys) -> None:
     (btq.folder / "my" / "shared").mkdir(parents=True)
     (btq.folder / "my" / "main.btq").write_text('include "shared/a.btq"\nBehaviorTree M\n    SubTree A tags x\n')
     (btq.folder / "my" / "shared" / "a.btq").write_text("BehaviorTree A\n    Go\n")
@@ -460,41 +461,8 @@ def test_places_and_marks() -> None:
     assert not is_side_file('{"format": "something"}')
 
 
-def violations(value: Any, schema: dict[str, Any], at: str = "$") -> Any:
-    """Where a value does not keep a schema: as much of JSON Schema as the side file's uses."""
-    if "$ref" in schema:
-        yield from violations(value, SCHEMA["$defs"][schema["$ref"].rpartition("/")[2]], at)
-    if "const" in schema and value != schema["const"]:
-        yield f"{at}: {value!r}"
-    if "enum" in schema and value not in schema["enum"]:
-        yield f"{at}: {value!r}"
-    types = schema.get("type", [])
-    if types and not any(is_of(value, each) for each in ([types] if isinstance(types, str) else types)):
-        yield f"{at}: {value!r} is no {types}"
-    if "pattern" in schema and not re.search(schema["pattern"], value):
-        yield f"{at}: {value!r}"
-    if isinstance(value, dict):
-        yield from (f"{at}: no {key}" for key in schema.get("required", ()) if key not in value)
-        for key, part in value.items():
-            if key in schema.get("properties", {}):
-                yield from violations(part, schema["properties"][key], f"{at}.{key}")
-            elif schema.get("additionalProperties") is False:
-                yield f"{at}: unknown {key}"
-    for index, item in enumerate(value if isinstance(value, list) else ()):
-        yield from violations(item, schema.get("items", {}), f"{at}[{index}]")
-
-
-def is_of(value: object, type_: str) -> bool:
-    if type_ == "null":
-        return value is None
-    if type_ in ("integer", "number"):
-        return isinstance(value, int | float if type_ == "number" else int) and not isinstance(value, bool)
-    classes = {"object": dict, "array": list, "string": str, "boolean": bool}
-    return isinstance(value, classes[type_])
-
-
 def test_the_schema_refuses() -> None:
-    assert list(violations({"uid": "1", "x": 2}, SCHEMA["properties"]["nodes"]["items"])) == [
+    assert list(violations({"uid": "1", "x": 2}, SCHEMA["properties"]["nodes"]["items"], "$", SCHEMA["$defs"])) == [
         "$: no path",
         "$.uid: '1' is no ['integer', 'null']",
         "$: unknown x",

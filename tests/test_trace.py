@@ -11,7 +11,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from test_requirements import WORKED
+from worked_mission import WORKED
 
 from btq_lang.cli import main
 from btq_lang.graph.svg import _COLOURS

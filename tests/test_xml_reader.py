@@ -9,33 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
+from xml_elements import elements
 
-from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text, escape, write
+from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
-from btq_lang.text import LINE_END, LineIndex
+from btq_lang.text import LineIndex
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
-
-
-def elements(document: Document) -> list[object]:
-    """Every element, comment and text that is not blank, in order, values as XML normalises them."""
-    found: list[object] = []
-    stack: list[Content] = [*reversed(document.contents)]
-    while stack:
-        content = stack.pop()
-        if isinstance(content, Element):
-            found.append((content.tag, [(each.name, normal(each)) for each in content.attributes]))
-            stack += reversed(content.children)
-        elif isinstance(content, Comment):
-            found.append(content.text)
-        elif content.text.strip():
-            found.append(("text", content.text))
-    return found
-
-
-def normal(attribute: Attribute) -> str:
-    """XML 1.0 §3.3.3: line ends and tabs as they stand are blanks, referred ones stay."""
-    return Attribute(attribute.name, LINE_END.sub(" ", attribute.raw).replace("\t", " ")).value
 
 
 def strict_elements(data: bytes) -> list[object]:

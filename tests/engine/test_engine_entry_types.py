@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine_loader import Engine
-from test_checks_mixed_types import CASES, mission
+from mixed_types import CASES, mission
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export

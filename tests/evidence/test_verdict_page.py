@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from chromium import ARTIFACTS, CHROMIUM, FLAGS
 from evidence_logs import Verify, btlog, rows
-from test_page_in_browser import ARTIFACTS, CHROMIUM, FLAGS
 
 MISSION = """
 Root Main

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_side_file import violations
+from json_schema import violations
 
 HERE = Path(__file__).parent
 SCHEMA = json.loads((HERE.parents[1] / "btq_lang" / "evidence" / "verdicts.schema.json").read_text(encoding="utf-8"))

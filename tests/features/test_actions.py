@@ -13,7 +13,7 @@ from feature_asserts import (
     check_preferred,
     check_silences,
 )
-from test_rules import blocks
+from rule_pages import blocks
 
 from btq_lang.features.actions import code_actions
 from btq_lang.loader import open_workspace
