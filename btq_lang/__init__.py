@@ -7,14 +7,13 @@
     found = btq.check(workspace, path)              # the diagnostics of one of its files
     tidy = btq.format_text(text).text               # what `btq format` writes
 
-Names are imported when they are first used, so that `import btq_lang` costs nothing.
+Names are imported when they are first used, so that `import btq_lang` costs little.
 """
 
 from __future__ import annotations
 
-# False; type checkers read it as True.  Importing `typing` for it takes 9 ms.  After a literal False, jedi, with which
-# IPython and editors complete, takes the imports for code that never runs.
-TYPE_CHECKING = bool()  # noqa: UP018
+from typing import TYPE_CHECKING
+
 if TYPE_CHECKING:
     from btq_lang.checks import check
     from btq_lang.diagnostics import Diagnostic

@@ -5,6 +5,8 @@ One invariant: it stays on the logical line at hand; lines and blocks are the bu
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
@@ -36,10 +38,6 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class AttributeParser(ClauseParser):

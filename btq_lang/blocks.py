@@ -5,11 +5,9 @@ One invariant: a node gets its children when its block closes, all at once.
 
 from __future__ import annotations
 
-from btq_lang.syntax import Node, NodeClause, Verbatim
+from typing import Final
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from btq_lang.syntax import Node, NodeClause, Verbatim
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
 OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"

@@ -5,10 +5,9 @@ One invariant: `begins_name` and `goes_on` say of every character what `[^\\W\\d
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from typing import TYPE_CHECKING, Final
 
+if TYPE_CHECKING:
     from mypy_extensions import i64
 
 TAB: Final = 0x09

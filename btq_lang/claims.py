@@ -5,6 +5,8 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
 from btq_lang.diagnostics import Fix, replace_fix
@@ -31,10 +33,6 @@ from btq_lang.syntax import (
 from btq_lang.text import Span
 from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.units import dimension_name, parse_unit
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")

@@ -5,6 +5,8 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
@@ -33,10 +35,6 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 ACTIONS: Final = ("fail", "halt", "warn", "log")

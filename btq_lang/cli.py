@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from btq_lang import __version__
 
-TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
 if TYPE_CHECKING:
     from argparse import ArgumentParser
-    from collections.abc import Callable, Sequence
-    from typing import Any
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)

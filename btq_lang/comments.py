@@ -10,15 +10,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed
 from btq_lang.record import Record
 from btq_lang.text import LINE_END
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Protocol, TypeVar
 
     class CodeLine(Protocol):
         """A logical line: how many blocks are open around it, and the blanks it begins with."""

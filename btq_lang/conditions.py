@@ -5,6 +5,8 @@ Each function is a production of language.md §3 and named as it; its docstring 
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.cursor import Cursor
 from btq_lang.diagnostics import replace_fix
 from btq_lang.syntax import (
@@ -20,10 +22,6 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 # Words that begin a clause, so that they end the condition before them.
 SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))

@@ -8,6 +8,8 @@ nor is one where the lexer has said what is wrong.
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Iterable
+from typing import Final
 
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer
@@ -17,11 +19,6 @@ from btq_lang.slips import close_string, unknown_unit
 from btq_lang.syntax import Word
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final
 
 
 class Cursor:

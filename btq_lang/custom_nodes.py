@@ -6,6 +6,7 @@ One invariant: the files of a mission suggest the same of a node, in whichever o
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
 from btq_lang.catalog.kinds import CATEGORIES
@@ -19,10 +20,7 @@ from btq_lang.syntax import Node, Tree, Word
 from btq_lang.tokens import QUANTITY
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.file import File
 
 

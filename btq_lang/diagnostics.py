@@ -7,11 +7,12 @@ leaves the workspace has no anchors left.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.rules import Tag as Tag
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.text import Span
 

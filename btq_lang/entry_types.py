@@ -8,17 +8,16 @@ Source: instantiateTreeFromXML in src/xml_parsing.cpp of 4.10.0.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
-from btq_lang.regex import regex
 from btq_lang.syntax import Model, Node, Pair, Port, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.file import Definition
     from btq_lang.workspace import Scope
 
@@ -101,6 +100,6 @@ def _plain(type_: str) -> str:
 
 
 _BEGINS_NUMBER: Final = frozenset("-.0123456789iInN")  # most values do not, and the pattern takes long to compile
-_NUMBER: Final = regex(
+_NUMBER: Final = re.compile(
     r"-?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?))"
 )

@@ -7,18 +7,16 @@ of files, nor of what a name means.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from functools import cached_property
 from itertools import chain
+from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
 from btq_lang.symbols import Summary, Symbol, asked_for, summarize
 from btq_lang.syntax import Item, Model, Signal, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from typing import TypeAlias
-
     from btq_lang.mentions import Mention
 
 Name: TypeAlias = tuple[Kind, str]

@@ -5,9 +5,10 @@ One invariant: to say it raises nothing.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from types import FrameType
 
 WHERE = "report it in btq's issue tracker"

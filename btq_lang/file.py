@@ -8,8 +8,10 @@ they bring.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from btq_lang.caches import cached_property
 from btq_lang.facts import Facts, Names, Tally
 from btq_lang.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
@@ -17,11 +19,7 @@ from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Item
 from btq_lang.text import LineIndex, Span, changed
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from typing import Any, TypeVar
-
     from btq_lang.diagnostics import Diagnostic, Place
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention

@@ -6,12 +6,12 @@ after an edit nothing is counted anew that only stands elsewhere, until somebody
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from btq_lang.workspace import Workspace
 
 

@@ -8,11 +8,8 @@ of reading XML, and a fifth of a check of 1 000 files.
 from __future__ import annotations
 
 import gc
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Final
+from collections.abc import Callable
+from typing import Final
 
 
 class NotCollecting:

@@ -5,13 +5,11 @@ One invariant: every include that the parser reads, well spelt or not, is in a t
 
 from __future__ import annotations
 
-from btq_lang.caches import Answered
+from functools import lru_cache
+from typing import Final
+
 from btq_lang.near import near
 from btq_lang.tokens import CATEGORIES
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 ITEM_WORDS: Final = (
     *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),
@@ -22,13 +20,13 @@ ITEM_WORDS: Final = (
 
 def item_word_meant(word: str) -> str:
     """The item word that is nearest to another one; empty if none is near."""
-    return _meant[word]
+    return _meant(word)
 
 
 def read_as(word: str) -> str:
     """The item word that another one is read as; empty for none: a model may be meant for a node of the tree above, and
     what is to be an include must be found in texts that nobody parses."""
-    meant = _meant[word]
+    meant = _meant(word)
     return "" if meant in CATEGORIES or (meant == "include" and not may_include(word)) else meant
 
 
@@ -41,9 +39,7 @@ def may_include(text: str) -> bool:
     return "inc" in folded or "ude" in folded
 
 
-def _nearest(word: str) -> str:
+@lru_cache(1_000)
+def _meant(word: str) -> str:
     likely = near(word, ITEM_WORDS, limit=1)
     return likely[0] if likely else ""
-
-
-_meant: Final[Answered[str, str]] = Answered(_nearest, 1_000)

@@ -11,11 +11,12 @@ one and not by regular expressions because that is the form which mypyc compiles
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
+from typing import Final, TypeAlias
 
 from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.regex import regex
 from btq_lang.scan import (
     COMPILED,
     blanks_end,
@@ -58,9 +59,6 @@ from btq_lang.tokens import (
 if not COMPILED:
     from btq_lang.patterns import read_tokens
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, TypeAlias
 
 State: TypeAlias = "tuple[tuple[str, ...], tuple[tuple[str, ...], ...], int]"
 
@@ -736,7 +734,7 @@ def _shown(blanks: str) -> str:
 # ---- patterns ----
 
 # The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
-_TOP_LINE: Final = regex(
+_TOP_LINE: Final = re.compile(
     r"""(?x)
         BehaviorTree [ \t]+ ID [ \t]* = (?!=)
         | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
@@ -746,13 +744,13 @@ _TOP_LINE: Final = regex(
           (?! [ \t]* = )
     """
 )
-_COMMENT_SIGN: Final = regex(r"#|//|/\*")
-_WHOLE_WORD: Final = regex(r"[^\s(),\"'{}]+")
-_TWICE_BRACED: Final = regex(r"\{(\{[^{}\r\n]*\})\}")
-_SHELL_ENTRY: Final = regex(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
-_KEY: Final = regex(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
-_SQUARE: Final = regex(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
-_VALUE_END: Final = regex(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
+_COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
+_WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
+_TWICE_BRACED: Final = re.compile(r"\{(\{[^{}\r\n]*\})\}")
+_SHELL_ENTRY: Final = re.compile(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
+_KEY: Final = re.compile(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
+_SQUARE: Final = re.compile(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
+_VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
 
 # ---- tables ----
 

@@ -7,6 +7,8 @@ blocks, is at every line what it would be had the lexer opened the line.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from btq_lang import patterns
 from btq_lang.blocks import MAX_DEPTH, Block
 from btq_lang.patterns import NO_NODE, VALUE_KINDS, BlankNode, BlankPair, BlankWord, pair_of, role_of
@@ -14,10 +16,7 @@ from btq_lang.plain import Unusual, attributes, line_clauses, plain_clauses
 from btq_lang.syntax import Node, NodeClause, Pair, Word
 from btq_lang.tokens import NAME, NODE_CLAUSES
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any
-
     from btq_lang.lexer import Lexer
 
 

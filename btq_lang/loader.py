@@ -11,17 +11,14 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import BinaryIO
 
 from btq_lang.file import SUFFIXES, File, Origin
 from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-    from typing import BinaryIO
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"

@@ -6,10 +6,8 @@ known here.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Final
+from collections.abc import Sequence
+from typing import Final
 
 
 def measured(words: Sequence[str]) -> str | None:

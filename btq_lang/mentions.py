@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import Enum
+from functools import lru_cache
 from operator import attrgetter, itemgetter
+from typing import TypeAlias
 
-from btq_lang.caches import cache_of
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
@@ -52,10 +53,6 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 from btq_lang.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import TypeAlias
 
 
 class What(Enum):
@@ -353,7 +350,7 @@ def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> Non
         to.part(Mention(What.KEY, name, span, word, False, node, tree, pair, writes, root, is_update))
 
 
-@cache_of(1_000)  # many nodes have the same one
+@lru_cache(1_000)  # many nodes have the same one
 def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
     """Where each name in a script ends, in the order of the text; the name; the operator that assigns to it."""
     from btq_lang.script import Assign, Name, parse_script  # most files have no script, and it is large

@@ -1,11 +1,8 @@
-"""What a name can name.
-
-It stands alone because the summaries made of it (`symbols.py`) are compiled, where `enum` is the standard library's.
-"""
+"""What a name can name."""
 
 from __future__ import annotations
 
-from btq_lang.enumeration import Enum
+from enum import Enum
 
 
 class Kind(Enum):

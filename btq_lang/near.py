@@ -6,12 +6,9 @@ what the candidates are; a caller that wants only names of one kind passes only 
 
 from __future__ import annotations
 
-from btq_lang.caches import Answered
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Final
 
 
 def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...]:
@@ -20,13 +17,13 @@ def near(word: str, candidates: Iterable[str], limit: int = 3) -> tuple[str, ...
     One edit is allowed for every three letters of the word, three in all, and one more than the best candidate needs.
     A candidate that differs in case alone leaves no room for any other; the word itself is never an answer.
     """
-    folded, letters = word.casefold(), _letters[word]
+    folded, letters = word.casefold(), _letters(word)
     cutoff = min(len(folded) // 3, 3)
     same_letters: list[tuple[int, str]] = []
     found: list[tuple[int, int, str]] = []
     for candidate in set(candidates):
         # Most candidates fall here, and cost little: every edit mends one letter that only one of the two has.
-        others = _letters[candidate]
+        others = _letters(candidate)
         if (letters & ~others).bit_count() > cutoff or (others & ~letters).bit_count() > cutoff or candidate == word:
             continue
         other = candidate.casefold()
@@ -86,7 +83,8 @@ def distance(a: str, b: str, enough: int | None = None) -> int:
     return last[-1]
 
 
-def _letters_of(word: str) -> int:
+@lru_cache(10_000)
+def _letters(word: str) -> int:
     """A bit for each letter in a word, whatever its case; some letters share one."""
     found = 0
     for letter in set(word.casefold()):
@@ -95,4 +93,3 @@ def _letters_of(word: str) -> int:
 
 
 _BITS: Final = 39  # with so many no letter of ASCII shares one with a digit
-_letters: Final[Answered[str, int]] = Answered(_letters_of, 10_000)

@@ -6,12 +6,11 @@ them too.  What a requirement demands, its clauses, is rarer and stands there.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, ClassVar, Final
+
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import ClassVar, Final
-
     from mypy_extensions import i64
 
     from btq_lang.syntax import Argument, Clause, Parameter

@@ -5,6 +5,9 @@ Nodes nest by indentation, so their blocks are a stack of open nodes and no recu
 
 from __future__ import annotations
 
+import re
+from typing import Final
+
 from btq_lang.attributes import AttributeParser, meant_clause
 from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.characters import SMALL_S, SMALL_T
@@ -14,7 +17,6 @@ from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.plain import plain_clauses, plain_node
 from btq_lang.plain_requirements import plain_clause_line, plain_requirement
-from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, line_end, line_start
 from btq_lang.slips import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax import (
@@ -50,10 +52,6 @@ from btq_lang.words import unquote
 
 if not COMPILED:
     from btq_lang.lines import read_lines
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class NodeParser(AttributeParser):
@@ -542,14 +540,14 @@ XML: Final = (
     "a comment begins with `#`, not `<!--`"
 )
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
-_TAG: Final = regex(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
+_TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
 _STATEMENTS: Final = {
     **dict.fromkeys(("if", "elif", "else"), "to choose, use a Fallback `?` with a Condition, or `_skipIf` on the node"),
     **dict.fromkeys(("while", "for"), "to repeat, use `Repeat`, `Retry` or `KeepRunningUntilFailure`"),
 }
-_ARROW: Final = regex(r"[-=~]+ ?>")
+_ARROW: Final = re.compile(r"[-=~]+ ?>")
 _BEFORE_TYPES: Final = frozenset(("const", "unsigned", "signed", "long", "short"))
 _TOO_DEEP: Final = f"more than {MAX_DEPTH} levels of nodes, which BehaviorTree.CPP refuses"
 _MEANINGFUL: Final = "indentation shows what a line belongs to; align it with its sibling lines"

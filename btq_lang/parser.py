@@ -7,7 +7,9 @@ and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
@@ -18,7 +20,6 @@ from btq_lang.nodes import NodeParser
 from btq_lang.plain import plain_head
 from btq_lang.plain_models import plain_model, plain_port
 from btq_lang.record import replace
-from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, blanks_end, is_name, is_unit, line_end, name_end, number_end, path_end
 from btq_lang.syntax import (
     Apply,
@@ -65,10 +66,7 @@ from btq_lang.tokens import (
 if not COMPILED:
     from btq_lang.patterns import expect
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, TypeAlias
-
     from btq_lang.lexer import State
 
 # What an item begins in: the state of the lexer, the levels of the open Roots, and whether there was a Root.
@@ -690,7 +688,7 @@ _OTHER_ITEMS: Final = {  # what people write for them, in small letters
     **dict.fromkeys(("sensor", "variable", "var", "measure", "metric"), "signal"),
     **dict.fromkeys(("mode", "situation"), "context"),
 }
-_PYTHON_HEAD: Final = regex(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
+_PYTHON_HEAD: Final = re.compile(r"([^\W\d]\w*)[ \t]*(?:\([^()\r\n]*\))?[ \t]*:(?=[ \t]*[\r\n])")
 _END_SELECTORS: Final = frozenset((",", "except", "\n", "\r\n", "\r", ""))
 _SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
 _SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"

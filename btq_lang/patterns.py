@@ -6,9 +6,11 @@ it is only what needs no second look: words of letters, digits and `_`, single b
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
 from btq_lang.record import fields_of
-from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, number_at
 from btq_lang.syntax import (
     Node,
@@ -37,10 +39,8 @@ from btq_lang.tokens import (
     SYMBOLS,
 )
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     import re
-    from typing import Any, Final
 
 
 def read_attributes(
@@ -254,15 +254,15 @@ _expected = 0
 
 # ---- patterns that not every file needs -----------------------------------------------------------------------------
 
-_NAMES: Final = regex(rf"{_NAME}(?:-\w+)*")
-_PATHS: Final = regex(rf"(?:Quality ?= ?|)({_PATH})")
+_NAMES: Final = re.compile(rf"{_NAME}(?:-\w+)*")
+_PATHS: Final = re.compile(rf"(?:Quality ?= ?|)({_PATH})")
 # 1 the clause, 2 its qualities or 3 its names of requirements
-_LINE_LIST: Final = regex(_LIST + _LINE_END)
+_LINE_LIST: Final = re.compile(_LIST + _LINE_END)
 _DEFINING: Final = rf"(satisfi(?:es |ces Quality ?= ?({_PATH})(?: ?|\r?\n([ \t]+))\(){_REQUIREMENT}(?(5)\)))"
 # 1 to 3 as of a line, or else 4 a clause that defines a requirement; 5 the quality that encloses it, if one does,
 # and 6 the blanks of the line that its bracket begins, if it does; 7 to 10 the requirement: its first word, its name,
 # the blanks of the line that its description begins, if it does, and the description; the closing bracket
-_BRACKETED_CLAUSE: Final = regex(rf"(?:{_LIST}|{_DEFINING}){_BRACKETS_END}")
+_BRACKETED_CLAUSE: Final = re.compile(rf"(?:{_LIST}|{_DEFINING}){_BRACKETS_END}")
 
 
 @cache

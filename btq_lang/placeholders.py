@@ -6,11 +6,12 @@ skills as `ScriptAction (name = "MoveBase")`.
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.near import near
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.syntax import Node
 
@@ -26,6 +27,6 @@ def is_placeholder(node: Node) -> bool:
     )
 
 
-@cache_of(1000)
+@lru_cache(1000)
 def _means_code(key: str) -> bool:
     return key == "code" or bool(near(key, ("code",)))

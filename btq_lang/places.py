@@ -6,15 +6,13 @@ One invariant: pieces are in order and do not overlap in the text that was made.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Any, TypeAlias
-
     # Start and end in the text that was made, start and end in the one it was made of.
     Piece: TypeAlias = tuple[int, int, int, int]
 

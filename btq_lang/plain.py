@@ -11,6 +11,9 @@ None in their place: no further line may begin, as it may not outside brackets.
 
 from __future__ import annotations
 
+import re
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.characters import (
     APOSTROPHE,
     BACKSLASH,
@@ -34,7 +37,6 @@ from btq_lang.characters import (
     ZERO,
     begins_name,
 )
-from btq_lang.regex import regex
 from btq_lang.scan import COMPILED, blanks_end, braced_end, line_end, line_opening, name_end, number_at, symbol_at
 from btq_lang.syntax import (
     Node,
@@ -55,10 +57,7 @@ if not COMPILED:
     from btq_lang import patterns
     from btq_lang.patterns import VALUE_KINDS, read_attributes, read_list
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from mypy_extensions import i64
 
 
@@ -510,4 +509,4 @@ _LONGEST: Final = max(map(len, _NO_KINDS))  # of those; to look a word up costs 
 # NAMEs that are none, all with a capital: two are symbols, and a line that begins with one of the others ends all
 # brackets.
 _NO_NAMES: Final = frozenset(("R?", "A?", "BehaviorTree", "Root", "TreeNodesModel"))
-_OUTER_LINE: Final = regex(r"[\r\n][^ \t\r\n]")
+_OUTER_LINE: Final = re.compile(r"[\r\n][^ \t\r\n]")

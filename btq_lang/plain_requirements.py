@@ -7,7 +7,10 @@ so a word is what `str.split` finds.  Only the commonest clauses are known here,
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
+from collections.abc import Callable, Collection
+from functools import cache
+from typing import Final
+
 from btq_lang.claims import RELATIONS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, HEADS
@@ -32,11 +35,6 @@ from btq_lang.syntax import (
     Word,
 )
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
-    from typing import Final
 
 
 def plain_requirement(text: str, start: int, base: int) -> tuple[Requirement, int] | None:

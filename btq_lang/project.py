@@ -19,19 +19,17 @@ here: the disk, and where the file was found.
 from __future__ import annotations
 
 import os.path
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
 from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record, replace
-from btq_lang.regex import regex
 from btq_lang.rules import RULES, UNREADABLE, Severity
 from btq_lang.text import LineIndex, Position
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import Any, Literal, TypeAlias
-
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.project_evidence import Evidence
 
@@ -278,9 +276,9 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 
 # ---- patterns ----
 
-_BTQ_TABLE = regex(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
-_RELEASE_LINE = regex(r"4\.(0|[1-9][0-9]?)")
-_DIGITS = regex(r"\d+")
+_BTQ_TABLE = re.compile(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
+_RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
+_DIGITS = re.compile(r"\d+")
 
 
 def _meant(name: str, names: Iterable[str]) -> str:

@@ -13,17 +13,15 @@ One invariant: what is wrong is left out and told, and the rest is kept.  Not kn
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import isfinite
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record
 from btq_lang.units import Unit, nearest_units, parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Any, Final, TypeAlias
-
     Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # what is wrong, and the keys below `evidence` that lead to it
 
 

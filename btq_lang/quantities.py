@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from btq_lang.regex import regex
+import re
+
 from btq_lang.units import Unit, parse_unit
 
-_QUANTITY = regex(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)")
+_QUANTITY = re.compile(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)")
 
 
 def parse_quantity(text: str) -> tuple[float, Unit, str] | None:

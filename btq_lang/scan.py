@@ -6,6 +6,9 @@ no lines, no brackets and no grammar, and reports nothing.
 
 from __future__ import annotations
 
+import re
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.characters import (
     APOSTROPHE,
     BANG,
@@ -27,15 +30,11 @@ from btq_lang.characters import (
     begins_name,
     goes_on,
 )
-from btq_lang.regex import regex
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 from btq_lang.units import SYMBOLS as UNITS
 from btq_lang.units import parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from mypy_extensions import i64
 
 COMPILED: Final = not __file__.endswith(".py")
@@ -294,7 +293,7 @@ def unit_run(text: str, start: i64) -> i64:
 _USUAL_WORD: Final = 40
 _OF_WORDS: Final = "etaoinsrhldcumfpgwybvkxjqzETAOINSRHLDCUMFPGWYBVKXJQZ_0123456789"
 _USUAL_LINE: Final = 200  # characters that a comment seldom has
-_PATH: Final = regex(r"[^\s()\"']*")
+_PATH: Final = re.compile(r"[^\s()\"']*")
 _BY_FIRST: Final = {
     first: tuple(sorted((symbol for symbol in SYMBOLS if symbol[0] == first), key=len, reverse=True))
     for first in {symbol[0] for symbol in SYMBOLS}

@@ -5,18 +5,16 @@ One invariant: it looks at the text around a place and nothing else: who asks kn
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+import re
+from functools import lru_cache
+from typing import Final
+
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.measured import measured
-from btq_lang.regex import regex
 from btq_lang.scan import line_end, line_start, number_end
 from btq_lang.syntax import quote
 from btq_lang.text import Span
 from btq_lang.units import nearest_units
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def close_string(text: str, start: int) -> Fix:
@@ -143,12 +141,12 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     return (Fix("Write plain characters", tuple(changes)),) if changes else ()
 
 
-_WORD: Final = regex(r"\w+|,")
-_BRACED_ATTRIBUTES: Final = regex(
+_WORD: Final = re.compile(r"\w+|,")
+_BRACED_ATTRIBUTES: Final = re.compile(
     r"""\{[ \t]*[\w-]+[ \t]*=(?:[^{}"'\r\n]|"[^"\r\n]*"|'[^'\r\n]*'|\{[^{}"'\r\n]*\})*\}"""
 )
-_nearest_units: Final = cache_of(256)(nearest_units)  # the same mistake is often made again
-_ESCAPE: Final = regex(r"(?s)\\(.)")
+_nearest_units: Final = lru_cache(256)(nearest_units)  # the same mistake is often made again
+_ESCAPE: Final = re.compile(r"(?s)\\(.)")
 _OTHER_QUOTES: Final = "“”„‟«»‘’"
 _LOOKS_LIKE: Final = {
     **{"≤": "<=", "≥": ">=", "≠": "!=", "−": "-", "–": "-", "×": "*", "·": "*", "÷": "/"},

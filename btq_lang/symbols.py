@@ -6,9 +6,12 @@ Which definition a use means is the workspace's to say.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.name_kinds import Kind
 from btq_lang.record import Record, fields_of
-from btq_lang.regex import regex
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -32,11 +35,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.tokens import NAME
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final, TypeAlias
-
     from btq_lang.text import Span
 
 Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
@@ -231,4 +230,4 @@ class _Names:
             self.uses.append(Use(kind, name.text, name.span, node))
 
 
-_WORDS: Final = regex(r"\w+")
+_WORDS: Final = re.compile(r"\w+")

@@ -7,6 +7,9 @@ meanings: `Retry` and a misspelt `Rety` look alike.  `X | None` means "may be mi
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
+
 from btq_lang.node_clauses import Quality as Quality
 from btq_lang.node_clauses import QualityPath as QualityPath
 from btq_lang.node_clauses import ReqRef as ReqRef
@@ -24,11 +27,7 @@ from btq_lang.words import TypeWord as TypeWord
 from btq_lang.words import Word as Word
 from btq_lang.words import unquote as unquote
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from typing import TypeAlias
-
     from btq_lang.diagnostics import Diagnostic
 
 # ---- Qualities and requirements on nodes ----------------------------------------------------------------------------

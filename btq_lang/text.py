@@ -6,16 +6,15 @@ editor), and `LineIndex` is the only place that turns one into the other, in the
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator
 from itertools import accumulate
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from btq_lang.record import Record
-from btq_lang.regex import regex
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from typing import Literal, NamedTuple, TypeAlias
 
     class _Ends(NamedTuple):
         start: int
@@ -53,7 +52,7 @@ else:  # as `collections.namedtuple` makes them, which takes longer to import th
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
 # A line ends with these and with nothing else: str.splitlines would also cut at form feeds and U+2028.
-LINE_END = regex(r"\r\n|\n|\r")
+LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 class Span(_Ends):

@@ -6,8 +6,9 @@ says; what it passes over is filled in here.
 
 from __future__ import annotations
 
+import re
+
 from btq_lang.lexer import Lexer
-from btq_lang.regex import regex
 from btq_lang.scan import COMPILED
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, Token
 
@@ -86,5 +87,5 @@ def _pieces(text: str, start: int, end: int) -> list[Token]:
     return [Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _PIECE.finditer(text, start, end)]
 
 
-_PIECE = regex(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
+_PIECE = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _SILENT = (OPEN, CLOSE, NEWLINE)

@@ -9,16 +9,13 @@ grammar needs behind a number (`in`, `per`, `to`, `count` …), save `min`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import lru_cache
 from math import inf, pi
+from typing import Final
 
-from btq_lang.caches import cache_of
 from btq_lang.near import near
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
 
 # Exponents over length, mass, time, current, temperature, angle, data, count, percent.
 Dimension = tuple[int, int, int, int, int, int, int, int, int]
@@ -42,7 +39,7 @@ class Unit(Record):
     offset: float = 0.0
 
 
-@cache_of(1024)
+@lru_cache(1024)
 def parse_unit(text: str) -> Unit | None:
     """Read a unit: a symbol of the table or a compound of them (`m/s^2`, `W*h`, `1/s`, `%/h`), or `1`, or None.
 

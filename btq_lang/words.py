@@ -7,15 +7,14 @@ their fields, as it does those of a record: a compiled class has no `__slots__`.
 
 from __future__ import annotations
 
-from btq_lang.regex import regex
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Final
+
 from btq_lang.text import Span
 from btq_lang.tokens import STRING
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import ClassVar, Final
-
     from mypy_extensions import i64
 
     from btq_lang.syntax import NodeClause, Verbatim
@@ -235,6 +234,6 @@ def _closes(raw: str) -> bool:
     return backslashes % 2 == 0
 
 
-_ESCAPE: Final = regex(r"\\([\"'\\nt])")
-_GAPS: Final = regex(r"(?s)\s+|/\*.*?\*/")
+_ESCAPE: Final = re.compile(r"\\([\"'\\nt])")
+_GAPS: Final = re.compile(r"(?s)\s+|/\*.*?\*/")
 _ESCAPED: Final = {"n": "\n", "t": "\t"}

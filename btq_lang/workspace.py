@@ -10,9 +10,11 @@ only to say where a name could have come from.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from itertools import chain
+from typing import TYPE_CHECKING
 
-from btq_lang.caches import cached_property
 from btq_lang.file import Definition, File, is_of_package
 from btq_lang.name_kinds import Kind
 from btq_lang.project import Project, include_candidates
@@ -20,10 +22,7 @@ from btq_lang.record import Record
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Include, Root, Word
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
     from btq_lang.facts import Name, Names
     from btq_lang.file import Origin
     from btq_lang.text import Span

@@ -18,7 +18,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
     frozenset(
-        {"record", "record_inits", "caches", "enumeration", "regex", "garbage", "text", "places", "near", "globs"}
+        {"record", "record_inits", "garbage", "text", "places", "near", "globs"}
         | {"rules", "diagnostics", "units", "quantities"}
     ),
     frozenset(
@@ -165,17 +165,17 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
 @pytest.mark.parametrize(
     ("statement", "absent"),
     [
-        ("import btq_lang", {"pygls", "lsprotocol", "lxml", "re", "btq_lang.parser"}),
+        ("import btq_lang", {"pygls", "lsprotocol", "lxml", "btq_lang.parser"}),
         (
             "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
             {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
-            | {"typing", "argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
+            | {"argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
         ),
         (
             "import btq_lang.commands.arguments",
             {"btq_lang.parser", "btq_lang.workspace", "btq_lang.catalog", "btq_lang.requirements", "dataclasses"},
         ),
-        ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "re", "btq_lang.parser"}),
+        ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "btq_lang.parser"}),
         (
             "import site; site.main(); import btq_lang.server",  # what an editor waits for
             {"btq_lang.parser", "btq_lang.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
@@ -200,7 +200,7 @@ def test_a_small_file_is_checked_without_heavy_modules(tmp_path: Path) -> None:
     program = (
         "import sys; sys.path.insert(0, '.'); import btq_lang.cli\n"
         f"btq_lang.cli.main(['check', {str(file)!r}])\n"
-        "print(sorted({'re', 'enum', 'functools', 'collections', 'types', 'heapq', 'operator'} & set(sys.modules)))"
+        "print(sorted({'dataclasses', 'inspect', 'argparse', 'json', 'pathlib'} & set(sys.modules)))"
     )
     command = [sys.executable, "-S", "-c", program]
     run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=PACKAGE.parent)

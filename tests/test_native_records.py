@@ -129,7 +129,7 @@ def test_every_line_behind_the_fields_stays_where_it_is(path: Path) -> None:
     moved = [number for number in others if not after[number - 1].startswith(before[number - 1])]
     assert heads
     assert moved == []
-    assert after[len(before) :] in ([TOOL["NAMES"]], ["TYPE_CHECKING = False", TOOL["NAMES"]])
+    assert after[len(before) :] == [TOOL["NAMES"]]
 
 
 def test_a_module_without_records_stays_as_it_is() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 
-NAMES = "if TYPE_CHECKING: from typing import ClassVar, Final"  # `typing` is slow to import, see record.py
+NAMES = "from typing import ClassVar, Final"
 BASE_MODULE = "native_record"
 BASE = '''"""What all records do alike that are compiled: as `_Record` in record.py."""
 
@@ -51,8 +51,6 @@ def natively(source: str, package: str) -> str:
         _write_out(record, lines)
     brings = next(part for part in tree.body if isinstance(part, ast.ImportFrom) and _brings_record(part))
     lines[(brings.end_lineno or 0) - 1] += f"; from {package}.{BASE_MODULE} import NativeRecord"
-    if not any(isinstance(part, ast.Assign) and ast.unparse(part) == "TYPE_CHECKING = False" for part in tree.body):
-        lines.append("TYPE_CHECKING = False")
     lines.append(NAMES)
     return "\n".join([*lines, ""])
 

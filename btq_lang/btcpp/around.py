@@ -5,13 +5,12 @@ One invariant: it says what is put where, and `wrappers` alone makes elements of
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Final, Literal, TypeAlias
-
     WrapperTag: TypeAlias = Literal["Sequence", "ReactiveSequence", "Timeout"]
 
 # From the outside in: what stands around the node of several requirements is ordered by this.

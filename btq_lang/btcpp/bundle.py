@@ -6,15 +6,13 @@ are in one place.
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.btcpp.document import Content, Document, Element
 from btq_lang.btcpp.export import Export, export
 from btq_lang.btcpp.source import Remark
 from btq_lang.name_kinds import Kind
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def bundle(

@@ -7,16 +7,12 @@ said when they were built, there is nothing to tell, wherever they stand and wha
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.wrappers import MARK, MOVED
 from btq_lang.record import Record
 from btq_lang.text import Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
-
 
 ADVICE: Final = "the next build restores it; change the requirement that it enforces instead"
 

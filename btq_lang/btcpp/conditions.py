@@ -10,7 +10,9 @@ Source: the engines' own grammars, src/script_parser.cpp (4.9 and later) and scr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.requirements.model import (
     Aggregate,
@@ -35,11 +37,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.units import Unit, from_si
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Final, TypeAlias
-
     # The variable that a value table is read into, when the node starts; it has the value in this unit, None: in SI.
     Stored: TypeAlias = Callable[[Table, "Unit | None"], str]
 

@@ -15,15 +15,12 @@ One invariant: what is no number, or meets no type that is known, is left alone.
 from __future__ import annotations
 
 import re
+from typing import Final
 
 from btq_lang.entry_types import declared_type, is_number, is_text, meetings
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Tree
 from btq_lang.workspace import Scope
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def fitting(types: tuple[str, ...], raw: str) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import Final
 
 from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
@@ -16,10 +17,6 @@ from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Apply, Claim, Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
 from btq_lang.token_list import tokens
 from btq_lang.tokens import COMMENT
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def description(

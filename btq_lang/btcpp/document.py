@@ -8,11 +8,8 @@ It does not know what the elements mean.
 from __future__ import annotations
 
 import re
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import Final, TypeAlias
+from collections.abc import Iterable, Iterator
+from typing import Final, TypeAlias
 
 
 class Attribute:

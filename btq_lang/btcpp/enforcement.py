@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.btcpp.around import START, FirstValues, Leaf, Wrapper
 from btq_lang.btcpp.document import Comment, Document, Element
@@ -33,10 +34,7 @@ from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode,
 from btq_lang.requirements.spans import node_of
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
-
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Mapping
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.document import Attribute, Content, Document, Element, escape
@@ -24,10 +25,6 @@ from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax import Models as ModelsItem
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, TypeAlias
 
 IncludedAs: TypeAlias = Callable[[str], str]
 

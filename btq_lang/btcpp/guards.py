@@ -6,6 +6,9 @@ seen at work, or the engine does by itself what it asks.  It does not know eleme
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.btcpp.around import CHECK, CONDITION, GUARD, INSIDE, LIMIT, VALUES, Leaf, Wrapper
 from btq_lang.btcpp.conditions import (
     NoScript,
@@ -35,11 +38,7 @@ from btq_lang.requirements.model import (
 from btq_lang.requirements.reading import signals_in
 from btq_lang.units import Unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Final
-
     from btq_lang.btcpp.around import WrapperTag
 
 

@@ -9,7 +9,9 @@ at, save for what version 3 said in other words (`version3`).
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from itertools import accumulate
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element, Text
 from btq_lang.btcpp.generated import may_be_generated, without_generated
@@ -25,11 +27,7 @@ from btq_lang.syntax import is_name
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Final, TypeAlias
-
     IncludedAs: TypeAlias = Callable[[str], str]
     # A word of a line, and what it was made of: the value of one of the element's attributes, what stands between two
     # places; None: the element's tag, if it is the first.

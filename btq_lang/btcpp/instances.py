@@ -10,14 +10,11 @@ Source: XMLParser::PImpl::recursivelyCreateSubtree and createNodeFromXML in src/
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Final
 
 from btq_lang.btcpp.document import Element, Raw
 from btq_lang.btcpp.reader import read
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class Instance(Record):

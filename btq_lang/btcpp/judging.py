@@ -6,16 +6,15 @@ small files, so it knows neither elements nor files; what is to stand around nod
 
 from __future__ import annotations
 
+from collections.abc import Container
+from typing import TYPE_CHECKING, Final, Protocol
+
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Container
-    from typing import Final, Protocol
-
     from btq_lang.workspace import Workspace
 
     class Looks(Protocol):

@@ -11,11 +11,8 @@ share one.
 
 from __future__ import annotations
 
-from btq_lang.regex import regex
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+import re
+from typing import Final
 
 
 class Keys:
@@ -61,4 +58,4 @@ def legal(name: str) -> str:
     return f"_{plain}" if plain[:1].isdigit() else plain or "_"
 
 
-_OTHER: Final = regex(r"[^A-Za-z0-9_]")
+_OTHER: Final = re.compile(r"[^A-Za-z0-9_]")

@@ -6,11 +6,8 @@ One invariant: no mark stands in a file that was built with `--verbatim`.
 from __future__ import annotations
 
 import re
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final
+from collections.abc import Iterable
+from typing import Final
 
 # A line of its own in a `_description`: from here on it is btq's; what stands before, up to the line end, the user's.
 DESCRIPTION_MARK: Final = "[btq]"

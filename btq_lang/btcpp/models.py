@@ -7,6 +7,7 @@ what it uses but nobody declares stands behind it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
@@ -15,10 +16,6 @@ from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.record import replace
 from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim, Word
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def model_element(source: Source, entry: Entry, model: Model) -> Element:

@@ -12,7 +12,9 @@ Source: tinyxml2 11, `XMLNode::ParseDeep`, `XMLDocument::Identify`, `XMLElement:
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from itertools import chain
+from typing import TYPE_CHECKING, Final, NoReturn, TypeAlias
 
 from btq_lang.btcpp.document import (
     ATTRIBUTE,
@@ -34,11 +36,7 @@ from btq_lang.garbage import NotCollecting
 from btq_lang.record import Record
 from btq_lang.text import LINE_END, Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final, NoReturn, TypeAlias
-
     # Its name, its attributes (None: it closes an element), whether it opens none, how long it is, whether there may be
     # text behind it.
     Tag: TypeAlias = tuple[str, tuple[Attribute, ...] | None, bool, int, bool]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator, Mapping
+from typing import Final, TypeAlias
 
 from btq_lang.btcpp.by_hand import node_guards
 from btq_lang.btcpp.document import Document, Element
@@ -25,10 +26,6 @@ from btq_lang.syntax import Requirement as RequirementItem
 from btq_lang.syntax import Signal as SignalItem
 from btq_lang.units import Unit
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, TypeAlias
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 

@@ -6,6 +6,7 @@ One invariant: asking changes nothing; only `repair` and `problem` remember, onc
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final, Protocol
 
 from btq_lang.btcpp.constants import types_below
 from btq_lang.btcpp.document import Comment, Content, Raw, escape
@@ -21,9 +22,7 @@ from btq_lang.syntax import Entry, Verbatim, Word
 from btq_lang.text import Span
 from btq_lang.workspace import Scope, Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Protocol
 
     class Part(Protocol):
         """A part of the tree that has a place."""

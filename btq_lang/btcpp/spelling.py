@@ -7,16 +7,13 @@ One invariant: a line end and a tab that stand in the source stay as they are, a
 from __future__ import annotations
 
 import re
+from typing import Final
 
 from btq_lang.btcpp.document import escape, escape_text
 from btq_lang.quantities import parse_quantity
 from btq_lang.syntax import Word
 from btq_lang.tokens import QUANTITY, STRING
 from btq_lang.units import convert, parse_unit
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def spelt(word: Word) -> str:

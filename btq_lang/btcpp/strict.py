@@ -7,13 +7,10 @@ only when there is XML to judge.
 from __future__ import annotations
 
 import re
+from typing import Final
 
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.text import LineIndex, Position, Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic, ...] | None:

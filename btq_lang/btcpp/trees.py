@@ -7,6 +7,7 @@ does not know what stands around the trees, nor what a requirement asks of the e
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from btq_lang.btcpp.attributes import attributes_of, only_first
 from btq_lang.btcpp.constants import fitting
@@ -21,10 +22,6 @@ from btq_lang.custom_nodes import likely_category
 from btq_lang.entry_types import is_number
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 _UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
 _NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence

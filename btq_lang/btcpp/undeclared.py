@@ -7,6 +7,7 @@ files of a mission suggest the same of a node, and nothing of one that a file wh
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
@@ -15,10 +16,6 @@ from btq_lang.file import File
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model, Models
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def undeclared(workspace: Workspace, path: str) -> dict[str, CustomNode]:

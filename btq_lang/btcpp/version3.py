@@ -9,17 +9,15 @@ Sources: BehaviorTree.CPP 3.8, xml_parsing.cpp; 4.x, migration guide and convert
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Final
+
 from btq_lang.btcpp.document import Attribute, Element
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
 
 
 class Change(Record):

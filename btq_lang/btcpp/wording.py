@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from typing import Final
 
 from btq_lang.btcpp.document import unescape
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
@@ -17,10 +18,6 @@ from btq_lang.conditions import HEADS
 from btq_lang.item_words import ITEM_WORDS
 from btq_lang.syntax import is_name
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def value(raw: str) -> str:

@@ -8,14 +8,11 @@ attributes it took from the node and where they stood.  It does not know why som
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
+from typing import Final
 
 from btq_lang.btcpp.around import FirstValues, Leaf, Wrapper, may_be_skipped
 from btq_lang.btcpp.document import Attribute, Comment, Content, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 MARK: Final = "_btq"
 MOVED: Final = "_btq_moved"

@@ -7,12 +7,10 @@ misspelling: the engine keeps it silently and nobody reads it.
 
 from __future__ import annotations
 
-from btq_lang.record import Record
+from collections.abc import Mapping
+from typing import Final, Literal
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final, Literal
+from btq_lang.record import Record
 
 
 class AttributeKind(Record):

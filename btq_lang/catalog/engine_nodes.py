@@ -7,11 +7,9 @@ row against them); what is said of behaviour was read in the sources of 4.10.0 a
 
 from __future__ import annotations
 
-from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
+from typing import Final
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from btq_lang.catalog.kinds import RESULT, Direction, NodeKind, PortKind
 
 _STRING: Final = "std::string"
 _MILLISECONDS: Final = "unsigned int"

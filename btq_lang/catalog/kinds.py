@@ -6,12 +6,10 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
-from btq_lang.record import Record
+from functools import cache
+from typing import Final, Literal, TypeAlias
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
+from btq_lang.record import Record
 
 # The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")

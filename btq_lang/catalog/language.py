@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from typing import Final
 
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class Phrase(Record):

@@ -8,14 +8,12 @@ Source: convertFromString in src/basic_types.cpp and src/xml_parsing.cpp of 4.6.
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+import re
+from functools import lru_cache
+from typing import Final, Literal
+
 from btq_lang.catalog.kinds import DEFAULT_VERSION, RESULT, at_least
 from btq_lang.record import Record
-from btq_lang.regex import regex
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, Literal
 
 
 class LiteralProblem(Record):
@@ -35,7 +33,7 @@ class LiteralProblem(Record):
     found: str | None = None
 
 
-@cache_of(1_000)  # the same values are given again and again
+@lru_cache(1_000)  # the same values are given again and again
 def check_literal(port_type: str, text: str, version: str = DEFAULT_VERSION) -> LiteralProblem | None:
     """What is wrong with a literal on a port of that type, in that version of the engine; None: nothing.
 
@@ -55,7 +53,7 @@ def is_pointer(text: str) -> bool:
     return len(text) >= 3 and text[0] == "{" and text[-1] == "}"
 
 
-@cache_of(1000)
+@lru_cache(1000)
 def plain_type(port_type: str) -> str:
     """One name for a type that has several: `int32_t` is `int`, `std::vector<double, …>` is `std::vector<double>`."""
     item = _list_item(port_type)
@@ -181,7 +179,7 @@ def _refuse_constant(word: str) -> None:
     raise ValueError(word)
 
 
-@cache_of(500)
+@lru_cache(500)
 def _plain(port_type: str) -> str:
     """One name for a type that has several: `std::int32_t` and `int`, `unsigned` and `unsigned int`."""
     name = " ".join(port_type.split())
@@ -190,7 +188,7 @@ def _plain(port_type: str) -> str:
     return _SYNONYMS.get(short, short if short in _INTEGERS else name)
 
 
-@cache_of(500)
+@lru_cache(500)
 def _list_item(port_type: str) -> str | None:
     """The type of a list's items, or None for what is no list the engine can read."""
     found = _LIST.match(" ".join(port_type.split())) if "<" in port_type else None
@@ -269,6 +267,6 @@ _MAGNITUDES: Final = {"double": (0.0, 1.7976931348623157e308), "float": (7.00649
 _NAMED: Final = r"(?i:inf(?:inity)?|nan(?:\([0-9A-Za-z_]*\))?)"
 _DECIMAL: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _HEXADECIMAL: Final = r"0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
-_REAL: Final = regex(rf"-?(?:{_NAMED}|{_DECIMAL})")
-_OLD_REAL: Final = regex(rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})")
-_LIST: Final = regex(r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]")
+_REAL: Final = re.compile(rf"-?(?:{_NAMED}|{_DECIMAL})")
+_OLD_REAL: Final = re.compile(rf"[ \t\n\v\f\r]*[+-]?(?:{_NAMED}|{_HEXADECIMAL}|{_DECIMAL})")
+_LIST: Final = re.compile(r"(?:std::shared_ptr<\s*)?(?:std::)?(?:vector|deque)<\s*([^,>]+?(?:<.*?>)?)\s*[,>]")

@@ -7,19 +7,17 @@ taken.
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+import re
+from functools import lru_cache
+from typing import Final
+
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
-from btq_lang.regex import regex
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 _KEPT: Final = 1_000  # the answers about so many names: a mission says the same ones again and again
 
 
-@cache_of(_KEPT)
+@lru_cache(_KEPT)
 def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the ID of a tree, the tree that a SubTree names, or the tag of a node; None: it does not.
 
@@ -45,7 +43,7 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     return _forbidden_character(name) or _reserved(name)
 
 
-@cache_of(_KEPT)
+@lru_cache(_KEPT)
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the `name` of a node; None: it does not.  Only control characters are refused."""
     if _UNPRINTABLE.isdisjoint(name) or not at_least(version, _RULES_SINCE):
@@ -54,7 +52,7 @@ def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | No
     return f"it contains the control character {_code(control)}"
 
 
-@cache_of(_KEPT)
+@lru_cache(_KEPT)
 def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
     """Does the engine take an attribute of that name for a port?  If not, it keeps it and nothing reads it."""
     if name[:1] not in _LETTERS or name in ("name", "ID"):
@@ -117,4 +115,4 @@ _NAME_START: Final = (
     "A-Z_a-z\u00c0-\u00d6\u00d8-\u00f6\u00f8-\u02ff\u0370-\u037d\u037f-\u1fff\u200c-\u200d\u2070-\u218f"
     "\u2c00-\u2fef\u3001-\ud7ff\uf900-\ufdcf\ufdf0-\ufffd\U00010000-\U000effff"
 )
-_XML_NAME: Final = regex(f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*")
+_XML_NAME: Final = re.compile(f"[{_NAME_START}][-.0-9\u00b7\u0300-\u036f\u203f-\u2040{_NAME_START}]*")

@@ -6,6 +6,9 @@ nor its placeholders: whether a name that is found nowhere is a custom node is d
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Final
+
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
 from btq_lang.catalog.kinds import (
     DEFAULT_VERSION,
@@ -18,11 +21,6 @@ from btq_lang.catalog.kinds import (
     at_least,
 )
 from btq_lang.catalog.words import KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS, KnownWord
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
 
 __all__ = [
     "BUILTINS",

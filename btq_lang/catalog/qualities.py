@@ -11,16 +11,14 @@ is understood is an alias (another word, or another word in front), another edit
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Final, Literal, TypeAlias
+
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.near import near
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final, Literal, TypeAlias
 
 Edition: TypeAlias = "Literal['2011', '2023']"
 
@@ -75,7 +73,7 @@ class QualityMatch(Record):
     near: tuple[str, ...] = ()
 
 
-@cache_of(1000)
+@lru_cache(1000)
 def find(words: tuple[str, ...], edition: Edition = DEFAULT_EDITION) -> QualityMatch:
     """What the parts of a QualityPath mean in an edition.
 

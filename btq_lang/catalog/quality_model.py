@@ -7,9 +7,7 @@ for a quality: those are `qualities` and `quality_words`.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, Literal
+from typing import Final, Literal
 
 # Characteristics: id, definition, and their sub-characteristics: the rest of the id, definition.
 Model = tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...]

@@ -5,9 +5,7 @@ One invariant: everything here leads to ids of `quality_model`; those of the 202
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from typing import Final
 
 # The published paper writes `performance <time-behavior>`: these pairs are good names.
 PAPER_NAMES: Final = {

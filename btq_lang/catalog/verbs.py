@@ -7,12 +7,11 @@ row's word.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
-
     Operand: TypeAlias = Literal["duration", "condition", "use", "count", "rate", "event", "reaction"]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
 

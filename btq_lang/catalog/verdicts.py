@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from btq_lang.record import Record
+from typing import Final
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from btq_lang.record import Record
 
 
 class Verdict(Record):

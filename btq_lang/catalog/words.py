@@ -6,12 +6,11 @@ node all the same; the table only says what to tell its writer.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.catalog.kinds import Category
 
 

@@ -6,6 +6,9 @@ count from that entry; it never raises, whatever the file.  A module holds the r
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
+
 from btq_lang.checks import (
     bounds,
     children,
@@ -58,11 +61,7 @@ from btq_lang.syntax import (
     Tree,
 )
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from typing import TypeAlias
-
     from btq_lang.checks.answers import Answers
     from btq_lang.facts import Facts
     from btq_lang.project import Project

@@ -20,16 +20,14 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import repeat
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 
 from btq_lang.facts import Facts, Name
 from btq_lang.file import File
 from btq_lang.record import Record
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Any, Final, TypeAlias, TypeVar
-
     from btq_lang.checks import Found
     from btq_lang.checks.view import View
     from btq_lang.findings import Told

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cache
 from math import ceil, floor, isfinite
+from typing import TYPE_CHECKING, Final
 
-from btq_lang.caches import cache
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.quantities import parse_quantity
@@ -13,11 +15,7 @@ from btq_lang.text import Span
 from btq_lang.tokens import NUMBER, QUANTITY
 from btq_lang.units import Dimension, parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.checks.view import View
 
 

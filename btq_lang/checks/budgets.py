@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import inf
+from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.composition import port_seconds
 from btq_lang.requirements.durations import Term, together
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.requirements.composition import Budget
     from btq_lang.requirements.durations import Range
     from btq_lang.requirements.model import Claim

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cached_property
+from collections.abc import Callable, Iterable, KeysView, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
 from btq_lang.checks import lookups
 from btq_lang.name_kinds import Kind
 from btq_lang.symbols import Use
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, KeysView, Mapping
-    from typing import TypeAlias, TypeVar
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
 

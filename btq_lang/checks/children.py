@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
-from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
 
-_INTEGER = regex(r"-?[0-9]{1,18}")
+_INTEGER = re.compile(r"-?[0-9]{1,18}")
 _SWITCHES = tuple(tag for tag in BUILTINS if tag.startswith("Switch"))
 _THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("max_failures",)}
 

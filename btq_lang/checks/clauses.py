@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import (
@@ -20,10 +23,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
 
 _ONCE: dict[type, str] = {

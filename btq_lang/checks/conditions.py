@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
 from btq_lang.tokens import NAME
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.checks.view import View
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_port_name
 from btq_lang.diagnostics import Diagnostic, Place, Related
@@ -10,10 +13,7 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Port, Tree, Word
 from btq_lang.tokens import QUANTITY
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
 
 # Before, the engine kept the text and whoever read it converted it.

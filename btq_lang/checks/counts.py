@@ -5,15 +5,14 @@ Source: the tick functions of RepeatNode, RetryNode and TimeoutNode in 4.6.2, 4.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.tokens import QUANTITY
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.syntax import Entry, Word

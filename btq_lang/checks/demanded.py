@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from math import inf
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.name_kinds import Kind
@@ -11,11 +13,7 @@ from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 from btq_lang.syntax import Model, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import Any, Final, TypeAlias
-
     from btq_lang.btcpp.judging import Judge
     from btq_lang.checks.swallowing import WaysUp
     from btq_lang.checks.view import View

@@ -7,11 +7,10 @@ find of the nodes of a tree is kept for as long as what they look at stays the s
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import TypeAlias
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
 
+if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded, Found, Guard
     from btq_lang.checks.view import View
     from btq_lang.diagnostics import Diagnostic

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING, TypeAlias
+
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
@@ -24,11 +27,7 @@ from btq_lang.syntax import (
     Word,
 )
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import TypeAlias
-
     from btq_lang.checks.view import View
 
 _Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
@@ -44,7 +43,7 @@ def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)
 
 
-@cache_of(1)  # all items of a file ask
+@lru_cache(1)  # all items of a file ask
 def _has_empty(text: str) -> bool:
     return any(sign in text for sign in _EMPTY)
 

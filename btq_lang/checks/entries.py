@@ -6,6 +6,9 @@ the robot's program does with entries, nor whether a name is right.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, TypeAlias
+
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
@@ -16,11 +19,7 @@ from btq_lang.record import Record
 from btq_lang.syntax import Model, Pair, Port, Signal, Tree
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from typing import TypeAlias
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.facts import Facts

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import posixpath
+from collections.abc import Container, Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.checks import lookups
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -11,10 +13,7 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterator
-
     from btq_lang.checks.view import View
     from btq_lang.workspace import Workspace
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
@@ -13,18 +17,13 @@ from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean, distance
-from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.custom_nodes import LikelyPort
     from btq_lang.facts import Facts
@@ -102,7 +101,7 @@ def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-@cache_of(1_000)  # every tree of every file asks
+@lru_cache(1_000)  # every tree of every file asks
 def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
     return [version for version in engines if not available(BUILTINS[tag], version)]
 
@@ -391,4 +390,4 @@ _MANY: Final = 5
 
 # Words of version 3 that an import says in another way.
 _TRANSLATED: Final = frozenset(("SequenceStar", "RetryUntilSuccesful", "SubTreePlus"))
-_SAYS_VERSION_4: Final = regex(r"""BTCPP_format\s*=\s*["']\s*4""")
+_SAYS_VERSION_4: Final = re.compile(r"""BTCPP_format\s*=\s*["']\s*4""")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import inf
+from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics import Diagnostic, Place, Related
@@ -13,10 +15,7 @@ from btq_lang.syntax import Goal
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
     from btq_lang.units import Dimension
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Sequence
 from math import isfinite
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.literals import check_literal, is_pointer
@@ -13,19 +16,15 @@ from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
-from btq_lang.regex import regex
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.tokens import BRACED, QUANTITY
 from btq_lang.units import a_dimension, convert, parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.checks.seen import SeenNode
 
-_NUMBER = regex(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 _INTEGERS = ("int", "unsigned int", "int64_t", "uint64_t")
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from math import inf
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
@@ -17,7 +18,6 @@ from btq_lang.name_kinds import Kind
 from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.custom_nodes import LikelyPort
     from btq_lang.facts import Facts

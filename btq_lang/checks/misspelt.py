@@ -7,16 +7,16 @@ differs from it as only slips do.
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.near import distance
 from btq_lang.syntax import Entry, Tree, Verbatim
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.checks.view import View
 
 
@@ -142,7 +142,7 @@ class _Alike:
         return sorted(likely, key=lambda other: (distance(name, other), other))
 
 
-@cache_of(1_000)  # the same names are in tree after tree
+@lru_cache(1_000)  # the same names are in tree after tree
 def _is_slip(word: str, meant: str) -> bool:
     """Whether a name is so near another one that nobody would call two things so: `traget`, `batteryLevel`, `imgg`.
 
@@ -170,7 +170,7 @@ def _is_slip(word: str, meant: str) -> bool:
     return any(one != two and min(len(one), len(two)) > 5 for one, two in pieces)
 
 
-@cache_of(1_000)
+@lru_cache(1_000)
 def _pieces(name: str) -> frozenset[str]:
     name = _folded(name)
     return frozenset((name, _without_vowels(name), *(name[:at] + name[at + 1 :] for at in range(len(name)))))

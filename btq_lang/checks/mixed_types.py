@@ -7,6 +7,9 @@ type was that of texts or of anything.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
@@ -19,11 +22,7 @@ from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final, TypeAlias
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
 

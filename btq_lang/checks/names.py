@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
 from btq_lang.checks import lookups
@@ -13,10 +16,7 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Tree, Word, is_name
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
 

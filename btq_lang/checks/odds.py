@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import ceil, inf, log
+from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, SourceNode
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.requirements.budgets import Budgets
 
 

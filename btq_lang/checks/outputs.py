@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import lookups
@@ -11,10 +14,7 @@ from btq_lang.diagnostics import Diagnostic, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.facts import Facts
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
@@ -16,10 +19,7 @@ from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.facts import Facts
@@ -100,7 +100,7 @@ def _placeholders(tree: Facts) -> Iterator[Word]:
             yield name
 
 
-@cache_of(10_000)
+@lru_cache(10_000)
 def _id_of(name: str) -> str:
     """The ID that a placeholder's name becomes; a mission names the same skills again and again."""
     return legal_name(name)
@@ -141,7 +141,7 @@ def _as_label(name: Word) -> str:
     return name.raw if name.quoted or (is_name(name.raw) and name.raw not in _NOT_A_KIND) else quote(name.text)
 
 
-@cache_of(1000)
+@lru_cache(1000)
 def _looks_like_builtin(name: str) -> bool:
     """Whether a node of that name would be taken for a misspelt one of the engine's."""
     return bool(near(name, (spelling for kind in BUILTINS.values() for spelling in spellings(kind))))

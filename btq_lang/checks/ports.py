@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
+from collections.abc import Iterator
+from functools import cache
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.names import is_port_name
@@ -18,10 +21,7 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
 
 _OWN = frozenset(("ID", "name"))

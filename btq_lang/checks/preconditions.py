@@ -3,15 +3,15 @@ ticks, and what skips the condition of a choice."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.rules import Severity
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.syntax import Entry

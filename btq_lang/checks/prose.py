@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.strings import in_source
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.name_kinds import Kind
@@ -9,10 +12,7 @@ from btq_lang.syntax import Entry, Requirement, Signal, Word
 from btq_lang.text import Span
 from btq_lang.units import Dimension, parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
     from btq_lang.constraints import Constraint
 

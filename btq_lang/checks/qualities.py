@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
@@ -12,10 +15,7 @@ from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Qualities, Requirement
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
 
 

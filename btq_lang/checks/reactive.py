@@ -6,6 +6,9 @@ and halts what it does not reach.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_xml_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS
@@ -16,10 +19,7 @@ from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word, quote
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
 
 _REACTIVE = tuple(tag for tag, kind in BUILTINS.items() if kind.reactive)

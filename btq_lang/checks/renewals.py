@@ -6,6 +6,9 @@ found is found for every run of the mission.  It does not know what the robot's 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.demanded import Demanded, Found
 from btq_lang.checks.writers import isolated, key_of
@@ -13,10 +16,7 @@ from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.reading import signals_in
 from btq_lang.syntax import Verbatim
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.requirements.model import Claim, Requirement, Signal, SourceNode
     from btq_lang.requirements.trees import TreeNodes
 

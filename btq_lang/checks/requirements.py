@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
@@ -10,10 +13,7 @@ from btq_lang.near import did_you_mean
 from btq_lang.symbols import Symbol, same_requirement
 from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
 
 

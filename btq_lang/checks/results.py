@@ -7,6 +7,9 @@ the blackboard, and so whether a condition is ever true.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import ask_of_called
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
@@ -14,11 +17,7 @@ from btq_lang.name_kinds import Kind
 from btq_lang.record import Record
 from btq_lang.syntax import Node, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.facts import Facts

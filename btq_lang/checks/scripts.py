@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.strings import moved
 from btq_lang.record import replace
 from btq_lang.rules import Severity
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.diagnostics import Diagnostic

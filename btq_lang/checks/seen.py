@@ -6,13 +6,12 @@ has, and nearly every check would look at each.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.placeholders import is_placeholder
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.file import Definition
     from btq_lang.syntax import Model, Node, Tree, Word

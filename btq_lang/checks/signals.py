@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
 from btq_lang.checks.writers import declared_port, isolated
 from btq_lang.diagnostics import Diagnostic, Related
@@ -9,10 +12,7 @@ from btq_lang.entry_types import is_text
 from btq_lang.near import near
 from btq_lang.rules import Severity
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.checks.writers import Entries
     from btq_lang.requirements import Memory
     from btq_lang.requirements.model import Signal

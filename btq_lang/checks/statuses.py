@@ -6,11 +6,10 @@ a missing or surplus child is one that can return anything.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Final
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Final
 
+if TYPE_CHECKING:
     from btq_lang.syntax import Node
 
 SUCCESS: Final = 1

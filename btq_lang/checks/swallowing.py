@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, TypeAlias
+
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced
 from btq_lang.diagnostics import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.model import SourceNode
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import TypeAlias
-
     from btq_lang.requirements import Requirements
 
 Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why

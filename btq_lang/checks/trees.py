@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.blocks import OF_ITS_OWN
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.nodes import BUILTINS
@@ -16,10 +19,7 @@ from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
     from btq_lang.file import Definition
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, told_at
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.requirements.model import Target
 from btq_lang.rules import Severity
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Applied, Claim, SourceNode
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.results import UNKNOWN, result, results
@@ -12,10 +14,7 @@ from btq_lang.diagnostics import Diagnostic, Place, Related, Tag
 from btq_lang.syntax import Entry, Node, Verbatim
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.seen import SeenNode
 
 _GOES_ON = {

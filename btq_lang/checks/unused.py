@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.checks import lookups
 from btq_lang.diagnostics import Diagnostic, Tag
 from btq_lang.name_kinds import Kind
 from btq_lang.near import near
 from btq_lang.syntax import Context, Entry, Signal
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.checks.view import View
 
 

@@ -5,8 +5,11 @@ It decides nothing; a check that only one rule needs does not belong here.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
 from btq_lang.attributes import meant_clause
-from btq_lang.caches import cache
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
@@ -29,11 +32,7 @@ from btq_lang.syntax import (
 )
 from btq_lang.workspace import Scope, Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-    from typing import Any, Final, TypeVar
-
     from btq_lang.checks.answers import Answers
     from btq_lang.checks.entries import Mention
     from btq_lang.checks.ports import KnownPorts

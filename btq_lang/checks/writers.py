@@ -6,15 +6,15 @@ know when nodes run.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.record import Record
 from btq_lang.syntax import Pair, Port, Verbatim
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.checks.demanded import Demanded
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.model import SourceNode

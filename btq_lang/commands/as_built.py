@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Protocol
 
 from btq_lang.btcpp.by_hand import ByHand
 from btq_lang.btcpp.importing import import_xml
@@ -22,9 +23,7 @@ from btq_lang.record import Record
 from btq_lang.syntax import Include
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Protocol
 
     class Source(Protocol):
         """Where files come from: the disk, or a revision."""

@@ -6,6 +6,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
+from typing import Final
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.document import Comment, Document, write
@@ -28,10 +29,6 @@ from btq_lang.rules import Severity
 from btq_lang.syntax import Tree
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class Output(Record):

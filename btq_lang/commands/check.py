@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
@@ -17,10 +19,7 @@ from btq_lang.render.colour import wants_colour
 from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.commands.options import CheckOptions
     from btq_lang.diagnostics import Diagnostic
 

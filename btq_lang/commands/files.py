@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os.path
 import sys
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
 from btq_lang.record import Record, replace
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from btq_lang.file import File
     from btq_lang.project import Project
 

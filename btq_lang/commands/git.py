@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import posixpath
 import subprocess
+from typing import Final
 
 from btq_lang.btcpp.marks import is_built_of, is_mission
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
@@ -15,10 +16,6 @@ from btq_lang.file import SUFFIXES, File
 from btq_lang.loader import absolute, file_of, find_project, read
 from btq_lang.project import include_candidates
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class GitTrouble(Exception):

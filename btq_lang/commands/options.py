@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # type checkers read it as True; importing `typing` for it takes 5 ms
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 if TYPE_CHECKING:
     from argparse import ArgumentParser
-    from collections.abc import Sequence
 
 
 class CheckOptions:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.evidence.readers.samples import NoSamples, read_sources
 from btq_lang.loader import find_project, shown
 from btq_lang.near import did_you_mean, near
 from btq_lang.units import a_dimension
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.project_evidence import SignalSource

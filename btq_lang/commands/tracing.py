@@ -6,6 +6,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.bundle import bundle
 from btq_lang.btcpp.enforcement import enforced
@@ -24,7 +25,6 @@ from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.ways import declared_ways
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.trace.collect import SaidOf
 

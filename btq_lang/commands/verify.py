@@ -6,7 +6,9 @@ import json
 import os
 import sys
 from argparse import Namespace
+from collections.abc import Iterable, Iterator, Sequence
 from glob import glob
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path, xml_path
@@ -33,11 +35,7 @@ from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 from btq_lang.syntax import Signal
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from typing import Final
-
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
     from btq_lang.project import Project

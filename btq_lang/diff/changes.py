@@ -6,13 +6,10 @@ One invariant: a change has a place in each mission that it can be seen in.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final, Literal, TypeAlias
 
 from btq_lang.diff.said import Place, Values
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
 
 # The order in which changes are told: what the mission is and must be first, then how it does that.
 THINGS: Final = (

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from typing import Final
 
 from btq_lang.diff import Change, Place, compare
 from btq_lang.diff.changes import GUARD, Detail
 from btq_lang.record import Record
 from btq_lang.text import Position
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class ByHand(Record):

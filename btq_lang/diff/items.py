@@ -6,13 +6,10 @@ One invariant: things are the same by their name; those that say the same under 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from typing import Final
 
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.said import MAIN, MISSION, Item, Part, Value
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 # What may be renamed: what others refer to by its name.
 _RENAMED: Final = ("requirement", "signal", "context", "quality", "node model")

@@ -19,13 +19,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from typing import Final, TypeAlias
 
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.diff.said import TREE, Part
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, TypeAlias
 
 Ids: TypeAlias = dict[Hashable, int]
 

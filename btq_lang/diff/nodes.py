@@ -9,14 +9,11 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Literal
 
 from btq_lang.diff.changes import Change, Detail, details
 from btq_lang.diff.matching import Forest, renamed_aspect
 from btq_lang.diff.said import SUBTREE, TREE, VERBATIM, Part, Values
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Literal
 
 
 def tree_changes(old: Forest, new: Forest, renamed: Mapping[tuple[str, str], str]) -> Iterator[Change]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, xml_tag
@@ -60,9 +61,7 @@ from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.units import convert, parse_unit, to_si
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Protocol, TypeAlias
 
     class _HasPlace(Protocol):
         @property

@@ -6,13 +6,10 @@ One invariant: what a change says is all in its words; colour and marks add noth
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 from btq_lang.diff.changes import Change, Detail
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
 TITLES: Final = {

@@ -25,10 +25,10 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report

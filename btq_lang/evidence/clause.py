@@ -5,6 +5,9 @@ One invariant: a clause that cannot be judged is unknown with the reason, and ne
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.history import Nearby, near
 from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
 from btq_lang.evidence.observed import Observed, parts_in
@@ -19,11 +22,7 @@ from btq_lang.evidence.wording import duration
 from btq_lang.record import Record, replace
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
-    from typing import Final
-
     from btq_lang.evidence.guards import Guard, Refusal
     from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined

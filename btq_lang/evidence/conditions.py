@@ -7,6 +7,8 @@ first such part is kept.
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.signals import Unknown
 from btq_lang.record import Record, replace
@@ -30,11 +32,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.units import parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Final, TypeAlias
-
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Bounded, Condition, Number

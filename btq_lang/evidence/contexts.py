@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.history import Nearby
 from btq_lang.evidence.model import ROOT
@@ -10,11 +13,7 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verdicts import ContextSummary
 from btq_lang.requirements.model import InContext, Running
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
-
     from btq_lang.evidence.history import History
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.model import Activation

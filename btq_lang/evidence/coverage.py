@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.verdicts import NodeSummary, Repeats
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
-
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
     from btq_lang.requirements.model import SourceNode
 

@@ -17,16 +17,14 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import VIOLATED
 from btq_lang.render.spreadsheet import plain
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.evidence.verdicts import Report
 
 

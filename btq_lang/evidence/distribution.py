@@ -6,13 +6,11 @@ One invariant: whatever comes, few steps are kept: they double when they get too
 from __future__ import annotations
 
 from math import floor
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.verdicts import Histogram
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.evidence.verbs import Measure
     from btq_lang.requirements.model import Value
 

@@ -5,7 +5,9 @@ One invariant: state is kept only for what is open, the current run, and what ha
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause
 from btq_lang.evidence.contexts import Contexts
@@ -22,11 +24,7 @@ from btq_lang.evidence.timeline import Timelines
 from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
 from btq_lang.record import replace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from typing import Final
-
     from btq_lang.evidence.identity import Candidate, Joined
     from btq_lang.evidence.model import Outcome, Series, Session
     from btq_lang.requirements.model import Requirement

@@ -6,6 +6,9 @@ run its last failure, so memory does not grow with a log.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.verdicts import Link
@@ -13,11 +16,7 @@ from btq_lang.evidence.wording import duration
 from btq_lang.record import Record
 from btq_lang.requirements.model import Span, Total
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-    from typing import Final, TypeAlias
-
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
     from btq_lang.evidence.signals import Signals
     from btq_lang.evidence.verbs import Judgement

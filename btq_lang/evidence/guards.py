@@ -6,13 +6,12 @@ that was not halted itself.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-    from typing import Final
-
     from btq_lang.evidence.model import Activation, LoggedTree
 
 

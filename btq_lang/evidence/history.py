@@ -7,15 +7,13 @@ in the same use of the subtree; outside of it, all that are in the innermost tre
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from typing import Final
-
     from btq_lang.evidence.identity import Joined
     from btq_lang.evidence.model import Activation, LoggedTree, Moment
     from btq_lang.requirements.model import Target

@@ -6,6 +6,9 @@ of the mission, or the same path that no other node has; what is not joined is n
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export, is_mission
 from btq_lang.btcpp.side_file import Built, RunningTree
@@ -15,11 +18,7 @@ from btq_lang.evidence.model import LoggedTree
 from btq_lang.record import Record, replace
 from btq_lang.requirements import requirements
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from typing import Final
-
     from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements import Requirements

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.wording import timestamp
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, TypeAlias
-
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Repeats, Report, RequirementVerdict, Source
 
     Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"

@@ -7,15 +7,15 @@ property with several IDs, separated by commas, and StrictDoc refuses a name tha
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
 from btq_lang.evidence.sentences import explained, headline, result
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.evidence.wording import timestamp
 from btq_lang.render.junit import escaped
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.conditions import bound_at
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Measure
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Limit

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import WORST_FIRST
 from btq_lang.evidence.wording import counted
 from btq_lang.render.gfm import code, escaped, table
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.evidence.verdicts import MissionVerdicts, Report
 
 

@@ -10,17 +10,16 @@ neighbours of one mission are put together again.
 
 from __future__ import annotations
 
-from btq_lang.caches import cached_property
+from collections.abc import Iterable, Iterator, Sequence, Set
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.identity import join, join_build
 from btq_lang.evidence.model import FAILURE, IDLE, ROOT, RUNNING, SUCCESS, LoggedTree, NamedLog, Session
 from btq_lang.evidence.runs import ONE_COMPLETION
 from btq_lang.record import replace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence, Set
-    from typing import Final
-
     from btq_lang.evidence.identity import Build, Candidate, Joined
     from btq_lang.evidence.model import Transition
 

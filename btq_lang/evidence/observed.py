@@ -5,7 +5,9 @@ One invariant: an answer is a value in SI, or the reason why it is unknown.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from math import fsum, sqrt
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
@@ -25,11 +27,7 @@ from btq_lang.requirements.model import (
     Table,
 )
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-    from typing import Final
-
     from btq_lang.evidence.history import Nearby
     from btq_lang.evidence.model import Activation, Moment, SampleValue
     from btq_lang.evidence.signals import Signals

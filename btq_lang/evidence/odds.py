@@ -6,12 +6,9 @@ look at the data.  SciPy has the same in `scipy.stats.beta`, but takes a second 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import exp, inf, lgamma, log, log1p
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import Final
+from typing import Final
 
 
 def lower_limit(k: int, n: int, confidence: float) -> float:

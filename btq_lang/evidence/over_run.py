@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.scopes import in_scope
@@ -9,11 +12,7 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.record import Record
 from btq_lang.requirements.model import All, Mission, Target
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Final
-
     from btq_lang.evidence.model import Activation, Moment
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Condition, Event, Scope

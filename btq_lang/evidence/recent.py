@@ -6,13 +6,11 @@ One invariant: only the judgements in the window are kept, the latest ones, in w
 from __future__ import annotations
 
 from bisect import insort
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.tally import Tally
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, TypeAlias
-
     from btq_lang.evidence.tally import Run
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.evidence.verdicts import Link

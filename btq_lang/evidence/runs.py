@@ -13,14 +13,13 @@ What real logs do beside the plain sequence RUNNING, result, IDLE:
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SKIPPED, SUCCESS, Activation, LoggedTree, Session
 from btq_lang.evidence.wording import timestamp
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.evidence.model import Outcome, Timing
 
 

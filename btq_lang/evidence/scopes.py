@@ -5,16 +5,16 @@ One invariant: with an unknown scope an activation is unknown, whatever it came 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.record import replace
 from btq_lang.requirements.model import Any, Not
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Scope
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.tally import USUAL_CONFIDENCE
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import counted, duration, moment, share
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
-
     from btq_lang.evidence.verdicts import ClauseVerdict, Violation
 
 

@@ -6,16 +6,15 @@ for `fresh within`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.model import Series
 from btq_lang.record import Record
 from btq_lang.requirements.model import Value
 from btq_lang.units import to_si
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from typing import Final
-
     from btq_lang.evidence.model import SampleValue
     from btq_lang.requirements.model import Signal
     from btq_lang.units import Unit

@@ -5,16 +5,15 @@ One invariant: what was counted is enough for the verdict, so no judgement is ke
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
 from btq_lang.evidence.wording import quantity
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.evidence.verbs import Judgement, Measure
     from btq_lang.evidence.verdicts import Link, Verdict
     from btq_lang.requirements.model import Odds

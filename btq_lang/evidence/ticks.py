@@ -6,12 +6,12 @@ or after a sibling before it has completed, nothing else ran in between.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.evidence.model import FAILURE, RUNNING, SUCCESS, Session
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from btq_lang.evidence.model import Transition
 
 

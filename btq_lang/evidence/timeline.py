@@ -5,12 +5,11 @@ One invariant: the activations of the open run alone are kept, at most a thousan
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.evidence.verdicts import Bar, Timeline
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.evidence.clause import JudgedClause
     from btq_lang.evidence.model import Activation, LoggedTree
     from btq_lang.evidence.tally import Run

@@ -5,13 +5,12 @@ One invariant: nothing in here has to be worked out again, so a table, JSON and 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final, Literal, TypeAlias
-
     from btq_lang.evidence.model import Outcome
     from btq_lang.requirements.model import SourceNode
     from btq_lang.units import Unit

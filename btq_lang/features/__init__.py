@@ -9,7 +9,8 @@ features with the checks they show take a third of that time.
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # type checkers read it as True
+from typing import TYPE_CHECKING
+
 if TYPE_CHECKING:
     from btq_lang.features.actions import code_actions
     from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls

@@ -6,8 +6,10 @@ each behind a comma.  What they mean the legend says, which editors are told fir
 
 from __future__ import annotations
 
-from btq_lang.caches import Answered
-from btq_lang.catalog.nodes import NodeKind, lookup
+from functools import lru_cache
+from typing import Final
+
+from btq_lang.catalog.nodes import lookup
 from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.clauses import EXPERIMENTS, METHODS
@@ -27,19 +29,13 @@ from btq_lang.tokens import (
     SYMBOL,
 )
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
-
+@lru_cache(2_000)  # most kinds stand in a file many times
 def look_of_node(name: str, kind: int) -> str:
     """How what a node is looks, by its name and the kind of its token."""
     if kind == SYMBOL:
         return _SIGN
-    return _of_quoted[name] if kind == STRING else _of_names[name]
-
-
-def _look_of(builtin: NodeKind | None) -> str:
+    builtin = lookup(name, kind == STRING)
     if builtin is None:
         return OWN_NODE
     return _ACTION if builtin.category in ("Action", "Condition") else _BUILTIN
@@ -115,6 +111,3 @@ KEYWORDS: Final = frozenset(
     | EXPERIMENTS
     | FUNCTIONS
 )
-# Most kinds stand in a file many times.
-_of_names: Final[Answered[str, str]] = Answered(lambda name: _look_of(lookup(name)), 2_000)
-_of_quoted: Final[Answered[str, str]] = Answered(lambda name: _look_of(lookup(name, True)), 2_000)

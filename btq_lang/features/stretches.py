@@ -6,7 +6,9 @@ of the tree there stands nearly always what stands between most: of each such te
 
 from __future__ import annotations
 
-from btq_lang.caches import Answered
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.features.looks import (
     DEFINED,
     NEW_NODE,
@@ -30,10 +32,7 @@ from btq_lang.text import LINE_END, Span, width_of
 from btq_lang.token_list import pieces
 from btq_lang.tokens import COMMENT, OPERATOR, SYMBOL
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, TypeAlias
-
     from btq_lang.mentions import Mention, Owner
     from btq_lang.syntax import Node, Pair, Word
     from btq_lang.text import Encoding
@@ -103,11 +102,11 @@ def encoded(text: str, stretch: Stretch, known: Known, encoding: Encoding) -> En
     for start, end, look in words.found:
         if start < at:
             continue
-        for begin, stop, of_between in _between[text[at:start]]:
+        for begin, stop, of_between in _between(text[at:start]):
             made.add(begin + at, stop + at, of_between)
         made.add(start, end, look)
         at = end
-    for begin, stop, of_between in _between[text[at:]]:
+    for begin, stop, of_between in _between(text[at:]):
         made.add(begin + at, stop + at, of_between)
     return Encoded(made.tokens, made.line)
 
@@ -183,13 +182,14 @@ class _Words(Listener):
         return USED[What.TREE] if self._known.is_tree(name) else OWN_NODE
 
 
-def _tokens_between(text: str) -> list[Token]:
+@lru_cache(2_000)
+def _between(text: str) -> list[Token]:
     """The tokens between two words of a tree, before the first or behind the last."""
     head, sign, comment = text.partition("\n#")
     end = comment.find("\n")
     if sign and end == len(comment.rstrip()) and _BEGINNING.isdisjoint(head) and "\r" not in comment:
         start = len(head) + 1  # in front of an item there often is a comment, each of them another one
-        return [*_between[text[:start]], (start, start + 1 + end, PLAIN[COMMENT])]
+        return [*_between(text[:start]), (start, start + 1 + end, PLAIN[COMMENT])]
     found: list[Token] = []
     before = ""
     for kind, start, raw in pieces(text):
@@ -264,4 +264,3 @@ def _lines(raw: str) -> list[tuple[int, int]]:
 
 
 _BEGINNING: Final = frozenset("\"'=/\r")  # what may go on over a line end, and what a comment may not stand behind
-_between: Final = Answered(_tokens_between, 2_000)

@@ -15,11 +15,9 @@ One invariant: the same mission gives the same bytes.  It knows no disk and star
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.graph.figure import Figure
 
 FORMATS: Final = ("svg", "dot", "mermaid")

@@ -6,13 +6,10 @@ One invariant: children are drawn in their order (`ordering=out`).  The format: 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from btq_lang.graph.figure import Figure, Note
 from btq_lang.graph.placing import note_lines
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def dot(figures: Sequence[Figure], direction: str = "down") -> str:

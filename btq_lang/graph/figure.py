@@ -6,12 +6,11 @@ It does not know where anything stands on the paper.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Literal, TypeAlias
-
     # How a node is drawn: control nodes as boxes with a symbol, actions as boxes, conditions as ellipses, decorators as
     # hexagons (the literature has diamonds, in which no word fits), SubTree nodes as boxes with a second line at both
     # ends, as flow charts draw what is drawn elsewhere.

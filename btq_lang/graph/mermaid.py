@@ -7,13 +7,10 @@ would read itself: quotes, brackets of HTML, `#`, the backtick that begins Markd
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import note_lines
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def mermaid(figures: Sequence[Figure], direction: str = "down") -> str:

@@ -6,6 +6,7 @@ One invariant: one box for each written node.  A SubTree node is a box; its tree
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.placeholders import is_placeholder
@@ -14,10 +15,7 @@ from btq_lang.requirements.model import Applied, Claim, SourceNode
 from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.graph.figure import Outline
 
 

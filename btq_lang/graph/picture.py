@@ -6,6 +6,7 @@ One invariant: every key of `places` is the id of a group in the picture.
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from typing import Final
 
 from btq_lang.graph import draw
 from btq_lang.graph.folding import foldable, with_folded_notes
@@ -13,10 +14,6 @@ from btq_lang.graph.missions import figures, keyed
 from btq_lang.record import Record
 from btq_lang.text import Span
 from btq_lang.workspace import Workspace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class Picture(Record):

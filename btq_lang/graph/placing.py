@@ -6,14 +6,12 @@ leaf in the direction in which children would follow, and stand beside an inner 
 
 from __future__ import annotations
 
+from typing import Final, TypeAlias
+
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.widths import shortened, width, wrapped
 from btq_lang.record import Record
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final, TypeAlias
 
 TITLE: Final = 13  # sizes of letters
 SMALL: Final = 11

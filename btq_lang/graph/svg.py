@@ -9,13 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from html import escape
+from typing import Final
 
 from btq_lang.graph.figure import Figure
 from btq_lang.graph.placing import LEADING, MARGIN, SMALL, TITLE, Drawing, Line, PlacedBox, PlacedNote, Rectangle, place
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 # What paints which part, and its colour on light and on dark ground; text on its ground has a contrast of 4.5 and more.
 _COLOURS: Final = (

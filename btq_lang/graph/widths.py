@@ -8,10 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from typing import Final
 
 
 @lru_cache(maxsize=4096)  # the same kinds and clauses stand in many boxes

@@ -6,11 +6,12 @@ and who formats on save would be told at every save.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from lsprotocol import types
 
 from btq_lang.editor import Server
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.workspace import Workspace
 

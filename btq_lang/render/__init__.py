@@ -7,12 +7,10 @@ columns in code points.  Not known here: which findings to show, where the outpu
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
+
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.record import Record, replace
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
 

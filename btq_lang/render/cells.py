@@ -8,12 +8,8 @@ emoji joined by U+200D count as their parts, for terminals do not agree on them.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-
-from btq_lang.caches import cache_of
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from collections.abc import Sequence
+from functools import lru_cache
 
 TAB = 4
 
@@ -42,7 +38,7 @@ def cut(line: str, left: int, room: int) -> str:
     return ("…" if left else "") + blanks + "".join(pieces[first:last]) + ("…" if last < len(pieces) else "")
 
 
-@cache_of(16)  # a frame asks for a line several times, and hostile files have everything on one long line
+@lru_cache(16)  # a frame asks for a line several times, and hostile files have everything on one long line
 def laid_out(line: str) -> tuple[Sequence[str], Sequence[int]]:
     """What each character of a line prints, and the cell it begins in; a last cell is where the line ends."""
     if line.isascii() and line.isprintable():

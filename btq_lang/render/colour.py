@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from typing import TypeAlias
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
 Paint: TypeAlias = "Callable[[str, str], str]"
 

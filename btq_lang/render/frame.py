@@ -6,15 +6,13 @@ Invariant: a mark stands below what it marks, whatever tabs and wide characters 
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from collections.abc import Callable
+from functools import lru_cache
+
 from btq_lang.record import Record
 from btq_lang.render.cells import cut, laid_out
 from btq_lang.render.location import clamped, line_index
 from btq_lang.text import LineIndex, Position, Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _CONTEXT = 1  # lines shown above and below: above stands the parent or the opener
 _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its end
@@ -114,7 +112,7 @@ def _context(view: _View, numbers: range, margin: str) -> list[Row]:
     return [Row(number + 1, margin + view.line(number)) for number in numbers if _line(view.lines, number).strip()]
 
 
-@cache_of(16)  # as for what is laid out: whoever has the same line again has its hash, too
+@lru_cache(16)  # as for what is laid out: whoever has the same line again has its hash, too
 def _line(lines: LineIndex, number: int) -> str:
     return lines.line(number)
 

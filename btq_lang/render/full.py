@@ -13,16 +13,16 @@ Invariant: one finding is one block, its gutter as wide as its largest line numb
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.render.frame import Row, frame
 from btq_lang.render.location import line_index, location, text_of
 from btq_lang.render.summary import summary
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.diagnostics import Place
     from btq_lang.render import Finding, Report
 

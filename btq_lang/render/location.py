@@ -5,11 +5,12 @@ Invariant: every place has a location; a span outside its text is clamped, a fil
 
 from __future__ import annotations
 
-from btq_lang.caches import cache_of
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
 from btq_lang.record import Record
 from btq_lang.text import LineIndex, Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Place
     from btq_lang.render import Finding, Report
@@ -45,6 +46,6 @@ def clamped(span: Span, text: str) -> Span:
     return Span(start, max(start, min(span.end, len(text))))
 
 
-@cache_of(16)  # findings come file by file, so few texts are enough; a hash of a text is computed once
+@lru_cache(16)  # findings come file by file, so few texts are enough; a hash of a text is computed once
 def line_index(text: str) -> LineIndex:
     return LineIndex(text)

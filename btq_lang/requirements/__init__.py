@@ -21,6 +21,9 @@ the engine can enforce, nor what a run of the robot was like.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
 from btq_lang.name_kinds import Kind
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
@@ -35,11 +38,7 @@ from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.tokens import NAME
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-    from typing import Any, Final
-
     from btq_lang.file import File
     from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, Use
     from btq_lang.requirements.trees import TreeNodes

@@ -6,6 +6,9 @@ where two are equally specific and differ, a problem says so and neither counts.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.diagnostics import Diagnostic, Related, replace_fix
 from btq_lang.near import did_you_mean, near
 from btq_lang.record import Record, fields_of, replace
@@ -36,11 +39,7 @@ from btq_lang.syntax import Argument as WrittenArgument
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.text import Span as TextSpan
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.requirements.reader import Reader
 
 

@@ -7,7 +7,9 @@ holds for some activations only (a scope, some instances) is none here.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from math import fsum, inf
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.record import Record, replace
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
@@ -15,11 +17,7 @@ from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.memory import Memory, is_same
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Final
-
     from btq_lang.requirements import Requirements
     from btq_lang.requirements.trees import TreeNodes
 

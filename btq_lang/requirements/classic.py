@@ -6,6 +6,8 @@ made of a description stands where the description does.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
 from btq_lang.record import replace
 from btq_lang.requirements.clauses import with_clauses
@@ -15,10 +17,7 @@ from btq_lang.syntax import Claim as WrittenClaim
 from btq_lang.syntax import Word
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.requirements.model import Relation
 
 

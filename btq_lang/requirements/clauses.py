@@ -8,6 +8,7 @@ for all of its claims, wherever they stand between them.
 from __future__ import annotations
 
 from math import inf
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.record import replace
 from btq_lang.requirements.model import (
@@ -47,10 +48,7 @@ from btq_lang.syntax import Window as WrittenWindow
 from btq_lang.text import Span as TextSpan
 from btq_lang.units import Dimension, Unit, a_dimension, parse_unit
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.file import Definition
     from btq_lang.requirements.model import Sort
 

@@ -7,7 +7,9 @@ requirements: `budgets` brings them in.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from math import fsum, inf
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record, replace
@@ -26,11 +28,7 @@ from btq_lang.requirements.durations import (
 from btq_lang.tokens import QUANTITY
 from btq_lang.units import to_si
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Final
-
     from btq_lang.requirements.model import SourceNode
 
 

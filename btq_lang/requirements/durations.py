@@ -6,15 +6,12 @@ happen; infinity stands where no bound can be said.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import inf
+from typing import Final
 
 from btq_lang.record import Record, replace
 from btq_lang.requirements.model import SourceNode
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final
 
 
 class Term(Record):

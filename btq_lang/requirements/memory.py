@@ -6,17 +6,15 @@ and notes every answer that it asks for elsewhere.  It does not know what is kep
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import compress, count
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Sequence
-    from typing import Any, TypeAlias, TypeVar
-
     from btq_lang.requirements.attach import Held, Uses
     from btq_lang.requirements.budgets import _TreeBudgets
     from btq_lang.requirements.model import Requirement

@@ -6,13 +6,12 @@ It does not know how anything was written: places lead back to that.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
 from btq_lang.diagnostics import Place
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
-
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.syntax import Item, Node, Tree
     from btq_lang.text import Span as TextSpan

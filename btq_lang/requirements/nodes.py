@@ -6,19 +6,18 @@ nodes says so in its target.  It complains of nothing: no node, or several, is t
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import chain, compress
+from typing import TYPE_CHECKING
 
-from btq_lang.caches import cached_property
 from btq_lang.name_kinds import Kind
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Model, Node, Tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
     from btq_lang.file import File
     from btq_lang.workspace import Scope, Workspace
 

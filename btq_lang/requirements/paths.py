@@ -6,7 +6,10 @@ may be elsewhere (a library, an include that was not found) is not told of a pat
 
 from __future__ import annotations
 
-from btq_lang.caches import cache
+from collections.abc import Callable, Hashable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean, near
@@ -14,11 +17,7 @@ from btq_lang.record import Record
 from btq_lang.requirements.memory import Asker
 from btq_lang.syntax import Apply, Entry, Item, Path, Tree, Word, is_name, quote
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator
-    from typing import Any, Final
-
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
     from btq_lang.requirements.nodes import Nodes

@@ -7,6 +7,7 @@ in two units.  It does not know verbs: `clauses` says what each of them asks for
 from __future__ import annotations
 
 from math import isfinite
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.diagnostics import Fix, replace_fix
 from btq_lang.near import did_you_mean
@@ -55,10 +56,7 @@ from btq_lang.text import Span
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
 from btq_lang.units import Dimension, Unit, a_dimension, parse_unit, to_si
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
-
     from btq_lang.requirements.model import Sort
     from btq_lang.requirements.nodes import Nodes
     from btq_lang.workspace import Scope, Workspace

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from btq_lang.record import fields_of
 from btq_lang.requirements.model import Signal, SourceNode
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def signals_in(part: object) -> Iterator[Signal]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from btq_lang.caches import cached_property
+from functools import cached_property
+from typing import TYPE_CHECKING
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace

@@ -6,15 +6,13 @@ does not know other trees.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Final
+
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax import Node, NodeClause, Satisfices, Tags, Tree
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Final
 
 _TIMEOUT: Final = BUILTINS["Timeout"]
 

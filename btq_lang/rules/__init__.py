@@ -6,8 +6,8 @@ The table knows names, severities and one line each; detection lives in the lexe
 from __future__ import annotations
 
 import os.path
+from enum import Enum
 
-from btq_lang.enumeration import Enum
 from btq_lang.record import Record
 
 

@@ -6,16 +6,14 @@ else; in particular no key is known here, so that a key that nobody writes is an
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.script import mistakes
 from btq_lang.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
 from btq_lang.script.versions import version_problems
 from btq_lang.text import Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 ALL_VERSIONS: Final = ("4.6", "4.8", "4.10")
 

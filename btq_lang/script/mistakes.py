@@ -6,12 +6,10 @@ mistake is seen is the business of `tokens` and `parser`; here is what to tell, 
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.text import Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 # Spellings of other languages, of XML and of typeset text, and what they mean here.
 MEANT: Final = {

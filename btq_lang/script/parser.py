@@ -7,6 +7,8 @@ The first error that no certain reading mends ends the reading, as it does in th
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final, NoReturn
+
 from btq_lang.script import mistakes
 from btq_lang.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
 from btq_lang.script.tree import (
@@ -31,10 +33,7 @@ from btq_lang.script.tree import (
 )
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, NoReturn
-
     from btq_lang.diagnostics import Diagnostic
 
 # Operators within each other, needless brackets counted too.  The engine has no limit and a stack; the engines up to

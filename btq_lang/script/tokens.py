@@ -7,15 +7,15 @@ were mended; anything else that begins no token is an ERROR token, of which the 
 
 from __future__ import annotations
 
-from btq_lang.regex import regex
+import re
+from typing import TYPE_CHECKING, Final
+
 from btq_lang.script import mistakes
 from btq_lang.script.tree import ASSIGNMENT, RANK
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     import re
-    from typing import Final
 
     from btq_lang.diagnostics import Diagnostic
 
@@ -139,7 +139,7 @@ def _matched(text: str) -> Tokens:
 
 
 # One token (BehaviorTree.CPP 4.10, src/script_tokenizer.cpp); a catch-all is last, and nothing matches blanks.
-_TOKEN: Final = regex(
+_TOKEN: Final = re.compile(
     r"""(?xs)
           (?P<name>      [^\W\d]\w* | @\w+ )
         | (?P<number>    (?: 0[xX][0-9a-fA-F]+ | [0-9]+ (?:\.[0-9]+)? (?:[eE][+-]?[0-9]+)? )
@@ -155,7 +155,7 @@ _TOKEN: Final = regex(
         | (?P<other>     [^ \t\r\n] )
     """
 )
-_NUMBER: Final = regex(r"[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+_NUMBER: Final = re.compile(r"[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 
 
 def _check_number(tokens: Tokens, text: str, match: re.Match[str]) -> None:

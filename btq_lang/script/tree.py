@@ -6,14 +6,13 @@ One invariant: `start` and `end` of a record are its place in the script's text,
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.record import Record
 from btq_lang.text import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final, TypeAlias
-
     from btq_lang.diagnostics import Diagnostic
 
 

@@ -9,7 +9,9 @@ groups "cannot be mixed", and the accidents of its ranks, which were found by ru
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
+from typing import Final, TypeGuard
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
 from btq_lang.record import Record
@@ -30,11 +32,6 @@ from btq_lang.script.tree import (
     children,
 )
 from btq_lang.text import Span
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Final, TypeGuard
 
 
 def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:

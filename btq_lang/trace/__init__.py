@@ -12,10 +12,9 @@ One invariant: everything is said once, in a row with a key, and the same missio
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from typing import TYPE_CHECKING, Final
 
+if TYPE_CHECKING:
     from btq_lang.trace.overview import Overview
 
 # The command line asks for them whatever it is to do, so nothing else is imported here.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics import Place
@@ -34,10 +35,7 @@ from btq_lang.trace.overview import Total as TotalRow
 from btq_lang.trace.ways import declared_ways, is_hard
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, TypeAlias
-
     from btq_lang.catalog.qualities import Edition
     from btq_lang.trace.overview import Carries
     from btq_lang.trace.ways import Ways

@@ -22,13 +22,10 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator
+from typing import Final
 
 from btq_lang.render.spreadsheet import plain
 from btq_lang.trace.overview import At, Clause, Overview, RequirementRow
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def csv_text(overview: Overview) -> str:

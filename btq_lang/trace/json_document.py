@@ -31,13 +31,10 @@ node above it, or not at all.  Keys are good for this document only.  The text i
 from __future__ import annotations
 
 import json
+from typing import TypeAlias
 
 from btq_lang import __version__
 from btq_lang.trace.overview import At, Overview, QualityRow, RequirementRow
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import TypeAlias
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
 

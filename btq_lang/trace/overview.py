@@ -6,13 +6,12 @@ the same missions.  Lines and columns count from 1.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
 from btq_lang.graph.figure import Figure
 from btq_lang.record import Record
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final, Literal, TypeAlias
-
     # How a clause is held: by the tree that `btq build` makes, by tools that read logs, or by people.
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]
     # Whether a node carries a quality or a requirement: itself, through a node above it, or not at all.

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from html import escape
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.graph.placing import place
 from btq_lang.graph.svg import STYLE, colours, part
@@ -18,10 +19,7 @@ from btq_lang.trace.page_parts import PAGE_STYLE, SCRIPT
 from btq_lang.trace.verdicts import VERDICT_STYLE, verdicts
 from btq_lang.trace.wording import GAPS, counted, shown_quality, summary, told
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from typing import Final
-
     from btq_lang.evidence.verdicts import MissionVerdicts
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
+from typing import Final
 
 PAGE_STYLE: Final = """\
 :root { color-scheme: light dark; --ink: #14181c; --soft: #55606b; --ground: #ffffff; --raised: #f5f7f9;

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import os.path
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from btq_lang.render.cells import cut, laid_out, printable
 from btq_lang.render.colour import Paint, painter
 from btq_lang.trace.overview import At, Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, shown_quality, summary, told
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 def table(overview: Overview, colour: bool = False, width: int = 120) -> str:

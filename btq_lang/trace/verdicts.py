@@ -5,17 +5,15 @@ One invariant: a drawing says nothing that no text says, and colour is never the
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from html import escape
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import headline, result
 from btq_lang.evidence.verdicts import VIOLATED, WORST_FIRST
 from btq_lang.evidence.wording import counted, duration, quantity, timestamp
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from typing import Final
-
     from btq_lang.evidence.verdicts import (
         Bar,
         ClauseVerdict,

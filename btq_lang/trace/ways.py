@@ -5,17 +5,16 @@ What the generated tree enforces is not known here: whoever knows it hands `coll
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Final, TypeAlias
+
 from btq_lang.graph.missions import said
 from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import Applied, Requirement
 from btq_lang.trace.overview import Clause
 from btq_lang.workspace import Workspace
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Final, TypeAlias
-
     # For each of `applied` of a mission's requirements, in its order, its clauses.
     Ways: TypeAlias = Callable[[Workspace, str, Requirements], Sequence[Sequence[Clause]]]
 

@@ -7,16 +7,15 @@ that says what was expected.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series
 from btq_lang.evidence.readers import bag, btlog, sqlite, tree_log
 from btq_lang.evidence.readers.tree import NotALog as NotALog
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
     from types import ModuleType
-    from typing import Final
 
     from btq_lang.evidence.model import NamedLog, Session
     from btq_lang.project_evidence import SignalSource

@@ -10,20 +10,18 @@ else in its bag.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from io import BufferedReader, RawIOBase
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
-from btq_lang.caches import cache_of
 from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.readers.bag_database import BagDatabase
 from btq_lang.evidence.readers.tree import NotALog
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
-    from typing import Any, BinaryIO, Final
-
     from rosbags.interfaces import Connection
 
 MCAP: Final = b"\x89MCAP0\r\n"
@@ -186,7 +184,7 @@ def _decoder(connection: Connection) -> Callable[[bytes], Any]:
         raise NotALog(f"the bag has no usable definition of {name}: {_said(error)}") from error
 
 
-@cache_of(64)
+@lru_cache(64)
 def _decoder_of(name: str, form: str, text: str) -> Callable[[bytes], Any]:
     from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 

@@ -6,15 +6,13 @@ It is used like a storage of `rosbags`: open, connections, messages, close.
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.readers import sqlite
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-    from typing import Final
-
     from rosbags.interfaces import Connection
 
 

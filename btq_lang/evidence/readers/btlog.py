@@ -9,17 +9,15 @@ Source: src/loggers/bt_file_logger_v2.cpp.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from struct import Struct
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.readers import klein
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import BinaryIO, Final
-
     from btq_lang.evidence.model import Transition
 
 MAGIC: Final = b"BTCPP4-FileLogger2"

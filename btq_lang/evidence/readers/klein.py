@@ -10,12 +10,9 @@ from __future__ import annotations
 
 import json
 import os
+from typing import Any, Final
 
 from btq_lang.evidence.model import Series, is_sample
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Any, Final
 
 
 def read(log: str) -> tuple[dict[str, Series], list[str]]:

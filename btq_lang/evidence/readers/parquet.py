@@ -5,14 +5,10 @@ One invariant: whatever DuckDB trips over is one NotParquet that says what was e
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from decimal import Decimal
-
-from btq_lang.caches import cache_of
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Any, Final
+from functools import lru_cache
+from typing import Any, Final
 
 MAGIC: Final = b"PAR1"
 
@@ -54,7 +50,7 @@ def read(path: str) -> tuple[list[str], Iterator[tuple[Any, ...]]]:
     return names, rows()
 
 
-@cache_of(1)
+@lru_cache(1)
 def _engine() -> Any:
     """DuckDB, which takes longer to start than most files take to read, and longer still with threads."""
     import duckdb

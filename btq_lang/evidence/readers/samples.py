@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import csv
 import os
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series, is_sample
 from btq_lang.evidence.readers import parquet
 from btq_lang.near import did_you_mean, near
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from typing import Final
-
     from btq_lang.evidence.model import SampleValue
     from btq_lang.project_evidence import SignalSource
 

@@ -11,17 +11,15 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final
 from urllib.request import pathname2url
 
 from btq_lang.evidence.model import Series, Session, is_sample
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from typing import Final
-
     from btq_lang.evidence.model import Transition
 
 

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import Series, is_sample
 from btq_lang.evidence.readers.samples import scaled
 from btq_lang.evidence.readers.tree import NotALog
 from btq_lang.near import did_you_mean, near
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, Final
-
     from numpy import int64
     from numpy.typing import NDArray
 

@@ -9,13 +9,11 @@ of them is its own: it is the one whose first node has the number after the SubT
 
 from __future__ import annotations
 
+from typing import Final
+
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.reader import read as read_xml
 from btq_lang.evidence.model import ROOT, LoggedTree
-
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
-if TYPE_CHECKING:
-    from typing import Final
 
 
 class NotALog(Exception):

@@ -9,17 +9,15 @@ A message says which node changed by its name, and since ROS 2 Jazzy by its uid;
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.evidence.model import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, LoggedTree, NamedLog, Series
 from btq_lang.evidence.readers.bag import TEXT, TREE_LOG, opened
 from btq_lang.evidence.readers.topics import Clock, Topics
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from typing import Any, Final
-
     from btq_lang.project_evidence import SignalSource
 
 

@@ -8,16 +8,14 @@ ended, and answers None for what the end of the log cuts off.  Odds and windows 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from importlib import import_module
+from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.record import Record
 from btq_lang.requirements.model import Span, Total
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from typing import TypeAlias
-
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.over_run import OverRun

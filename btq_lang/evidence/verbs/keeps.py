@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.observed import parts_in
 from btq_lang.evidence.verbs import Judgement
@@ -9,7 +11,6 @@ from btq_lang.evidence.verbs.leaves import judged_at
 from btq_lang.record import replace
 from btq_lang.requirements.model import Aggregate
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed

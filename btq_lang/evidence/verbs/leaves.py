@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import reading_of, truth
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement, Measure
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, Moment
     from btq_lang.evidence.observed import Observed

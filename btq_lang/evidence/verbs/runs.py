@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
@@ -12,10 +14,7 @@ from btq_lang.evidence.wording import counted
 from btq_lang.record import replace
 from btq_lang.requirements.model import Value
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.over_run import OverRun, Stretch
     from btq_lang.requirements.model import Claim

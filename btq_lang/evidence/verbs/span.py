@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
 from itertools import accumulate
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
@@ -11,10 +13,7 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.requirements.model import Span
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.over_run import Happening, OverRun
     from btq_lang.requirements.model import Claim

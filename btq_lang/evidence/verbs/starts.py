@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
@@ -10,10 +12,7 @@ from btq_lang.evidence.over_run import Happening
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim
 

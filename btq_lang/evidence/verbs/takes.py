@@ -5,13 +5,14 @@ Violated as soon as it lasts longer, however it ends; a lower bound is judged wh
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import Compared, compared
 from btq_lang.evidence.model import CLOCK_SET_BACK, UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed

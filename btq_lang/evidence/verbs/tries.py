@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
 from math import ceil, floor
+from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
@@ -14,10 +16,7 @@ from btq_lang.evidence.wording import counted
 from btq_lang.record import replace
 from btq_lang.requirements.model import Target
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim

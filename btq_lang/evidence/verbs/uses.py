@@ -3,6 +3,8 @@ start."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.limits import compared
 from btq_lang.evidence.model import CLOCK_SET_BACK
@@ -10,7 +12,6 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 from btq_lang.evidence.verbs.takes import is_left_out, judged
 
-TYPE_CHECKING = False  # True for type checkers: `typing` is slow to import, see record.py
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
