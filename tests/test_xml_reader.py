@@ -115,6 +115,19 @@ def test_what_no_reader_can_make_sense_of(text: str, problem: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        ("<a><b></a>", "close <b> first: write </b>, or /> where it has no children"),
+        ("<a><b></c>", "write </b>"),
+    ],
+)
+def test_a_closing_tag_of_another_element(text: str, note: str) -> None:
+    (problem,) = read(text).problems
+    assert problem.notes == (note,)
+    assert [(each.place.span.start, each.message) for each in problem.related] == [(3, "<b> opens here")]
+
+
+@pytest.mark.parametrize(
     ("text", "found", "note"),
     [
         ('<a b="<"/>', [("a", [("b", "<")])], "write `<` in a value as `&lt;`"),
