@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from syntax_asserts import assert_fix, assert_parse
 
+from btq_lang.parser import parse
+
 END = "found the end of the line"
 A_CLAUSE = "a clause: takes, keeps, in at least, on violation, …"
 A_BOUND = "a bound: at most, at least, less than, more than or between"
@@ -447,6 +449,35 @@ def test_broken_clause(clause: str, shown: str, problem: str) -> None:
 )
 def test_a_clause_head_is_a_subject_only_in_quotes(head: str) -> None:
     assert_clause(f"'{head}' keeps a", f"<'{head}'> keeps a")
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "over last 7 runs",
+        "in at least 90 % of runs",
+        "with probability >= 90 %",
+        "confidence 95 %",
+        "goal a takes at most 3 s",
+        "on violation fail",
+        "verified by review",
+        "every a takes at most 3 s",
+        "from a starts until b starts takes at most 3 s",
+        "sum of energy in a takes at most 3 J",
+        "mission takes at most 3 s",
+        "takes at most 3 s",
+    ],
+)
+def test_a_clause_outside_of_a_requirement(clause: str) -> None:
+    head = clause.split()[0]
+    (entry,) = parse(clause).entries
+    (alone,) = entry.diagnostics
+    assert alone.message == f"expected an item: BehaviorTree, QualityReq, include, signal, …, found `{head}`"
+    assert alone.notes == ("a clause goes in the block of a QualityReq, indented",)
+    (entry,) = parse(f"BehaviorTree Main\n    Go\n    {clause}\n").entries
+    (in_tree,) = entry.diagnostics
+    assert in_tree.message == f"unexpected clause `{head}` in a tree; clauses go in a requirement"
+    assert in_tree.notes == ("write `satisfies QualityReq` and an ID before it, or indent it below a line that does",)
 
 
 # ---- Cond -----------------------------------------------------------------------------------------------------------
