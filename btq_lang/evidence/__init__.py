@@ -15,7 +15,7 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     scopes.py      which activations count
     clause.py, evaluate.py   a clause, and all of a mission, judged while a log is read
     tally.py, recent.py, odds.py   what was counted, all of it or lately, and how sure it makes one
-    explain.py     what led to a violation
+    explain.py, explain_run.py   what led to a violation
     distribution.py, timeline.py   values and a run as the page draws them
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data

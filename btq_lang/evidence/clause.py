@@ -50,7 +50,9 @@ class JudgedClause:
     """A clause at a written node, with what it has come to.
 
     Attributes:
+        judged: the claim, as it is judged.
         explain: what led to a violation, by its judgement and its path.
+        explain_run: what led to one that is judged over a run, by its judgement, the run and the other nodes.
     """
 
     def __init__(self, requirement: Requirement, claim: Claim, applied: Applied | None) -> None:
@@ -61,7 +63,7 @@ class JudgedClause:
         self._tally: Final = Tally(odds, confidence) if window is None else Recent(window, odds, confidence)
         self._subject: Final = subject
         self._judge, self._judge_run = judges_of(claim, subject)
-        self._judged: Final = replace(within(claim, requirement.scopes), subject=subject)
+        self.judged: Final = replace(within(claim, requirement.scopes), subject=subject)
         self._events: Final = _events(claim, subject)
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
@@ -73,7 +75,8 @@ class JudgedClause:
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
         self._has_run = self._waits = False
-        self.explain: Callable[[Judgement, str], tuple[Link, ...]] | None = None
+        self.explain: Callable[[Judgement, str], tuple[Link, ...]] = lambda judgement, path: ()
+        self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
 
     def join(self, joined: Joined, signals: Signals, history: History) -> list[int]:
         """Read another log; the nodes of it that the clause holds for."""
@@ -133,13 +136,19 @@ class JudgedClause:
         self._waiting.clear()
         if self._judge_run is not None:
             judged = [
-                (judgement, place.path)
+                (judgement, place, over)
                 for place in dict.fromkeys(self._places.values())
-                for judgement in self._judge_run(self._judged, self._over(root, place))
+                for over in (self._over(root, place),)
+                for judgement in self._judge_run(self.judged, over)
             ]
             # Of all uses of a subtree together in the order of time, for a window may have the last ones only.
-            for judgement, path in sorted(judged, key=lambda each: each[0].at if each[0] is not None else 0):
-                self._count(_clocked(judgement, root), root, path)
+            for judgement, place, over in sorted(judged, key=lambda each: each[0].at if each[0] is not None else 0):
+                found = _clocked(judgement, root)
+                if found is None or found.holds is not False:
+                    self._count(found, root, place.path)
+                else:
+                    chain = self.explain_run(found, over, place.others)
+                    self._tally.add(replace(found, starts=()), place.path, root.end, chain)
         self._tally.end_run(run)
 
     def _judge_one(self, activation: Activation, path: str, root: Activation | None = None) -> None:
@@ -156,7 +165,7 @@ class JudgedClause:
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
         if counts is False:
             return
-        judgement = self._judge(self._judged, activation, observed)
+        judgement = self._judge(self.judged, activation, observed)
         if activation.outcome == "O" and judgement is not None and judgement.holds:
             # Of `needs` as well, although nothing can break it any more: with one rule for all clauses, the figures of
             # two at one node differ by what happened, and not by where the log ends.
@@ -178,8 +187,7 @@ class JudgedClause:
             self._tally.cut_off += of.outcome == "O"
 
     def _add(self, judgement: Judgement, path: str, end: int) -> None:
-        explain = self.explain if judgement.holds is False else None
-        self._tally.add(judgement, path, end, explain(judgement, path) if explain is not None else ())
+        self._tally.add(judgement, path, end, self.explain(judgement, path) if judgement.holds is False else ())
 
     def _own(self, joined: Joined) -> list[tuple[int, ...]]:
         """The nodes of a log that it holds for: together are those that are judged as one."""
@@ -239,6 +247,11 @@ class JudgedClause:
                 path = tree.nodes[uid].path
                 return f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"
         return None
+
+    @property
+    def is_over_run(self) -> bool:
+        """Whether it is judged when a run has ended."""
+        return self._judge_run is not None
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether a run has the worst violation so far; of a window nobody knows before all is read."""

@@ -80,9 +80,11 @@ class MissionEvaluation:
             for uid in clause.join(joined, signals, history):
                 at.setdefault(uid, []).append(clause)
         guards = Guards(tree, joined.enforcing(), at)
-        explainer = Explainer(tree, at, signals)
+        over_runs = any(clause.is_over_run for clause in self._clauses)
+        explainer = Explainer(tree, at, signals, has_clauses_over_runs=over_runs)
         for clause in self._clauses:
             clause.explain = partial(explainer.chain, clause.claim)
+            clause.explain_run = partial(explainer.over_run.chain, clause.judged)
         self._contexts.join(joined, signals, history)
         self._coverage.expect(tree, joined.written())
         begin: int | None = None

@@ -7,20 +7,23 @@ run its last failure, so memory does not grow with a log.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.evidence.explain_run import RunExplainer, ago, part
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.observed import signals_in
+from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verdicts import Link
-from btq_lang.evidence.wording import duration
+from btq_lang.evidence.wording import duration, quantity
 from btq_lang.record import Record
-from btq_lang.requirements.model import Span, Total
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
     from btq_lang.evidence.signals import Signals
     from btq_lang.evidence.verbs import Judgement
-    from btq_lang.requirements.model import Claim
+    from btq_lang.requirements.model import Claim, Condition, Signal
+    from btq_lang.units import Unit
 
     Sums: TypeAlias = dict[int, list[int]]  # by uid: activations, those that failed, µs
 
@@ -41,7 +44,9 @@ class Origin(Record):
 class Explainer:
     """What the nodes of a session do, while its log is read."""
 
-    def __init__(self, tree: LoggedTree, judged: Collection[int], signals: Signals) -> None:
+    def __init__(
+        self, tree: LoggedTree, judged: Collection[int], signals: Signals, *, has_clauses_over_runs: bool
+    ) -> None:
         """
         Args:
             judged: the nodes whose violations are to be explained.
@@ -55,12 +60,15 @@ class Explainer:
         self._leaves: Final[dict[int, Activation]] = {}  # the last one of each leaf
         self._failed: Activation | None = None  # the last leaf of the run that ran for a while and failed
         self._is_over = False  # the last run
+        self.over_run: Final = RunExplainer(tree, partial(self._samples, is_named=True))
+        self._is_over_run: Final = has_clauses_over_runs
 
     def see(self, activation: Activation) -> Origin | None:
         """An activation has ended; where its failure began, if it failed."""
         uid, outcome, tree = activation.uid, activation.outcome, self._tree
         if self._is_over:
             self._failed = None
+            self.over_run.clear()
         self._is_over = uid == ROOT
         sums = self._below.pop(uid, None)
         child, came, origin = self._last.pop(uid, _NO_CHILD)
@@ -72,6 +80,8 @@ class Explainer:
             self._ended[uid] = activation, dict(sums or {}), origin
         if tree.last[uid] == uid:
             self._leaves[uid] = activation
+            if self._is_over_run:
+                self.over_run.add(activation)
             if outcome == "F" and activation.end > activation.begin:
                 self._failed = activation
         parent = tree.parent[uid]
@@ -84,14 +94,14 @@ class Explainer:
     def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
         """What led to the violation of a clause by the activation that has just ended of the node with a path."""
         if claim.condition is not None:
-            return tuple(self._sample(claim, judgement.at, path))
-        if isinstance(claim.subject, Span | Total):
-            return ()  # it is about more than one node
+            return tuple(self._sample(claim.condition, judgement.at, path))
         for activation, sums, origin in self._ended.values():
             if activation.end == judgement.at and self._tree.nodes[activation.uid].path == path:
                 parts = tuple(self._parts(activation, sums))
                 if judgement.measure is None and origin is not None:
                     return (self._origin(activation, sums, origin), *parts)
+                if claim.verb == "uses" and judgement.measure is not None:
+                    return (self._levels(claim.signal, judgement.measure.unit, activation), *parts)
                 if parts or claim.verb not in ("takes", "succeeds"):
                     return parts
                 text = f"it ran {duration(activation.seconds)}"
@@ -120,14 +130,7 @@ class Explainer:
         long = [uid for uid, (_, _, time) in sums.items() if time * 20 >= activation.end - activation.begin and time]
         for uid in sorted(long, key=lambda uid: (tree.last[uid] > uid, -sums[uid][2], uid)):
             number, failed, time = sums[uid]
-            path = tree.nodes[uid].path
-            text = f"{path} ran {duration(time / 1e6)} of it"
-            if number > 1:
-                text += f" in {number} starts"
-                text += f", {failed} of them failed" if failed else ""
-            elif failed:
-                text += ", and failed"
-            yield Link("part", path, text, time / 1e6, number, failed)
+            yield part(tree.nodes[uid].path, time, number, failed)
 
     def _origin(self, activation: Activation, sums: Sums, origin: Origin) -> Link:
         """Where a failure began."""
@@ -146,26 +149,41 @@ class Explainer:
             text += f", {failed} of its {number} starts failed"
         return Link("origin", path, text, time / 1e6, number, failed)
 
-    def _sample(self, claim: Claim, time: int, judged: str) -> Iterator[Link]:
-        """The samples that a condition reads: how old they are, and which leaf ran when they were taken."""
-        for signal in dict.fromkeys(signals_in(claim.condition)):
+    def _levels(self, signal: Signal | None, unit: Unit | None, activation: Activation) -> Link:
+        """What a signal, of which an activation used some, was at its start and at its end."""
+        assert signal is not None, "the clause names what is used"
+        levels = [self._signals.reading(signal, time) for time in (activation.begin, activation.end)]
+        first, last = [quantity(float(each), unit) for each in levels if not isinstance(each, Unknown)]
+        text = f"`{signal.name}` went from {first} to {last} in {duration(activation.seconds)}"
+        return Link("sample", self._tree.nodes[activation.uid].path, text, activation.seconds, 1, 0)
+
+    def _sample(self, condition: Condition, time: int, judged: str) -> Iterator[Link]:
+        """The samples that a condition reads, and the leaf that had failed before."""
+        yield from self._samples(condition, time)
+        failed = self._failed
+        path = self._tree.nodes[failed.uid].path if failed is not None else judged
+        if failed is not None and path != judged and failed.end <= time:
+            yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
+
+    def _samples(self, condition: Condition, time: int, *, is_named: bool = False) -> Iterator[Link]:
+        """The samples that a condition reads: how old they are, and which leaf ran when they were taken.
+
+        Args:
+            is_named: say which signals they are of.
+        """
+        for signal in dict.fromkeys(signals_in(condition)):
             sampled = self._signals.sampled(signal, time)
             if sampled is None:
                 continue
             age = time - sampled
-            text = "sampled just before" if age < _JUST_BEFORE else f"sampled {duration(age / 1e6)} before"
+            text = f"{f'`{signal.name}` was ' if is_named else ''}sampled {ago(age)}"
             ran = [each for each in self._leaves.values() if each.begin <= sampled <= each.end > each.begin]
             path = ""
             if ran:
                 path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
                 text += f", while {path} ran"
             yield Link("sample", path, text, age / 1e6, 1, 0)
-        failed = self._failed
-        path = self._tree.nodes[failed.uid].path if failed is not None else judged
-        if failed is not None and path != judged and failed.end <= time:
-            yield Link("failure", path, f"{path} had failed before in this run", failed.seconds, 1, 1)
 
 
 _NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)
 _CAME_TO: Final = {"S": "succeeded", "H": "was halted", "O": "was still running"}
-_JUST_BEFORE: Final = 1000  # µs

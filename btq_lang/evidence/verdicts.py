@@ -29,16 +29,17 @@ class Link(Record):
     """Something that led to a violation.
 
     Attributes:
-        kind: `part`: a node below it that took a share of its time; `self`: the node, which took all of it; `origin`:
-            where a failure began; `sample`: what a condition was judged by; `failure`: a leaf that had failed before in
-            the run.
+        kind: `part`: a node that took a share of the time; `self`: the node, which took all of it; `origin`: where a
+            failure began; `sample`: what a condition was judged by; `failure`: a leaf that had failed before in the
+            run, or below the node; `starts`: how the activations that are counted ended; `event`: what the node of an
+            event did last instead.
         path: of the node; of a sample the leaf that ran when it was taken, empty where none did.
         text: in words.
         seconds: how long the node ran; of a sample its age.
         activations, failed: of the node meanwhile.
     """
 
-    kind: Literal["part", "self", "origin", "sample", "failure"]
+    kind: Literal["part", "self", "origin", "sample", "failure", "starts", "event"]
     path: str
     text: str
     seconds: float

@@ -56,13 +56,14 @@ LINES = [
     (
         "lab",
         "from PickTube/Pick starts to PickTube/Place succeeds takes at most 127 ms",
-        "from PickTube/Pick starts to PickTube/Place succeeds: took 128 ms, bound 127 ms"
+        "from PickTube/Pick starts to PickTube/Place succeeds: took 128 ms, bound 127 ms;"
+        " PickTube/Pick::18 ran 87 ms of it"
         " (run 136 of lab.btlog, 533 ms after its start at 2026-11-20 21:23:27.778 UTC)",
     ),
     (
         "lab",
         "MoveToStation uses at most 3 % of battery",
-        "MoveToStation: used 4 %, bound 3 %"
+        "MoveToStation: used 4 %, bound 3 %; `battery` went from 100 % to 96 % in 186 ms"
         " (run 1 of lab.btlog, 186 ms after its start at 2026-11-20 21:22:20.034 UTC)",
     ),
     (

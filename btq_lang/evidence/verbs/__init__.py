@@ -8,7 +8,7 @@ ended, and answers None for what the end of the log cuts off.  Odds and windows 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -50,12 +50,16 @@ class Judgement(Record):
         holds: None: unknown.
         at: when that was decided.
         said: what was measured, in words, in which `{}` is the measure; where it is unknown, why.
+        since: of a clause that is judged over a run, when the time began that it is about.
+        starts: of such a clause, the activations that it counts or adds up.
     """
 
     holds: bool | None
     at: int
     said: str
     measure: Measure | None = None
+    since: int | None = None
+    starts: Sequence[Activation] = ()
 
 
 def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJudge | None]:

@@ -51,7 +51,7 @@ def _between(
             continue
         holds = found.measure.excess <= 0
         said = "had not run again after {}" if is_last else VERBS["runs"].said.replace("{}", "{} after its last start")
-        yield None if is_last and is_open and holds else Judgement(holds, until, said, found.measure)
+        yield None if is_last and is_open and holds else Judgement(holds, until, said, found.measure, start.begin)
 
 
 def _in_windows(
@@ -80,7 +80,8 @@ def _in_windows(
             return
         said = VERBS["runs"].said.replace("{}", f"{counted(number(window), 'time')} in {claim.per.text}")
         measure = replace(found.measure, unit=None)
-        judgements.append(Judgement(measure.excess <= 0, window + length, said, measure))
+        inside = starts[bisect_left(times, window) : bisect_left(times, window + length)]
+        judgements.append(Judgement(measure.excess <= 0, window + length, said, measure, window, inside))
     worst = max(judgements, key=lambda each: each.measure.excess if each.measure is not None else 0.0)
     if not worst.holds:
         yield worst

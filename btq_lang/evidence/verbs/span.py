@@ -64,8 +64,8 @@ def _judged(
     elif isinstance(counts, Unknown):
         yield Judgement(None, until[0], counts.why)
     elif last is not None:
-        yield Judgement(found.measure.excess <= 0, until[0], VERBS["takes"].said, found.measure)
+        yield Judgement(found.measure.excess <= 0, until[0], VERBS["takes"].said, found.measure, first.at[0])
     elif is_late:
-        yield Judgement(False, until[0], "had not come to an end after {}", found.measure)
+        yield Judgement(False, until[0], "had not come to an end after {}", found.measure, first.at[0])
     elif claim.limit.relation not in (">=", ">"):
         yield Judgement(False, until[0], "its last event did not happen before the run ended")

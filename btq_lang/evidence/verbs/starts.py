@@ -57,8 +57,8 @@ def judged(
     elif answer is not None and answer.why and is_late:
         yield Judgement(None, time, answer.why)
     elif answer is not None:
-        yield Judgement(not is_late, until[0], said, found.measure)
+        yield Judgement(not is_late, until[0], said, found.measure, event.at[0])
     elif is_late:
-        yield Judgement(False, time, never, found.measure)
+        yield Judgement(False, time, never, found.measure, event.at[0])
     else:
         yield Judgement(None, time, "the run ended before the time was over")

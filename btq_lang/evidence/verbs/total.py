@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
@@ -12,6 +12,7 @@ from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.model import Activation
     from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim
 
@@ -19,10 +20,10 @@ if TYPE_CHECKING:
 def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
     """Whether they last as long together as they should."""
     starts = run.starts()
-    sure = sum(each.end - each.begin for each, counts in starts if counts is True and each.timing == "exact")
+    sure = [each for each, counts in starts if counts is True and each.timing == "exact"]
     unclear = next((counts.why for _, counts in starts if isinstance(counts, Unknown)), UNKNOWN_END)
     least = _judged(claim, run, sure)
-    most = _judged(claim, run, sum(each.end - each.begin for each, _ in starts))
+    most = _judged(claim, run, [each for each, _ in starts])
     if least is not None and most is not None and least.holds is most.holds:
         yield least
     elif least is None and most is None:
@@ -31,12 +32,15 @@ def judge_run(claim: Claim, run: OverRun) -> Iterator[Judgement | None]:
         yield Judgement(None, run.root.end, unclear)
 
 
-def _judged(claim: Claim, run: OverRun, total: int) -> Judgement | None:
-    """What a sum in µs says; None: nothing, for the log ends before the run does."""
+def _judged(claim: Claim, run: OverRun, starts: Sequence[Activation]) -> Judgement | None:
+    """What the sum of some durations says; None: nothing, for the log ends before the run does."""
     assert claim.limit is not None, "a time has a bound"
+    total = sum(each.end - each.begin for each in starts)
     found = compared(claim.limit, total / 1e6, run.observed, run.observed.begin)
     if isinstance(found, Unknown):
         return Judgement(None, run.root.end, found.why)
     holds = found.kept(not run.is_cut_off)
     said = VERBS["takes"].said.replace("{}", "{} together")
-    return Judgement(holds, run.root.end, said, found.measure) if holds is not None else None
+    if holds is None:
+        return None
+    return Judgement(holds, run.root.end, said, found.measure, run.root.begin, starts)

@@ -56,4 +56,4 @@ def _judged(claim: Claim, run: OverRun, period: Activation, starts: Sequence[Act
         bound = found.measure.bound
         at = starts[max(floor(bound) if claim.limit.relation != "<" else ceil(bound) - 1, 0)].begin
     said = VERBS["tries"].said.replace("{}", counted(number, "time"))
-    return Judgement(holds is not False, at, said, replace(found.measure, unit=None))
+    return Judgement(holds is not False, at, said, replace(found.measure, unit=None), period.begin, starts)

@@ -1,0 +1,166 @@
+"""What led to a violation that is judged over a run: which leaves ran meanwhile, how the starts ended that count, and
+when an event last happened.
+
+One invariant: of each leaf only its last activations in the open run are kept, so memory does not grow with a log.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.evidence.over_run import target_of
+from btq_lang.evidence.verdicts import Link
+from btq_lang.evidence.wording import counted, duration
+from btq_lang.requirements.model import Span, Total
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.history import Nearby
+    from btq_lang.evidence.model import Activation, LoggedTree
+    from btq_lang.evidence.over_run import OverRun
+    from btq_lang.evidence.verbs import Judgement
+    from btq_lang.requirements.model import Claim, Condition, Event
+
+
+class RunExplainer:
+    """What the leaves of a session do in the open run."""
+
+    def __init__(self, tree: LoggedTree, samples: Callable[[Condition, int], Iterator[Link]]) -> None:
+        """
+        Args:
+            samples: what a condition was judged by at a time, in whole sentences.
+        """
+        self._tree: Final = tree
+        self._samples: Final = samples
+        self._leaves: Final[dict[int, list[Activation]]] = {}
+
+    def add(self, activation: Activation) -> None:
+        """A leaf has ended."""
+        kept = self._leaves.setdefault(activation.uid, [])
+        kept.append(activation)
+        if len(kept) >= 2 * _KEPT:
+            del kept[:_KEPT]
+
+    def clear(self) -> None:
+        """Another run begins."""
+        self._leaves.clear()
+
+    def chain(self, claim: Claim, judgement: Judgement, over: OverRun, others: Nearby) -> tuple[Link, ...]:
+        """What led to a violation in the run that has just ended.
+
+        Args:
+            others: the other nodes that the clause mentions.
+        """
+        if isinstance(claim.subject, Total):
+            return tuple(self._shares(judgement.starts))
+        event = claim.subject.last if isinstance(claim.subject, Span) else claim.event
+        if judgement.measure is None and event is not None:
+            return tuple(self._last(event, judgement.at, others))
+        if judgement.starts:
+            return (_ends(self._path(judgement.starts[0]), judgement.starts), *self._inside(judgement.starts))
+        assert judgement.since is not None, "it is about the time since then"
+        if claim.verb != "ends":
+            return tuple(self._meanwhile(judgement.since, judgement.at, self._leaves))
+        return tuple(self._going_on(judgement.since, judgement.at, over.own))
+
+    def _meanwhile(self, begin: int, end: int, leaves: Iterable[int]) -> Iterator[Link]:
+        """The leaves that ran for a twentieth of a time, the longest first."""
+        found: list[tuple[int, int, list[Activation]]] = []
+        for uid in leaves:
+            kept = self._leaves.get(uid, [])
+            first = max(bisect_right(kept, begin, key=_begin) - 1, 0)
+            inside = [each for each in kept[first : bisect_left(kept, end, key=_begin)] if each.end > begin]
+            time = sum(min(each.end, end) - max(each.begin, begin) for each in inside)
+            if time > 0 and time * 20 >= end - begin:
+                found.append((-time, uid, inside))
+        for time, uid, inside in sorted(found, key=lambda each: each[:2]):
+            yield part(self._tree.nodes[uid].path, -time, len(inside), _failed(inside))
+
+    def _going_on(self, begin: int, end: int, own: Sequence[Activation]) -> Iterator[Link]:
+        """What ran below a node that did not end; of a leaf, how long it ran."""
+        late = next(each for each in own if each.begin <= begin <= each.end >= end)
+        if self._tree.last[late.uid] == late.uid:
+            yield Link("self", self._path(late), f"it ran {duration(late.seconds)}", late.seconds, 1, _failed([late]))
+        else:
+            yield from self._meanwhile(begin, end, range(late.uid + 1, self._tree.last[late.uid] + 1))
+
+    def _shares(self, starts: Sequence[Activation]) -> Iterator[Link]:
+        """How long each node of a sum ran, the longest first."""
+        by_node: dict[int, list[Activation]] = {}
+        for each in starts:
+            by_node.setdefault(each.uid, []).append(each)
+        times = {uid: sum(each.end - each.begin for each in own) for uid, own in by_node.items()}
+        for uid in sorted(by_node, key=lambda uid: (-times[uid], uid)):
+            yield part(self._tree.nodes[uid].path, times[uid], len(by_node[uid]), _failed(by_node[uid]))
+
+    def _inside(self, starts: Sequence[Activation]) -> Iterator[Link]:
+        """The leaves that failed in some activations of a node, those that failed most often first."""
+        found: list[Link] = []
+        for uid in range(starts[0].uid + 1, self._tree.last[starts[0].uid] + 1):
+            kept = self._leaves.get(uid, [])
+            inside = [each for each in kept if starts[0].begin <= each.begin and each.end <= starts[-1].end]
+            if failed := _failed(inside):
+                time = sum(each.end - each.begin for each in inside)
+                text = f"{self._path(inside[0])} failed in {failed} of its {counted(len(inside), 'start')}"
+                found.append(Link("failure", self._path(inside[0]), text, time / 1e6, len(inside), failed))
+        return iter(sorted(found, key=lambda each: -each.failed))
+
+    def _last(self, event: Event, time: int, others: Nearby) -> Iterator[Link]:
+        """What the node of an event did last instead."""
+        if event.condition is not None:
+            yield from self._samples(event.condition, time)
+            return
+        target = target_of(event)
+        uids = others.find(target)
+        before = [each for each in others.activations(target) if each.begin <= time]
+        if before:
+            last = before[-1]
+            text = f"{self._path(last)} had started {ago(time - last.begin)}"
+            if last.end <= time and last.outcome in _CAME_TO:
+                text = f"{self._path(last)} {_CAME_TO[last.outcome]} {ago(time - last.end)}"
+            yield Link("event", self._path(last), text, last.seconds, len(before), _failed(before))
+        elif isinstance(uids, tuple) and uids:
+            path = self._tree.nodes[uids[0]].path
+            yield Link("event", path, f"{path} had not started in the run", 0.0, 0, 0)
+
+    def _path(self, activation: Activation) -> str:
+        return self._tree.nodes[activation.uid].path
+
+
+def part(path: str, time: int, number: int, failed: int) -> Link:
+    """A node that took a share of a time, in µs."""
+    text = f"{path} ran {duration(time / 1e6)} of it"
+    if number > 1:
+        text += f" in {number} starts"
+        text += f", {failed} of them failed" if failed else ""
+    elif failed:
+        text += ", and failed"
+    return Link("part", path, text, time / 1e6, number, failed)
+
+
+def _ends(path: str, starts: Sequence[Activation]) -> Link:
+    """How some activations of a node ended."""
+    numbers = {outcome: sum(each.outcome == outcome for each in starts) for outcome in _ENDED}
+    came = [f"{number} {_ENDED[outcome]}" for outcome, number in numbers.items() if number]
+    time = sum(each.end - each.begin for each in starts)
+    return Link("starts", path, ", ".join(came), time / 1e6, len(starts), _failed(starts))
+
+
+def _failed(activations: Iterable[Activation]) -> int:
+    return sum(each.outcome == "F" for each in activations)
+
+
+def ago(time: int) -> str:
+    """How long before something was, in µs."""
+    return f"{duration(time / 1e6)} before" if time >= JUST_BEFORE else "just before"
+
+
+def _begin(activation: Activation) -> int:
+    return activation.begin
+
+
+_CAME_TO: Final = {"S": "had succeeded", "F": "had failed", "H": "had been halted"}
+_ENDED: Final = {"F": "failed", "H": "halted", "O": "still running", "S": "succeeded"}
+JUST_BEFORE: Final = 1000  # µs
+_KEPT: Final = 1000  # of each leaf
