@@ -5,7 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import itertools
+import json
 import re
+import shutil
+import subprocess
 from xml.etree import ElementTree
 
 import pytest
@@ -139,9 +142,29 @@ def test_sphinx_test_reports_reads_junit(judged: Verify) -> None:
     ]
 
 
+@pytest.mark.skipif(shutil.which("strictdoc") is None, reason="strictdoc is not on the PATH: it is 466 MB")
 def test_strictdoc_reads_junit(judged: Verify) -> None:
-    """As its reader of `.gtest.junit.xml` does (0.30): it needs some attributes, refuses errors and properties that
-    come twice, and makes fields of the names of properties, of which some are taken."""
+    """StrictDoc itself, which exports what it has read."""
+    (judged.folder / "verdicts.gtest.junit.xml").write_text(written(judged, "junit"), encoding="utf-8")
+    command = ["strictdoc", "export", ".", "--formats", "json", "--no-parallelization", "--output-dir", "exported"]
+    done = subprocess.run(command, cwd=judged.folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    exported = json.loads((judged.folder / "exported" / "json" / "index.json").read_text(encoding="utf-8"))
+    (document,) = exported["DOCUMENTS"]
+    assert document["TITLE"] == "Test report: main"
+    (suite,) = document["NODES"]
+    _, *cases = suite["NODES"]
+    assert [(each["_NODE_TYPE"], each["TITLE"], each["STATUS"], each["VERIFIES"]) for each in cases] == [
+        ("TEST_RESULT", "main.works", "PASSED", "works"),
+        ("TEST_RESULT", "main.swift", "FAILED", "swift"),
+        ("TEST_RESULT", "main.sure", "SKIPPED", "sure"),
+        ("TEST_RESULT", "main.=grips", "SKIPPED", "=grips"),
+    ]
+
+
+def test_junit_is_as_strictdoc_demands(judged: Verify) -> None:
+    """Where it is not installed: its reader of `.gtest.junit.xml` (0.30) needs some attributes, refuses errors and
+    properties that come twice, and makes fields of the names of properties, of which some are taken."""
     root = ElementTree.fromstring(written(judged, "junit"))
     (suite,) = root.findall("testsuite")
     assert {"name", "tests", "failures", "skipped"} <= {*suite.attrib}
