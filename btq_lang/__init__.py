@@ -15,16 +15,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from btq_lang.btcpp.opening import open_workspace
     from btq_lang.checks import check
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.formatter import format_text
-    from btq_lang.loader import open_workspace
     from btq_lang.parser import Parsed, parse
     from btq_lang.syntax import Node, Requirement, Tree
     from btq_lang.text import LineIndex, Span
+    from btq_lang.version import __version__
     from btq_lang.workspace import Workspace
-
-__version__ = "0.1.0.dev0"
 
 __all__ = [
     "Diagnostic",
@@ -51,9 +50,10 @@ _HOMES = {
     "Span": "text",
     "Tree": "syntax",
     "Workspace": "workspace",
+    "__version__": "version",
     "check": "checks",
     "format_text": "formatter",
-    "open_workspace": "loader",
+    "open_workspace": "btcpp.opening",
     "parse": "parser",
 }
 

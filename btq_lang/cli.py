@@ -9,15 +9,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
-
-from btq_lang import __version__
-
-if TYPE_CHECKING:
-    from argparse import ArgumentParser
+from typing import Any
 
 CLEAN, FINDINGS, TROUBLE = 0, 1, 2
 _SYMBOLS_LIKE_OPTIONS = ("->",)
+_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose own name cannot be a module's
 
 
 def program() -> None:
@@ -49,22 +45,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout, sys.stderr = sys.stdout or nobody, sys.stderr or nobody
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given in (["--version"], ["-V"]):
+        from btq_lang.version import __version__
+
         print(f"btq {__version__}")
         return CLEAN
     if given[:1] == ["check"] and not any(word.startswith("-") for word in given[1:]):
         return _plain_check(given[1:])
     if given[:1] == ["explain"]:  # `->` is a node, not an option
         given[1:] = [f" {word}" if word in _SYMBOLS_LIKE_OPTIONS else word for word in given[1:]]
+    from btq_lang.commands.arguments import build_parser
+
     parser = build_parser()
     options, unknown = parser.parse_known_args(given)
     try:
-        run, command = options.run, options.parser
+        name, command = options.command, options.parser
     except AttributeError:
         parser.print_help()
         return TROUBLE
     if unknown:
         command.error(f"unrecognized arguments: {' '.join(unknown)}")
-    return _finish(run, options)
+    return _finish(_command(name), options)
 
 
 def _plain_check(paths: Sequence[str]) -> int:
@@ -78,6 +78,23 @@ def _plain_check(paths: Sequence[str]) -> int:
     gc.freeze()
     gc.enable()
     return _finish(run, CheckOptions(paths))
+
+
+def _command(name: str) -> Callable[[Any], int]:
+    """What runs a command."""
+    if name == "lsp":
+        return _serve
+    from importlib import import_module
+
+    run: Callable[[Any], int] = import_module(f"btq_lang.commands.{_MODULES.get(name, name)}").run
+    return run
+
+
+def _serve(options: Any) -> int:
+    """`btq lsp`: the server, which is also the program `btq-lsp`."""
+    from btq_lang.server import serve  # the protocol's types take longer to import than most commands to run
+
+    raise SystemExit(serve(options))  # standard output was the editor's and is closed: nobody may flush it
 
 
 def _finish(run: Callable[[Any], int], options: object) -> int:
@@ -105,23 +122,6 @@ def _internal_error(error: Exception) -> int:
     said = internal_error(error, f"in `{' '.join(['btq', *sys.argv[1:]])}`")
     print(f"btq: {said}; BTQ_TRACEBACK=1 shows the traceback", file=sys.stderr)
     return TROUBLE
-
-
-def build_parser() -> ArgumentParser:
-    """The commands and their options; shell completion and the documentation are made from it."""
-    from argparse import RawDescriptionHelpFormatter
-
-    from btq_lang.commands.arguments import Parser, add_commands
-
-    parser = Parser(
-        prog="btq",
-        description="Quality-aware behavior trees for BehaviorTree.CPP: check, build and understand .btq files.",
-        epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
-        formatter_class=RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("-V", "--version", action="version", version=f"btq {__version__}")
-    add_commands(parser.add_subparsers(title="commands", metavar="COMMAND"))
-    return parser
 
 
 if __name__ == "__main__":

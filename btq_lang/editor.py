@@ -22,12 +22,13 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
-from btq_lang import __version__, failures, features
+from btq_lang import failures, features
 from btq_lang.convert import Converter
 from btq_lang.findings import Findings
 from btq_lang.garbage import collect_in_pause, keep_what_is_there
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
+from btq_lang.version import __version__
 
 if TYPE_CHECKING:
     from btq_lang.features import Colours

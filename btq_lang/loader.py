@@ -14,11 +14,10 @@ import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import BinaryIO
 
-from btq_lang.file import SUFFIXES, File, Origin
+from btq_lang.file import SUFFIXES
 from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
 from btq_lang.record import Record, replace
 from btq_lang.text import LineIndex, Position
-from btq_lang.workspace import Workspace
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
@@ -63,42 +62,6 @@ class Loaded(Record):
     damaged: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
     problems: tuple[LoadProblem, ...] = ()
-
-
-def open_workspace(*paths: str) -> Workspace:
-    """The workspace of files and folders, with all that they include, in the project of the first path.
-
-    Args:
-        paths: files as they are, folders for all btq files below them.
-
-    Raises:
-        OSError: a file or folder cannot be read, or is no UTF-8; the message says where.
-    """
-    found = find_project(paths[0] if paths else ".")
-    files: dict[str, File] = {}
-
-    def includes_of(path: str, text: str) -> Iterator[str]:
-        files[path] = file_of(path, text)
-        return (include.path.text for include in files[path].includes if include.path is not None)
-
-    loaded = load(paths or (".",), found.project, includes_of)
-    for problem in (*found.problems, *loaded.problems):
-        raise OSError(str(problem))
-    return Workspace(files, found.project)
-
-
-def file_of(path: str, text: str) -> File:
-    """The file of a text as it stands on the disk; XML is read as this language says it, as it is, old or new.
-
-    XML is what is called .xml, and what begins with `<` under a name that says nothing: trees for Groot are called
-    .tree or .bt here and there.
-    """
-    if path.endswith(SUFFIXES) or not (path.endswith(".xml") or text.lstrip().startswith("<")):
-        return File(path, text)
-    from btq_lang.btcpp.importing import import_xml
-
-    done = import_xml(text, keep_v3=True, for_people=False)
-    return File(path, done.text, Origin(text, done.places, done.diagnostics, done.is_complete))
 
 
 def find_project(start: str, known: Mapping[str, str] | None = None) -> Found:

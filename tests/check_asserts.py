@@ -11,9 +11,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from textwrap import dedent
 
+from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic, Fix
-from btq_lang.loader import file_of
 from btq_lang.project import Project
 from btq_lang.rules import RULES
 from btq_lang.text import Edit, LineIndex, apply_edits

@@ -19,7 +19,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 ROWS: tuple[frozenset[str], ...] = (
     frozenset(
         {"record", "record_inits", "garbage", "text", "places", "near", "globs"}
-        | {"rules", "diagnostics", "units", "quantities"}
+        | {"rules", "diagnostics", "units", "quantities", "version"}
     ),
     frozenset(
         {
@@ -63,29 +63,15 @@ ROWS: tuple[frozenset[str], ...] = (
             "facts",
             "file",
             "workspace",
+            "loader",
             "findings",
         }
         | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph", "findings"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace", "evidence"}),
-    frozenset(
-        {
-            "loader",
-            "watch",
-            "shell",
-            "commands",
-            "cli",
-            "__main__",
-            "server",
-            "session",
-            "convert",
-            "editor",
-            "failures",
-            "protocol",
-            "handlers",
-            "preview",
-        }
-    ),
+    frozenset({"watch", "shell", "failures", "commands", "preview"}),
+    frozenset({"session", "convert", "editor", "protocol", "handlers"}),
+    frozenset({"cli", "__main__", "server"}),
 )
 ROW_OF = {module: row for row, modules in enumerate(ROWS) for module in modules}
 # The rules' pages, the catalog's data and the page of the preview too.

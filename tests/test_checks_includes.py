@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
 
+from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.loader import open_workspace
 from btq_lang.project import Project
 from btq_lang.rules import Severity
 from btq_lang.text import Span

@@ -11,10 +11,10 @@ from xml_elements import elements
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import Imported, import_xml
+from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.reader import read
 from btq_lang.checks import check
 from btq_lang.formatter import format_text
-from btq_lang.loader import file_of
 from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.rules import Severity

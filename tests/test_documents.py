@@ -20,7 +20,8 @@ from evidence_logs import as_logged, btlog, rows, samples, write_db3
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
-from btq_lang.loader import find_project, open_workspace
+from btq_lang.btcpp.opening import open_workspace
+from btq_lang.loader import find_project
 from btq_lang.parser import parse
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -123,7 +124,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
     """`btq` and `btq-lsp` of this checkout, which write down how each of their runs ended."""
     programs = tmp_path / "programs"
     programs.mkdir()
-    parser = "import sys; from btq_lang.cli import build_parser; build_parser().parse_args(sys.argv[1:])"
+    parser = "import sys; from btq_lang.commands.arguments import build_parser; build_parser().parse_args(sys.argv[1:])"
     btq = f'if [ "$1" = preview ]; then python="-c" what="{parser}"; else python="-m" what="btq_lang"; fi\n'
     for name, begin, run in (("btq", btq, '"$python" "$what"'), ("btq-lsp", "", "-m btq_lang.server")):
         run = f'"{sys.executable}" {run} "$@"\ncode=$?\necho "$code $*" >> "{tmp_path}/codes"\nexit $code\n'

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from btq_lang.btcpp.opening import open_workspace
 from btq_lang.cli import main
 from btq_lang.graph import DIRECTIONS, FORMATS, draw
 from btq_lang.graph.folding import foldable
@@ -18,7 +19,6 @@ from btq_lang.graph.missions import figures
 from btq_lang.graph.picture import picture, places
 from btq_lang.graph.placing import Drawing, Rectangle, place
 from btq_lang.graph.widths import shortened, width, wrapped
-from btq_lang.loader import open_workspace
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -1,10 +1,10 @@
-"""The commands and their options, as argparse has them; each command's module is imported when it runs."""
+"""The command line as argparse has it: the commands and their options; what runs them is not imported."""
 
 from __future__ import annotations
 
 import os
 import re
-from argparse import ArgumentParser, ArgumentTypeError, Namespace, RawDescriptionHelpFormatter
+from argparse import ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from btq_lang.commands.options import CheckOptions, add_server_options
@@ -14,28 +14,28 @@ from btq_lang.graph import FORMATS as GRAPH_FORMATS
 from btq_lang.near import near
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
+from btq_lang.version import __version__
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
 TARGETS = ("4.6", "4.7", "4.8", "4.9", "4.10")
 SEVERITIES = ("error", "warning", "info", "hint")
-_MODULES = {"import": "import_xml", "trace": "tracing"}  # of commands whose own name cannot be a module's
 
 
-class Parser(ArgumentParser):
-    """Of a word that is no choice, it says what was probably meant; argparse does since Python 3.14."""
+def build_parser() -> Parser:
+    """The parser of the command line: shell completion and the documentation are made from it, too.
 
-    def error(self, message: str) -> NoReturn:
-        """End the program with the usage and what is wrong."""
-        if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
-            close = near(wrong[1], wrong[2].replace("'", "").split(", "), limit=1)
-            message += f"; did you mean {close[0]}?" if close else ""
-        super().error(message)
-
-
-def add_commands(commands: _SubParsersAction[Parser]) -> None:
-    """Add every command to the parser."""
+    What it parses has the command's name as `command` and the command's own parser as `parser`.
+    """
+    parser = Parser(
+        prog="btq",
+        description="Quality-aware behavior trees for BehaviorTree.CPP: check, build and understand .btq files.",
+        epilog="exit codes: 0 clean, 1 findings, 2 usage or I/O\n\nstart here: btq init my-robot && btq check my-robot",
+        formatter_class=RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("-V", "--version", action="version", version=f"btq {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     _add_check(commands)
     _add_format(commands)
     _add_build(commands)
@@ -49,6 +49,18 @@ def add_commands(commands: _SubParsersAction[Parser]) -> None:
     _add_init(commands)
     _add_completion(commands)
     _add_lsp(commands)
+    return parser
+
+
+class Parser(ArgumentParser):
+    """Of a word that is no choice, it says what was probably meant; argparse does since Python 3.14."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program with the usage and what is wrong."""
+        if wrong := re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message):
+            close = near(wrong[1], wrong[2].replace("'", "").split(", "), limit=1)
+            message += f"; did you mean {close[0]}?" if close else ""
+        super().error(message)
 
 
 def _command(commands: _SubParsersAction[Parser], name: str, help: str, **more: Any) -> ArgumentParser:
@@ -59,15 +71,8 @@ def _command(commands: _SubParsersAction[Parser], name: str, help: str, **more: 
         formatter_class=RawDescriptionHelpFormatter,
         **more,
     )
-    parser.set_defaults(run=lambda options: _run(_MODULES.get(name, name), options), parser=parser)
+    parser.set_defaults(command=name, parser=parser)
     return parser
-
-
-def _run(module: str, options: Namespace) -> int:
-    from importlib import import_module
-
-    code: int = import_module(f"btq_lang.commands.{module}").run(options)
-    return code
 
 
 def _add_paths(parser: ArgumentParser) -> None:

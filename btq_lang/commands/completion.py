@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from btq_lang.cli import build_parser
+from btq_lang.commands.arguments import build_parser
 from btq_lang.rules import RULES
 from btq_lang.shell import completion_script
 

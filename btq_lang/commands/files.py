@@ -7,7 +7,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, file_of, find_project, load
+from btq_lang.btcpp.opening import file_of
+from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, find_project, load
 from btq_lang.record import Record, replace
 from btq_lang.workspace import Workspace
 

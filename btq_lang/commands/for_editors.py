@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 
-from btq_lang.cli import build_parser
+from btq_lang.commands.arguments import build_parser
 from btq_lang.commands.build import build
 from btq_lang.commands.files import Files
 

@@ -33,8 +33,8 @@ from __future__ import annotations
 import json
 from typing import TypeAlias
 
-from btq_lang import __version__
 from btq_lang.trace.overview import At, Overview, QualityRow, RequirementRow
+from btq_lang.version import __version__
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
 

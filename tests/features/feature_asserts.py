@@ -16,6 +16,7 @@ from textwrap import dedent
 
 from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
+from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
 from btq_lang.features.actions import Action, code_actions
 from btq_lang.features.calls import called, callers, prepare_calls
@@ -37,7 +38,6 @@ from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import encoded_within, groups, stretch_of
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
-from btq_lang.loader import open_workspace
 from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.rules import Severity

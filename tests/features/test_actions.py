@@ -15,8 +15,8 @@ from feature_asserts import (
 )
 from rule_pages import blocks
 
+from btq_lang.btcpp.opening import open_workspace
 from btq_lang.features.actions import code_actions
-from btq_lang.loader import open_workspace
 from btq_lang.rules import Severity
 from btq_lang.text import Span
 
