@@ -175,15 +175,14 @@ def _engines(key: str, value: object) -> _Read:
     if complaints:
         trap = ": TOML reads 4.10 as 4.1" if isinstance(value, float) else ""
         return None, [_Complaint(f'`{key}` must be a string such as "4.10", or a list of them{trap}')]
-    known = tuple(filter(_is_engine, wanted))
-    supported = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
+    known = tuple(filter(is_engine, wanted))
     complaints = [
-        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {supported}", value=version)
+        _Complaint(f"unknown engine version `{version}`{_meant_engine(version)} {SUPPORTED}", value=version)
         for version in wanted
         if version not in known
     ]
     if not wanted:
-        complaints = [_Complaint(f"`{key}` must name at least one version; {supported}")]
+        complaints = [_Complaint(f"`{key}` must name at least one version; {SUPPORTED}")]
     return tuple(sorted(set(known), key=lambda version: int(version[2:]))) or None, complaints
 
 
@@ -192,7 +191,7 @@ def _meant_engine(version: str) -> str:
     return (_meant(version, VERSIONS) if version.startswith("4.") else "") or ";"
 
 
-def _is_engine(version: str) -> bool:
+def is_engine(version: str) -> bool:
     """A release line such as 4.9, also one between those that the catalog was held against."""
     known = _RELEASE_LINE.fullmatch(version) is not None
     return known and at_least(version, VERSIONS[0]) and at_least(VERSIONS[-1], version)
@@ -277,6 +276,7 @@ def _syntax_problem(text: str, error: Exception) -> ProjectProblem:
 # ---- patterns ----
 
 _BTQ_TABLE = re.compile(r"""(?m)^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*["']?btq["']?[ \t]*[].]""")
+SUPPORTED = f"btq supports {VERSIONS[0]} to {VERSIONS[-1]}"
 _RELEASE_LINE = re.compile(r"4\.(0|[1-9][0-9]?)")
 _DIGITS = re.compile(r"\d+")
 

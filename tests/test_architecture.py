@@ -69,6 +69,7 @@ ROWS: tuple[frozenset[str], ...] = (
         | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph", "findings"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace", "evidence"}),
+    frozenset({"building"}),
     frozenset({"watch", "shell", "failures", "commands", "preview"}),
     frozenset({"session", "convert", "editor", "protocol", "handlers"}),
     frozenset({"cli", "__main__", "server"}),
@@ -80,8 +81,8 @@ READS_LOGS = PACKAGE / "evidence" / "readers"
 READS_SIBLINGS = {
     "checks": frozenset({"btcpp"}),  # whether a build enforces what it is asked to
     "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
-    # how wide a text is on a terminal, and its colours; a page shows verdicts
-    "trace": frozenset({"render", "evidence"}),
+    # how wide a text is on a terminal, and its colours; a page shows verdicts; what is enforced is what a build does
+    "trace": frozenset({"render", "evidence", "btcpp", "checks"}),
     "evidence": frozenset({"btcpp", "render"}),  # which trees a build makes; the same of a text as for the trace
 }
 PROTOCOL = frozenset({"pygls", "lsprotocol"})

@@ -20,11 +20,11 @@ from chromium import ARTIFACTS, CHROMIUM, FLAGS
 from missions import mission
 
 from btq_lang.btcpp.opening import open_workspace
-from btq_lang.commands.tracing import built_ways
 from btq_lang.graph import DIRECTIONS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
+from btq_lang.trace.missions import built_ways
 from btq_lang.trace.overview import Overview
 from btq_lang.workspace import Workspace
 

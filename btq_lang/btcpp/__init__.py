@@ -11,6 +11,8 @@ enforcement what requirements put around nodes, and how each clause is held; `ju
             `guards` what it needs, `around` that as data, `conditions` its scripts, `keys` its names, `wrappers` the
             elements, in and out again
 bundle      a mission and all that it includes as one document
+outputs     the texts that a build writes; `as_built` finds the mission of such texts again
+opening     files as they are on the disk, XML too, as a workspace
 side_file   what a mission says beyond its XML; `instances` numbers the nodes as the engine does
 restoring   a mission from its XML and its side file
 marks       what a build puts into the XML so that an import knows it

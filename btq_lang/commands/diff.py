@@ -8,10 +8,11 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Collection, Iterator
 
+from btq_lang.btcpp.as_built import Built, as_built
 from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_generated, is_mission
 from btq_lang.btcpp.undeclared import made_models
-from btq_lang.commands.as_built import Built, Disk, as_built
+from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Change, Place, as_json, as_markdown, as_text

@@ -57,15 +57,14 @@ def _markdown(judged: Judged) -> str:
 
 
 def _html(judged: Judged) -> str:
-    from btq_lang.commands.tracing import overview_of
+    from btq_lang.trace.missions import trace_tables
     from btq_lang.trace.page import page
     from btq_lang.trace.verdicts import outcomes
 
     found = judged.report.missions
     files = {mission.file for mission in found}
     parts = [(each.workspace, [each.path]) for each in judged.missions if each.path in files]
-    overview, _ = overview_of(parts, said_of=outcomes(found))
-    return page(overview, found)
+    return page(trace_tables(parts, said_of=outcomes(found)).overview, found)
 
 
 WRITERS: Final[dict[str, Callable[[Judged], str]]] = {

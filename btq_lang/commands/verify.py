@@ -10,10 +10,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from glob import glob
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.btcpp.as_built import as_built
 from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, side_path, xml_path
 from btq_lang.checks import check
-from btq_lang.commands.as_built import Disk, as_built
+from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.commands.progress import Progress

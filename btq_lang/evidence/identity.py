@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.btcpp.enforcement import enforced
-from btq_lang.btcpp.export import export, is_mission
+from btq_lang.btcpp.export import is_mission
+from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.kinds import VERSIONS
@@ -182,14 +182,12 @@ def _builds(mission: Candidate) -> Iterator[Build]:
 def _running(mission: Candidate, workspace: Workspace, is_enforced: bool) -> RunningTree | None:
     """The tree that runs, as `btq build` writes it; None where the mission cannot be built."""
     path = mission.path
-    exports = [export(workspace, each) for each in workspace.closure(path)]
+    exports = [
+        as_xml(workspace, each, enforce=is_enforced and is_mission(workspace, each)).export
+        for each in workspace.closure(path)
+    ]
     if any(each.problems for each in exports):
         return None
-    if is_enforced:
-        exports = [
-            enforced(workspace, file, each).export if is_mission(workspace, file) else each
-            for file, each in zip(workspace.closure(path), exports, strict=True)
-        ]
     elements = {key: element for each in exports for key, element in each.elements.items()}
     documents = tuple(each.document for each in exports)
     main = documents[-1].root.get("main_tree_to_execute")

@@ -43,13 +43,12 @@ def register(server: Server) -> None:
         """What `btq build` would write for a document as it is now, saved or not."""
         workspace, path = mission(document)
         from btq_lang.btcpp.document import write  # not needed by most sessions, and large
-        from btq_lang.btcpp.enforcement import enforced
-        from btq_lang.btcpp.export import export
+        from btq_lang.btcpp.outputs import as_xml
 
-        done = export(workspace, path)
+        done = as_xml(workspace, path).export
         for problem in done.problems:
             raise Refused(f"cannot write this as XML: {problem.message}")
-        return write(enforced(workspace, path, done).export.document)
+        return write(done.document)
 
     @server.command(PICTURE)
     def picture(document: types.TextDocumentIdentifier, *folded: str) -> dict[str, object]:
@@ -65,10 +64,9 @@ def register(server: Server) -> None:
     def overview(document: types.TextDocumentIdentifier) -> str:
         """The page that `btq trace --format html` writes of a document as it is now, saved or not."""
         workspace, path = mission(document)
-        from btq_lang.commands.tracing import overview_of  # as above
-        from btq_lang.trace import write as write_overview
+        from btq_lang.trace.missions import trace_table  # as above
 
-        return write_overview(overview_of([(workspace, (path,))])[0], "html")
+        return trace_table(workspace, path).write("html")
 
     @server.command(BUILD)
     def build(document: types.TextDocumentIdentifier) -> dict[str, object]:

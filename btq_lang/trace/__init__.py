@@ -5,6 +5,7 @@ One invariant: everything is said once, in a row with a key, and the same missio
     overview.py    the rows
     collect.py     a workspace as an overview
     ways.py        how clauses are held
+    missions.py    how they are held in what is built, and all of it in one call
     meanings.py    what quality names mean
     verdicts.py    what the page shows of verdicts
     table.py, csv_rows.py, json_document.py, markdown.py, page.py   the writers

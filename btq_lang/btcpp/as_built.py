@@ -14,11 +14,10 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.commands.files import Files
 from btq_lang.file import File
-from btq_lang.loader import absolute, find_project, read, shown
+from btq_lang.loader import absolute, shown
 from btq_lang.parser import parse
-from btq_lang.project import include_candidates
+from btq_lang.project import Project, include_candidates
 from btq_lang.record import Record
 from btq_lang.syntax import Include
 from btq_lang.workspace import Workspace
@@ -34,25 +33,11 @@ if TYPE_CHECKING:
         def text(self, path: str) -> str | None:
             """What it says; None where it cannot be read."""
 
+        def project(self, path: str) -> Project:
+            """The project of a file."""
+
         def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
             """A file with all that it includes, where the known texts count instead of those there."""
-
-
-class Disk:
-    """The files as they are now."""
-
-    def is_file(self, path: str) -> bool:
-        return os.path.isfile(path)
-
-    def text(self, path: str) -> str | None:
-        return read(path)[0]
-
-    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
-        files = Files()
-        files.overlay.update(known)
-        groups, problems = files.groups(known)
-        group = next((group for group in groups if path in group.given), None)
-        return None if problems or group is None else group.workspace
 
 
 class Built(Record):
@@ -155,7 +140,7 @@ def _missing(made: _Made, xml: str, place: str, source: Source) -> Iterator[tupl
     includes = tuple(_includes(made.text)) if place.endswith(".btq") else ()
     if len(includes) != len(made.includes):
         return
-    project = find_project(place).project
+    project = source.project(place)
     for said, named in zip(includes, made.includes, strict=True):
         if said is None or named is None:
             continue

@@ -1,0 +1,165 @@
+"""The texts that `btq build` writes: of each mission its XML, and its side file where it says more than that.
+
+One invariant: the disk is not known here; the same workspace and the same places give the same texts.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterator, Sequence
+
+from btq_lang.btcpp.bundle import bundle
+from btq_lang.btcpp.document import Comment, Document, write
+from btq_lang.btcpp.enforcement import Enforcement, enforced
+from btq_lang.btcpp.export import Export, IncludedAs, export, is_mission, xml_name
+from btq_lang.btcpp.marks import generated_mark
+from btq_lang.btcpp.side_file import Built, side_file
+from btq_lang.record import Record
+from btq_lang.syntax import Tree
+from btq_lang.workspace import Workspace
+
+
+class Output(Record):
+    """A mission as it is written.
+
+    Attributes:
+        path: of the mission.
+        place: of its XML.
+        done: the document, and how its requirements are held.
+        text: the XML; empty where `done.export` has problems.
+        side: the side file; None where the XML says everything.
+    """
+
+    path: str
+    place: str
+    done: Enforcement
+    text: str
+    side: str | None
+
+
+class Places:
+    """Where the XML of each file is put: beside it, or below a folder, in the places that the files have below the
+    folder that holds them all."""
+
+    def __init__(self, folder: str | None = None, sources: Sequence[str] = ()) -> None:
+        """folder: absolute; None: beside the files; sources: all files that are built."""
+        self._folder = folder
+        self._above = posixpath.commonpath([posixpath.dirname(each) for each in sources]) if folder and sources else ""
+
+    def of(self, source: str) -> str:
+        """The place of the XML of one of the files."""
+        if self._folder is None:
+            return xml_name(source)
+        return posixpath.normpath(posixpath.join(self._folder, posixpath.relpath(xml_name(source), self._above)))
+
+    def seen_from(self, source: str, included: str, workspace: Workspace) -> str:
+        """How the XML of `source` names an included file: that made from it, or an XML file where it is."""
+        place = self.of(included) if is_mission(workspace, included) else included
+        return posixpath.relpath(place, posixpath.dirname(self.of(source)) or ".")
+
+
+def outputs(
+    workspace: Workspace,
+    given: Sequence[str],
+    places: Places,
+    *,
+    bundled: bool = False,
+    verbatim: bool = False,
+    enforce: bool = True,
+) -> tuple[Output, ...]:
+    """What a build writes of missions: of the files that were asked for and of all that they include, or of each
+    mission one file with all of it.
+
+    Args:
+        given: the files that were asked for.
+        bundled: all that a mission includes is in its file.
+        verbatim: exactly what the files say, without side files.
+        enforce: put nodes around others that enforce requirements.
+    """
+
+    def made(path: str) -> Enforcement:
+        return as_xml(
+            workspace,
+            path,
+            bundled=bundled,
+            verbatim=verbatim,
+            enforce=enforce,
+            included_as=lambda to: places.seen_from(path, to, workspace),
+        )
+
+    exports = {path: made(path) for path in (missions(workspace, given) if bundled else sources(workspace, given))}
+    if any(done.export.problems for done in exports.values()):
+        return tuple(Output(path, places.of(path), done, "", None) for path, done in exports.items())
+    found = []
+    for path, done in exports.items():
+        place, text = places.of(path), _text(path, done.export.document, verbatim)
+        side = None if verbatim else _side_text(workspace, path, place, text, exports, bundled)
+        found.append(Output(path, place, done, text, side))
+    return tuple(found)
+
+
+def as_xml(
+    workspace: Workspace,
+    path: str,
+    *,
+    bundled: bool = False,
+    verbatim: bool = False,
+    enforce: bool = True,
+    included_as: IncludedAs | None = None,
+) -> Enforcement:
+    """A file as a build writes it; what enforces requirements is left out where the file cannot be written.
+
+    Args:
+        bundled, verbatim, enforce: as of `outputs`.
+        included_as: as of `export`; of no bundle.
+    """
+    if bundled:
+        done = bundle(workspace, path, verbatim=verbatim)
+    else:
+        done = export(workspace, path, verbatim=verbatim, included_as=included_as)
+    if verbatim or not enforce or done.problems:
+        return Enforcement(done, ())
+    return enforced(workspace, path, done, bundled)
+
+
+def sources(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
+    """The files that were asked for, and all that they include, without XML."""
+    found = dict.fromkeys(given)
+    for path in given:
+        found.update(dict.fromkeys(workspace.closure(path)))
+    return tuple(path for path in found if is_mission(workspace, path))
+
+
+def missions(workspace: Workspace, given: Sequence[str]) -> tuple[str, ...]:
+    """The files that were asked for and that no file includes; all that were asked for, where there are none."""
+    included = workspace.included_files
+    return tuple(path for path in given if path not in included) or tuple(given)
+
+
+def without_tree(workspace: Workspace, given: Sequence[str]) -> Iterator[str]:
+    """The files that were asked for, have no tree, and declare nothing that another file could use."""
+    for path in given:
+        if path in workspace.included_files or not is_mission(workspace, path) or workspace.defined_in(path):
+            continue
+        entries = (entry for each in workspace.closure(path) for entry in workspace.files[each].parsed.entries)
+        if not any(isinstance(entry.item, Tree) for entry in entries):  # a lone one needs no name
+            yield path
+
+
+def _text(path: str, document: Document, verbatim: bool) -> str:
+    if verbatim:
+        return write(document)
+    return write(Document([Comment(generated_mark(posixpath.basename(path))), *document.contents]))
+
+
+def _side_text(
+    workspace: Workspace, path: str, place: str, text: str, exports: dict[str, Enforcement], bundled: bool
+) -> str | None:
+    parts: tuple[Export, ...] = (exports[path].export,)
+    if not bundled:  # XML that it includes is read as this language says it
+        parts = tuple(
+            exports[each].export if each in exports else export(workspace, each) for each in workspace.closure(path)
+        )
+    elements = {key: element for part in parts for key, element in part.elements.items()}
+    documents = tuple(part.document for part in parts)
+    return side_file(workspace, Built(path, place, text, documents, elements, exports[path].held))

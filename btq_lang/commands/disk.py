@@ -1,0 +1,30 @@
+"""The disk, for whoever compares what is there with another revision."""
+
+from __future__ import annotations
+
+import os
+
+from btq_lang.commands.files import Files
+from btq_lang.loader import find_project, read
+from btq_lang.project import Project
+from btq_lang.workspace import Workspace
+
+
+class Disk:
+    """The files as they are now."""
+
+    def is_file(self, path: str) -> bool:
+        return os.path.isfile(path)
+
+    def text(self, path: str) -> str | None:
+        return read(path)[0]
+
+    def project(self, path: str) -> Project:
+        return find_project(path).project
+
+    def workspace(self, path: str, known: dict[str, str]) -> Workspace | None:
+        files = Files()
+        files.overlay.update(known)
+        groups, problems = files.groups(known)
+        group = next((group for group in groups if path in group.given), None)
+        return None if problems or group is None else group.workspace

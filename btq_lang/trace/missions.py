@@ -1,0 +1,109 @@
+"""The overview of missions as they are built: what the engine enforces of their requirements counts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang.btcpp.export import is_mission
+from btq_lang.btcpp.outputs import as_xml
+from btq_lang.checks import check
+from btq_lang.loader import shown
+from btq_lang.record import Record
+from btq_lang.requirements import Requirements
+from btq_lang.rules import Severity
+from btq_lang.trace import write
+from btq_lang.trace.collect import collect
+from btq_lang.trace.overview import Clause, Overview
+from btq_lang.trace.ways import declared_ways
+from btq_lang.workspace import Workspace
+
+if TYPE_CHECKING:
+    from btq_lang.trace.collect import SaidOf
+
+
+class TraceTable(Record):
+    """What `btq trace` shows.
+
+    Attributes:
+        overview: the rows: requirements, qualities, nodes, trees, and totals.
+        errors: how many errors the missions have; where there are any, something may be missing.
+    """
+
+    overview: Overview
+    errors: int
+
+    def write(self, form: str = "table", *, colour: bool = False, width: int = 120) -> str:
+        """The table as a text.
+
+        Args:
+            form: `table`, `csv`, `json`, `markdown` or `html`.
+            colour: ANSI colours, for `table`.
+            width: the columns of the terminal, for `table`.
+
+        Raises:
+            ValueError: there is no such format.
+        """
+        return write(self.overview, form, colour=colour, width=width)
+
+
+def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> TraceTable:
+    """Which requirements hold for which nodes, how they are enforced, and what is missing.
+
+        >>> from btq_lang import Workspace, trace_table
+        >>> text = 'Requirement rq1 "In time"\\n    takes at most 30 s\\nTree Main\\n    Dock satisfies rq1\\n'
+        >>> table = trace_table(Workspace.of({"main.btq": text}), "main.btq")
+        >>> [(row.name, row.way) for row in table.overview.requirements]
+        [('rq1', 'monitored')]
+
+    Args:
+        paths: the missions in the workspace, each with all that it includes; none: all files.
+        bundle: what is enforced when each mission is built with all that it includes in one file.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    return trace_tables([(workspace, paths or tuple(workspace.files))], bundle)
+
+
+def trace_tables(
+    parts: Sequence[tuple[Workspace, Sequence[str]]], bundled: bool = False, said_of: SaidOf | None = None
+) -> TraceTable:
+    """The table of the missions of several workspaces.
+
+    Args:
+        parts: workspaces, each with the paths of it that are asked for.
+        bundled: they are built with all that they include.
+        said_of: what the boxes of nodes show beside, as `collect` takes it.
+    """
+    errors = {path: number for workspace, given in parts for path, number in _errors(workspace, given)}
+    broken = frozenset(path for path, number in errors.items() if number)
+
+    def ways(workspace: Workspace, path: str, found: Requirements) -> Sequence[Sequence[Clause]]:
+        if not broken.isdisjoint(workspace.closure(path)):
+            return declared_ways(workspace, path, found, "btq build writes nothing for a mission with errors")
+        is_built = is_mission(workspace, path)
+        return built_ways(workspace, path, found, bundled) if is_built else declared_ways(workspace, path, found)
+
+    return TraceTable(collect(parts, ways, shown, said_of), sum(errors.values()))
+
+
+def built_ways(
+    workspace: Workspace, path: str, found: Requirements, bundled: bool = False
+) -> Sequence[Sequence[Clause]]:
+    """How clauses are held by what `btq build` makes of a mission; where it makes nothing, as they are declared."""
+    declared = declared_ways(workspace, path, found)
+    held = as_xml(workspace, path, bundled=bundled).held
+    if not held:
+        return declared
+    # A requirement without measurable clauses has none that is held.
+    return [
+        tuple(Clause(each.clause, each.way, each.why, each.asked) for each in clauses) or said
+        for clauses, said in zip(held, declared, strict=True)
+    ]
+
+
+def _errors(workspace: Workspace, given: Sequence[str]) -> list[tuple[str, int]]:
+    """How many errors each file has, those that are included too."""
+    paths = dict.fromkeys(path for each in given for path in workspace.closure(each))
+    return [(path, sum(each.effective_severity is Severity.ERROR for each in check(workspace, path))) for path in paths]
