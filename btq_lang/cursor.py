@@ -88,12 +88,6 @@ class Cursor:
     def _line_end(self) -> int:
         return self.starts[-1] + len(self.raws[-1])
 
-    def open_next(self, position: int) -> None:
-        """Open the line behind those that were read without tokens, up to `position`."""
-        self._in_wake = False
-        self.lexer.position = position
-        self.more = self.lexer.open_line()
-
     def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
         self.skip_last_sign()

@@ -18,7 +18,6 @@ from typing import Final, TypeAlias
 from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import (
-    COMPILED,
     blanks_end,
     braced_end,
     line_end,
@@ -55,10 +54,6 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
-
-if not COMPILED:
-    from btq_lang.patterns import read_tokens
-
 
 State: TypeAlias = "tuple[tuple[str, ...], tuple[tuple[str, ...], ...], int]"
 
@@ -131,15 +126,6 @@ class Lexer:
         if blanks != self.columns[-1]:
             self._indent(blanks)
         return True
-
-    def open_behind(self, position: int) -> bool:
-        """Open the next line as `open_line` does; somebody else read up to `position`, and has opened and closed the
-        blocks in `columns`."""
-        del self._aliases[1:]
-        self._aliases += [()] * (len(self.columns) - 1)
-        self.level = len(self.columns) - 1
-        self.position = position
-        return self.open_line()
 
     def state(self) -> State | None:
         """The blanks of the open blocks, what was taken for them, and the level of an open Root's items, where they and
@@ -215,10 +201,6 @@ class Lexer:
         position = self.position
         text, size = self.text, self.size
         while position < size:
-            if not COMPILED:
-                position = read_tokens(text, position, self.kinds, self.starts, self.raws)
-                if position == size:
-                    break
             character = text[position]
             if character == " " or character == "\t":
                 position += 1

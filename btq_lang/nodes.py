@@ -10,14 +10,11 @@ from typing import Final
 
 from btq_lang.attributes import AttributeParser, meant_clause
 from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
-from btq_lang.characters import SMALL_S, SMALL_T
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.plain import plain_clauses, plain_node
-from btq_lang.plain_requirements import plain_clause_line, plain_requirement
-from btq_lang.scan import COMPILED, line_end, line_start
+from btq_lang.scan import line_end, line_start
 from btq_lang.slips import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax import (
     Node,
@@ -50,9 +47,6 @@ from btq_lang.tokens import (
 )
 from btq_lang.words import unquote
 
-if not COMPILED:
-    from btq_lang.lines import read_lines
-
 
 class NodeParser(AttributeParser):
     """A cursor that can read the block of a tree."""
@@ -68,59 +62,37 @@ class NodeParser(AttributeParser):
         block = Block(level, None)
         blocks = [block]
         told_too_deep = False
-        stopped = -1  # the line that is spelt in another way than `read_lines` knows
         while self.more and lexer.level > level:
             inner = lexer.level
             while block.level >= inner:
                 blocks.pop().close()
                 block = blocks[-1]
-            if not (COMPILED or lexer.line_start == stopped or lexer.ended_early or lexer.adopted):
-                behind, node = read_lines(lexer, blocks, self.base)
-                if behind >= 0:
-                    block = blocks[-1]
-                    inner = len(lexer.columns) - 1
-                    self.more = lexer.open_behind(behind)
-                    if node is None:
-                        self.no_block(inner)
-                    elif self.more and lexer.level > inner:
-                        block = Block(inner, node)
-                        blocks.append(block)
-                    stopped = lexer.line_start
-                    continue
             node = None
-            if not block.children and (clauses := self.plain_node_clauses(inner)):
-                block.clauses += clauses
-                continue
-            if not lexer.ended_early and len(blocks) <= MAX_DEPTH:
-                node, behind = plain_node(self.text, lexer.position, lexer.blanks, self.base)
-            if node is not None:
-                self.open_next(behind)
+            self.scan()
+            word = self.raw if self.kind == NAME else ""
+            if word in NODE_CLAUSES:
+                if len(blocks) > 1 or block.has_nodes():
+                    block.clauses += self.clause_line_behind(inner, block.children)
+                else:  # the tree's own: XML may stand before it, as it may among ports
+                    block.clauses += self.clause_line(inner)
+            elif word == "QualityReq" and self.is_requirement():
+                block.clauses.append(self.requirement_line(inner))
+            elif word == "xml":
+                block.children.append(self.verbatim())
+                self.no_block(inner)
+            elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
+                if block.clauses:
+                    self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
+                ports.append(self.port())
+                self.no_block(inner)
             else:
-                self.scan()
-                word = self.raw if self.kind == NAME else ""
-                if word in NODE_CLAUSES:
-                    if len(blocks) > 1 or block.has_nodes():
-                        block.clauses += self.clause_line_behind(inner, block.children)
-                    else:  # the tree's own: XML may stand before it, as it may among ports
-                        block.clauses += self.clause_line(inner)
-                elif word == "QualityReq" and self.is_requirement():
-                    block.clauses.append(self.requirement_line(inner))
-                elif word == "xml":
-                    block.children.append(self.verbatim())
-                    self.no_block(inner)
-                elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
-                    if block.clauses:
-                        self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
-                    ports.append(self.port())
-                    self.no_block(inner)
-                else:
-                    if len(blocks) > MAX_DEPTH:
-                        if not told_too_deep:
-                            told_too_deep = True
-                            self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
-                        blocks.pop().close()
-                        block = blocks[-1]
-                    node = self.node(inner)
+                if len(blocks) > MAX_DEPTH:
+                    if not told_too_deep:
+                        told_too_deep = True
+                        self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
+                    blocks.pop().close()
+                    block = blocks[-1]
+                node = self.node(inner)
             if node is not None:
                 block.children.append(node)
                 if self.more and lexer.level > inner:
@@ -338,54 +310,25 @@ class NodeParser(AttributeParser):
     def at_label(self) -> bool:
         return self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES)
 
-    def clause_line(self, level: int, moved: bool = False) -> list[NodeClause]:
-        """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem
-
-        Args:
-            moved: it stands where it should not, so where it ends must be known to the token.
-        """
+    def clause_line(self, level: int) -> list[NodeClause]:
+        """NodeClause { NodeClause } NL | "satisfies" { ReqUse "," } ReqItem"""
         found: list[NodeClause] = []
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             found.append(self.node_clause())
         self.end_line()
         last = found[-1]
         if isinstance(last, Satisfies) and last.uses and isinstance(use := last.uses[-1], Requirement):
-            requirement = self.clause_block(use, level, plain=not moved)
+            requirement = self.clause_block(use, level)
             found[-1] = Satisfies(last.start, requirement.end, (*last.uses[:-1], requirement))
         self.no_block(level)
         return found
-
-    def plain_node_clauses(self, level: int) -> list[NodeClause] | None:
-        """NodeClause { NodeClause } NL | "satisfies" ReqItem, the head of it plain"""
-        start = self.lexer.position
-        if ord(self.text[start]) not in (SMALL_S, SMALL_T):  # rules out most lines at no cost
-            return None
-        found: list[NodeClause] | None
-        if self.text.startswith("satisfies QualityReq ", start):
-            requirement = self.plain_req_item(start + len("satisfies "), level)
-            found = None if requirement is None else [Satisfies(start - self.base, requirement.end, (requirement,))]
-        else:
-            found, behind = plain_clauses(self.text, start, self.base)
-            if found is not None:
-                self.open_next(behind)
-        if found is not None:
-            self.no_block(level)
-        return found
-
-    def plain_req_item(self, start: int, level: int) -> Requirement | None:
-        """ReqItem, the head of it plain"""
-        if self.lexer.ended_early or (head := plain_requirement(self.text, start, self.base)) is None:
-            return None
-        requirement, behind = head
-        self.open_next(behind)
-        return self.clause_block(requirement, level)
 
     def clause_line_behind(self, level: int, children: list[Node | Verbatim]) -> list[NodeClause]:
         """A clause line in the block of a node; behind children, where it should not stand, it is reported."""
         start = self.lexer.line_start
         at = self.here()
         word = self.raw
-        found = self.clause_line(level, moved=bool(children))
+        found = self.clause_line(level)
         if children:
             end = self.starts[-1] + len(self.raws[-1])
             moved = self.text[start:end]
@@ -424,23 +367,15 @@ class NodeParser(AttributeParser):
         self.no_block(level)
         return Satisfies(requirement.start, requirement.end, (requirement,))
 
-    def clause_block(self, requirement: Requirement, level: int, plain: bool = True) -> Requirement:
+    def clause_block(self, requirement: Requirement, level: int) -> Requirement:
         """[ INDENT { Clause { Clause } NL } DEDENT ]"""
         clauses = list(requirement.clauses)
         end = requirement.end
         while self.deeper(level):
             inner = self.lexer.level
-            line = None
-            if plain and not self.lexer.ended_early:
-                line = plain_clause_line(self.text, self.lexer.position, self.base)
-            if line is not None:
-                found, end, behind = line
-                clauses += found
-                self.open_next(behind)
-            else:
-                self.scan()
-                clauses += self.clauses(at_least_one=True)
-                end = self.end_line()
+            self.scan()
+            clauses += self.clauses(at_least_one=True)
+            end = self.end_line()
             self.no_block(inner)
         if end == requirement.end:
             return requirement

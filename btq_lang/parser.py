@@ -17,10 +17,8 @@ from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.garbage import NotCollecting
 from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.nodes import NodeParser
-from btq_lang.plain import plain_head
-from btq_lang.plain_models import plain_model, plain_port
 from btq_lang.record import replace
-from btq_lang.scan import COMPILED, blanks_end, is_name, is_unit, line_end, name_end, number_end, path_end
+from btq_lang.scan import blanks_end, is_name, is_unit, line_end, name_end, number_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -62,9 +60,6 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
-
-if not COMPILED:
-    from btq_lang.patterns import expect
 
 if TYPE_CHECKING:
     from btq_lang.lexer import State
@@ -183,8 +178,6 @@ class Parser(NodeParser):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        if not COMPILED:
-            expect(len(text))
         self.entries: list[Entry] = []
         self.begun: list[Start | None] = []
         self.has_met = False
@@ -235,10 +228,6 @@ class Parser(NodeParser):
         """Item = Include | Qualities | QualityDecl | Models | Model | Signal | Context | ReqItem | Apply | Root | …"""
         self.base = self.lexer.line_start
         found_at = self.lexer.level
-        if found_at == level and (plain := self.plain_item(found_at)):
-            self.stray_level = -1
-            self.entry(plain, in_root)
-            return
         self.scan()
         if found_at > level and found_at != self.stray_level:
             self.complain("syntax-error", self.here(), "unexpected indentation: no block is open above this line")
@@ -416,11 +405,6 @@ class Parser(NodeParser):
         body: list[Port | Meta | Verbatim] = []
         while self.deeper(level):
             inner = self.lexer.level
-            if not self.lexer.ended_early and (line := plain_port(self.text, self.lexer.position, self.base)):
-                body.append(line[0])
-                self.open_next(line[1])
-                self.no_block(inner)
-                continue
             self.scan()
             if self.kind == NAME and self.raw in DIRECTIONS:
                 body.append(self.port())
@@ -605,26 +589,6 @@ class Parser(NodeParser):
         end = self.end_line()
         ports, clauses, children = self.tree_block(level)
         return Tree(start, end, name, attributes, ports, clauses, children)
-
-    def plain_item(self, level: int) -> Tree | Model | Requirement | None:
-        """A tree or a model whose first line says its name and nothing else, or a requirement whose first line is
-        plain"""
-        lexer = self.lexer
-        start = lexer.position
-        if self.text.startswith("QualityReq ", start):
-            return self.plain_req_item(start, level)
-        if lexer.ended_early:
-            return None
-        name, behind = plain_head(self.text, start, self.base)
-        if name is not None:
-            self.open_next(behind)
-            ports, clauses, children = self.tree_block(level)
-            return Tree(start - self.base, name.end, name, (), ports, clauses, children)
-        if (model := plain_model(self.text, start, self.base)) is None:
-            return None
-        category, id_, behind = model
-        self.open_next(behind)
-        return Model(category.start, id_.end, category, id_, (), None, self.model_block(level))
 
     def skipped(self, level: int) -> Skipped:
         """Lines that begin no item: the first is reported, all of them and their blocks are passed over."""

@@ -37,8 +37,6 @@ from btq_lang.units import parse_unit
 if TYPE_CHECKING:
     from mypy_extensions import i64
 
-COMPILED: Final = not __file__.endswith(".py")
-
 
 def name_end(text: str, start: i64) -> i64:
     """The end of the NAME that begins at `start`, which is a letter or `_`."""
@@ -62,12 +60,6 @@ def is_name(text: str) -> bool:
 
 def word_end(text: str, start: i64, size: i64) -> i64:
     """Behind letters, digits and `_`."""
-    if not COMPILED:  # the interpreter passes the usual ones in one step
-        piece = text[start : start + _USUAL_WORD]
-        rest = piece.lstrip(_OF_WORDS)
-        start += len(piece) - len(rest)
-        if rest and rest.isascii():
-            return start
     while start < size:
         code: i64 = ord(text[start])
         if (code < SMALL_A or code > SMALL_Z) and not goes_on(code):  # nearly all are small letters
@@ -94,11 +86,6 @@ def line_opening(text: str, start: i64, likely: str) -> tuple[i64, i64]:
         likely: blanks with which the line probably begins, for most begin as the one before.
     """
     size: i64 = len(text)
-    if not COMPILED:  # as `word_end`
-        piece = text[start : start + _USUAL_LINE]
-        rest = piece.lstrip(" \t")
-        if rest and rest[0] not in "\r\n":
-            return start, start + len(piece) - len(rest)
     width: i64 = len(likely)
     at = start + width if text[start : start + width] == likely else start
     while at < size:
@@ -290,8 +277,6 @@ def unit_run(text: str, start: i64) -> i64:
     return end
 
 
-_USUAL_WORD: Final = 40
-_OF_WORDS: Final = "etaoinsrhldcumfpgwybvkxjqzETAOINSRHLDCUMFPGWYBVKXJQZ_0123456789"
 _USUAL_LINE: Final = 200  # characters that a comment seldom has
 _PATH: Final = re.compile(r"[^\s()\"']*")
 _BY_FIRST: Final = {

@@ -9,11 +9,7 @@ from __future__ import annotations
 import re
 
 from btq_lang.lexer import Lexer
-from btq_lang.scan import COMPILED
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, Token
-
-if not COMPILED:
-    from btq_lang.patterns import read_pieces
 
 
 def tokens(text: str) -> tuple[Token, ...]:
@@ -41,8 +37,6 @@ def tokens(text: str) -> tuple[Token, ...]:
 def pieces(text: str) -> list[tuple[int, int, str]]:
     """Kind, start and text of all tokens but brackets, line ends, blanks and what begins nothing: a third of
     what `tokens` has, and quickly."""
-    if not COMPILED and (usual := read_pieces(text)) is not None:
-        return usual
     lexer = Lexer(text)
     comments = lexer.comments
     found: list[tuple[int, int, str]] = []

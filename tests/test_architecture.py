@@ -42,11 +42,6 @@ ROWS: tuple[frozenset[str], ...] = (
             "attributes",
             "nodes",
             "blocks",
-            "lines",
-            "patterns",
-            "plain",
-            "plain_models",
-            "plain_requirements",
         }
         | {"item_words", "parser", "comments", "script"}
     ),

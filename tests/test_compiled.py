@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 from missions import mission
 from rule_pages import blocks
-from test_plain import CLASSIC, EXAMPLES, SHORT, torn
+from torn_texts import CLASSIC, EXAMPLES, SHORT, torn
 
 ROOT = Path(__file__).resolve().parents[1]
 

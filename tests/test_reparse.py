@@ -75,6 +75,62 @@ def test_after_any_edits_it_is_the_parse_of_the_text(text: str, seed: int) -> No
         assert same(parsed, parse(after)), (step, after)
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "text",
+    [EVERY_FORM, IN_ROOT, missions.mission(60, 3, "classic"), missions.mission(60, 3, "short")],
+    ids=["every form", "in a Root", "classic", "short"],
+)
+def test_after_edits_of_damaged_brackets_it_is_the_parse_of_the_text(text: str, seed: int) -> None:
+    """What ends brackets early is remembered on the lines that follow: a parse may not begin again among these."""
+    chance = random.Random(f"{seed}{text[:40]}")
+    damaged = text
+    for _ in range(chance.randint(1, 6)):
+        damaged = with_a_bracket_changed(damaged, chance)
+    parsed = parse(damaged)
+    for step in range(60):
+        after = with_a_bracket_changed(parsed.text, chance)
+        if chance.random() < 0.5:
+            at = chance.randrange(len(parsed.text) + 1)
+            after = parsed.text[:at] + chance.choice(PIECES) + parsed.text[at + chance.choice((0, 1, 4)) :]
+        if chance.random() < 0.15:
+            after = damaged
+        parsed = reparse(parsed, after)
+        assert same(parsed, parse(after)), (step, after)
+
+
+LINES = (
+    *(
+        "BehaviorTree A\n    X (a = 1\n",
+        "    X (a = (b)) c\n",
+        "    X satisfies (r) s t\n",
+        "        b = 2\n",
+        "    )\n",
+    ),
+    *("signal x (y) z\n", "signal z z\n", "signal s : %\n", "context c : (x\n", "QualityReq r (a : s\n", "Root (\n"),
+    *("Action A (b) c\n", "    input x (a = 1\n", "apply r(a = 1 to X\n", "Y\n", ")\n", "\n", "# remark\n"),
+)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_after_edits_of_wrong_lines_behind_open_brackets_it_is_the_parse_of_the_text(seed: int) -> None:
+    chance = random.Random(seed)
+    lines = chance.choices(LINES, k=chance.randint(3, 12))
+    parsed = parse("".join(lines))
+    for _ in range(20):
+        at = chance.randrange(len(lines) + 1)
+        lines[at : at + chance.randint(0, 1)] = chance.choices(LINES, k=chance.randint(0, 2))
+        parsed = reparse(parsed, "".join(lines))
+        assert same(parsed, parse(parsed.text)), parsed.text
+
+
+def with_a_bracket_changed(text: str, chance: random.Random) -> str:
+    """A bracket gone, put in, doubled, become the other one, or on a line of its own."""
+    there = [at for at, character in enumerate(text) if character in "()"]
+    at = chance.choice(there) if there and chance.random() < 0.7 else chance.randrange(len(text) + 1)
+    return text[:at] + chance.choice(("", "(", ")", "))", "\n)", "(\n    ", ")\n")) + text[at + (at in there) :]
+
+
 def test_an_item_that_an_edit_does_not_touch_is_the_same_object() -> None:
     text = missions.mission(200, 1, "short")
     before = parse(text)
