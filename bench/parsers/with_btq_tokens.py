@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
-from parsers.with_btq import FORM, VERSION, count
+from parsers import with_btq
+from parsers.with_btq import VERSION, count
 
-from btq_lang.parser import Parsed, parse
-
-__all__ = ["FORM", "VERSION", "count", "load"]
+__all__ = ["VERSION", "count", "load"]
 
 
-def load() -> Callable[[str], object]:
-    def parse_with_tokens(text: str) -> Parsed:
+def load() -> Callable[[str], Any]:
+    parse = with_btq.load()
+
+    def parse_with_tokens(text: str) -> Any:
         parsed = parse(text)
         assert parsed.tokens
         return parsed

@@ -15,7 +15,7 @@ Object.groupBy ??= (values, key) => {
 const LIBRARY = await load();
 
 if (LIBRARY === undefined) {
-    answer({ missing: 'run `npm install` in bench/peers/langium' });
+    answer({ missing: 'run `npm install` in bench/parsers/langium' });
 } else {
     const parse = await parser(process.argv[2] === 'mended');
     answer({ version: LIBRARY.version, form: process.argv[2] });
