@@ -46,7 +46,7 @@ def window_too_small(requirement: Requirement) -> Iterator[Found]:
     "The use of confidence or fiducial limits", Biometrika 26, 1934; one-sided).
     """
     odds, window, confidence = requirement.odds, requirement.window, requirement.confidence
-    if odds is None or window is None or window.count is None or confidence is None or not 0.0 < confidence < 1.0:
+    if odds is None or window is None or window.count is None or confidence is None:
         return
     needed = ceil(log(1.0 - confidence) / log(odds.probability)) if odds.probability < 1.0 else inf
     if needed <= window.count:

@@ -101,8 +101,7 @@ def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[Writte
         elif isinstance(clause, WrittenOdds):
             found["odds"] = _odds(reader, clause)
         elif isinstance(clause, Confidence):
-            share = reader.quantity(clause.value, _SHARE)
-            found["confidence"] = share.si if share is not None else None
+            found["confidence"] = _confidence(reader, clause)
         elif isinstance(clause, WrittenWindow):
             found["window"] = _window(reader, clause)
         elif isinstance(clause, OnViolation) and clause.action is not None:
@@ -250,6 +249,17 @@ def _odds(reader: Reader, written: WrittenOdds) -> Odds | None:
     text = reader.text(written.start, written.end)
     place = reader.place(TextSpan(written.start, written.end))
     return Odds(written.relation, share.si, "runs" if of_runs else "activations", text, place)
+
+
+def _confidence(reader: Reader, written: Confidence) -> float | None:
+    share = reader.quantity(written.value, _SHARE)
+    if share is None or written.value is None:
+        return None
+    if not 0.0 < share.si < 1.0:
+        message = f"expected a confidence above 0 and below 100 %, found `{written.value.raw}`"
+        reader.complain("impossible-odds", written.value.span, message)
+        return None
+    return share.si
 
 
 def _window(reader: Reader, written: WrittenWindow) -> Window | None:

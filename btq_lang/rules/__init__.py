@@ -148,7 +148,9 @@ _TABLE = (
     Rule("ambiguous-path", _E, "a path that matches several nodes"),
     Rule("wrong-argument", _E, "an argument that the requirement does not accept, or a missing one"),
     Rule("ambiguous-application", _E, "two values of one requirement for one node, and neither is more specific"),
-    Rule("impossible-odds", _E, "an impossible probability, or an impossible number of runs or activations"),
+    Rule(
+        "impossible-odds", _E, "an impossible probability or confidence, or an impossible number of runs or activations"
+    ),
     Rule("impossible-bound", _W, "a bound that nothing can keep, or nothing can violate"),
     Rule("uses-of-gauge", _W, "`uses` of a signal that is neither a counter nor a level"),
     Rule("requirement-without-subject", _W, "a clause that applies to no node"),
