@@ -116,3 +116,32 @@ def test_the_near_name_comes_before_the_declaration() -> None:
     (found,) = check(Workspace.of({"main.btq": text}), "main.btq")
     assert found.notes == ("or declare it: `signal batery : % from {batery}`",)
     assert [fix.title for fix in found.fixes] == ["Replace `batery` with `battery`"]
+
+
+@pytest.mark.parametrize(
+    ("subject", "clause", "of"),
+    [
+        ("from X starts to Y succeeds", "succeeds within 3 s", "the time from one event to another"),
+        ("from X starts to Y succeeds", "keeps speed <= 3 m/s", "the time from one event to another"),
+        ("sum of X, Y", "tries at most 3", "a sum of durations"),
+    ],
+)
+def test_what_only_a_node_can_do(subject: str, clause: str, of: str) -> None:
+    verb = clause.partition(" ")[0]
+    tree = 'BehaviorTree Main\n    ->\n        Action X\n        Action Y\n        Script (code = "@speed := 1.0")\n'
+    assert_problems(
+        f'{SPEED}QualityReq rq1 "t"\n    {subject} {clause}\n    X keeps speed <= 3 m/s\n{tree}',
+        f"3:5 warning requirement-without-subject «{subject} {clause}» "
+        f"`{verb}` is about a node, not about {of}, so nothing can check it",
+    )
+    assert_clean(f'{SPEED}QualityReq rq1 "t"\n    {subject} takes at most 3 s\n    X keeps speed <= 3 m/s\n{tree}')
+
+
+@pytest.mark.parametrize("confidence", ["0 %", "100 %", "120 %"])
+def test_a_confidence_that_no_number_of_runs_gives(confidence: str) -> None:
+    assert_problems(
+        'QualityReq rq1 "t"\n    X succeeds\n    in at least 90 % of runs\n'
+        f"    confidence {confidence}\nBehaviorTree Main\n    Action X\n",
+        f"4:16 error impossible-odds «{confidence}» "
+        f"expected a confidence above 0 and below 100 %, found `{confidence}`",
+    )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics import Diagnostic
+from btq_lang.requirements.model import Span, Total
 from btq_lang.syntax import Entry, Requirement
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
-    requirement is unused, and told for that."""
+    requirement is unused, and told for that.  And what only a node can do, of a time between events or of a sum."""
     found = view.look_up_in(_all_without_subject, id(entry.item))
     if found and view.is_read and not view.is_included:
         yield from found
@@ -38,17 +39,20 @@ def _all_without_subject(view: View) -> dict[int, list[Diagnostic]]:
         return {}
     found: dict[int, list[Diagnostic]] = {}
     for requirement in requirements.all.values():
-        if not isinstance(requirement.item, Requirement) or requirement.name in requirements.attached:
+        if not isinstance(requirement.item, Requirement):
             continue
-        if all(claim.subject is None for claim in requirement.claims):
-            continue
+        is_attached = requirement.name in requirements.attached
+        is_about_nothing = all(claim.subject is None for claim in requirement.claims)
         for claim in requirement.claims:
-            if claim.subject is None:
-                diagnostic = Diagnostic(
-                    "requirement-without-subject",
-                    claim.place.span,
-                    f"missing subject of `{claim.text}`",
-                    notes=("write a node before the verb, or attach the requirement to a node with `satisfies`",),
-                )
-                found.setdefault(id(requirement.item), []).append(diagnostic)
+            if isinstance(claim.subject, Span | Total) and claim.verb != "takes":
+                of = "the time from one event to another" if isinstance(claim.subject, Span) else "a sum of durations"
+                message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
+                note = "write `takes` after it, or a node before the verb"
+            elif claim.subject is None and not is_attached and not is_about_nothing:
+                message = f"missing subject of `{claim.text}`"
+                note = "write a node before the verb, or attach the requirement to a node with `satisfies`"
+            else:
+                continue
+            diagnostic = Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
+            found.setdefault(id(requirement.item), []).append(diagnostic)
     return found
