@@ -201,6 +201,7 @@ def test_rows_that_no_engine_writes_are_left_out_and_reported(verify: Verify) ->
         ("", COLUMNS),
         ("t\n1\n", COLUMNS),
         ("t;battery\n1;2\n", COLUMNS),
+        ("1.5,20\n2.5,19\n", f"line 1: {COLUMNS}, found the number `1.5`; write one above it: `t,battery`"),
         ("t\0,\0b\0\n\0", "expected text in UTF-8, found UTF-16 or no text"),
         ("t,a,a\n", "two columns are named `a`"),
         ("t,battery\n1,2\nnoon,3\n", "line 3: `noon` is not a time in seconds since the epoch"),

@@ -46,6 +46,8 @@ def read(path: str, time: str = "") -> dict[str, Series]:
                 names = [name.strip() for name in next(lines, [])]
                 if any("\0" in name for name in names):
                     raise NoSamples("expected text in UTF-8, found UTF-16 or no text")
+                if names and isinstance(_value(names[0]), float):
+                    raise NoSamples(f"line 1: {_NAMES}, found the number `{names[0]}`; write one above it: `t,battery`")
                 return _table(names, time, ((f"line {lines.line_num}", _values(row)) for row in lines if row))
             except csv.Error as error:
                 raise NoSamples(f"line {lines.line_num}: {error}") from error
@@ -56,9 +58,7 @@ def read(path: str, time: str = "") -> dict[str, Series]:
 def _table(names: list[str], time: str, rows: Iterable[tuple[str, Sequence[object]]]) -> dict[str, Series]:
     """The columns of a table; rows: each with where it is in the file."""
     if len(names) < 2:
-        raise NoSamples(
-            "expected a line of column names, separated by commas: the time first, then signals or their entries"
-        )
+        raise NoSamples(_NAMES)
     at = names.index(_known(time, names)) if time else 0
     others = [name for column, name in enumerate(names) if column != at]
     if twice := next((name for name in others if others.count(name) > 1), None):
@@ -133,4 +133,5 @@ def _value(cell: str) -> SampleValue | None:
         return cell or None
 
 
+_NAMES: Final = "expected a line of column names, separated by commas: the time first, then signals or their entries"
 _LATEST: Final = 9e12  # s since the epoch, in µs still 64 bits
