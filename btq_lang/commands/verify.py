@@ -31,7 +31,7 @@ from btq_lang.evidence.wording import period
 from btq_lang.loader import IS_SPECIAL, absolute, collect, find_project, is_special, read, shown
 from btq_lang.name_kinds import Kind
 from btq_lang.near import did_you_mean, near
-from btq_lang.record import Record
+from btq_lang.record import Record, replace
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import Severity
 from btq_lang.syntax import Signal
@@ -63,8 +63,10 @@ def run(options: Namespace) -> int:
         problems += (*report.problems, *_without_verdicts(report, options.mission), *_with_errors(report, missions))
         read_from = [(options.signals, each) for each in samples.values()]
         read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
-        for note in (*_ignored(options.signals, samples, missions), *_of_other_times(read_from, report)):
-            print(f"btq verify: {note}", file=sys.stderr)
+        remarks = (*_ignored(options.signals, samples, missions), *_of_other_times(read_from, report))
+        report = replace(report, remarks=remarks)
+        for remark in remarks if form != "table" else ():  # which has them
+            print(f"btq verify: {remark}", file=sys.stderr)
         for each in report.foreign:
             runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
             print(f"btq verify: {each.file}: {runs} {each.of}, not judged", file=sys.stderr)

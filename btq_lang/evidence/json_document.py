@@ -39,6 +39,7 @@ def json_text(report: Report) -> str:
         "version": VERSION,
         "runs": sum(mission.runs for mission in report.missions),
         "sources": sources,
+        "remarks": list(report.remarks),
         "missions": [_mission(mission) for mission in report.missions],
         "requirements": [
             _requirement(requirement, mission) for mission in report.missions for requirement in mission.requirements

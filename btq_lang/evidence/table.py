@@ -25,8 +25,9 @@ def table(report: Report, colour: bool = False, verbose: bool = False) -> str:
     """
     paint = painter(colour)
     lines: list[str] = []
-    for mission in report.missions:
-        lines += [*_heading(mission), "", *_rows(mission, paint, verbose), "", *_summary(mission), ""]
+    for index, mission in enumerate(report.missions):
+        notes = [printable(f"  note: {remark}") for remark in report.remarks] if index == 0 else []
+        lines += [*_heading(mission), *notes, "", *_rows(mission, paint, verbose), "", *_summary(mission), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 

@@ -302,11 +302,13 @@ class Report(Record):
     Attributes:
         missions: those that some log is of.
         problems: the files that could not be read, each with the reason.
+        remarks: what is to be known of the samples.
     """
 
     missions: tuple[MissionVerdicts, ...]
     foreign: tuple[Foreign, ...]
     problems: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def verdicts(self) -> frozenset[Verdict]:

@@ -332,18 +332,21 @@ def test_samples_of_another_time_than_the_runs(times: tuple[float, float], perio
     (robot.folder / "run.btlog").write_bytes(btlog(MAIN_XML, RUNS))
     lines = ["t,battery", *[f"{time},50" for time in times]]
     (robot.folder / "b.csv").write_text("\n".join(lines), encoding="utf-8")
-    told = (
-        f"btq verify: b.csv: its samples are from {period}, and the runs from 2026-11-20 21:22 UTC;"
-        " expected times in seconds since the epoch\n"
+    remark = (
+        f"b.csv: its samples are from {period}, and the runs from 2026-11-20 21:22 UTC;"
+        " expected times in seconds since the epoch"
     )
-    robot.text("run.btlog", "--signals", "b.csv")
+    told = f"btq verify: {remark}\n"
+    assert robot.json("run.btlog", "--signals", "b.csv")["remarks"] == [remark]
     assert robot.errors == told
+    assert robot.text("run.btlog", "--signals", "b.csv").splitlines()[1] == f"  note: {remark}"
+    assert robot.errors == ""
     table = '[evidence.signals]\nbattery = { file = "b.csv", column = "battery" }\n'
     (robot.folder / "btq.toml").write_text(table, encoding="utf-8")
-    robot.text("run.btlog")
+    robot.text("run.btlog", "--format", "csv")
     assert robot.errors == told
     (robot.folder / "b.csv").write_text("\n".join([*lines, f"{START / 1e6},50"]), encoding="utf-8")
-    robot.text("run.btlog")
+    robot.text("run.btlog", "--format", "csv")
     assert robot.errors == ""
 
 

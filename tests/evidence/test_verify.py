@@ -311,12 +311,15 @@ def test_columns_that_nothing_reads_are_named(lab: Path) -> None:
     text = (lab / "lab.battery.csv").read_text(encoding="utf-8")
     head, _, rows = text.partition("\n")
     (lab / "wrong.csv").write_text(f"{head.replace('battery', 'batery')},zebra\n{rows}", encoding="utf-8")
-    _, _, errors = btq(lab, "verify", "lab.btlog", "--mission", "lab.btq", "--signals", "wrong.csv")
+    given = ("verify", "lab.btlog", "--mission", "lab.btq", "--signals", "wrong.csv")
+    _, _, errors = btq(lab, *given, "--format", "csv")
     why = "is ignored, because no signal or entry has this name"
     assert errors.splitlines() == [
         f"btq verify: wrong.csv: column `batery` {why}; did you mean `battery`?",
         f"btq verify: wrong.csv: column `zebra` {why}",
     ]
+    _, output, errors = btq(lab, *given)
+    assert (output.splitlines()[2], errors) == (f"  note: wrong.csv: column `zebra` {why}", "")
 
 
 @pytest.mark.parametrize("wrong", ["takes at most 280 sek", "runs at most 5 times"])
