@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.requirements.model import Span, Total
 from btq_lang.syntax import Entry, Requirement
 
 if TYPE_CHECKING:
@@ -37,6 +36,8 @@ def _all_without_subject(view: View) -> dict[int, list[Diagnostic]]:
     requirements = view.requirements
     if requirements is None or not requirements.nodes.are_known:
         return {}
+    from btq_lang.requirements.model import Span, Total  # a file without clauses needs none
+
     found: dict[int, list[Diagnostic]] = {}
     for requirement in requirements.all.values():
         if not isinstance(requirement.item, Requirement):
