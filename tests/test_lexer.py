@@ -858,3 +858,26 @@ def test_such_a_character_in_a_value_needs_quotes(source: str) -> None:
 def test_there_are_no_reserved_words_for_the_lexer() -> None:
     assert_lex("satisfies and BehaviorTree Root true 'xml'",
                "NAME satisfies | NAME and | NAME BehaviorTree | NAME Root | NAME true | STRING 'xml' | NL")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "fixed"),
+    [
+        ("context a : b ≤ 3", "context a : b <= 3"),
+        ("context a : b ≥ 3", "context a : b >= 3"),
+        ("context a : b ≠ 3", "context a : b != 3"),
+        ("context a : b − 3", "context a : b - 3"),
+        ("context a : b – 3", "context a : b - 3"),
+        ("context a : b × 3", "context a : b * 3"),
+        ("context a : b · 3", "context a : b * 3"),
+        ("context a : b ÷ 3", "context a : b / 3"),
+        ("context a ： b", "context a : b"),
+        ("context a : b ≤ 3 and c ≥ 4  # ≠", "context a : b <= 3 and c >= 4  # ≠"),
+        ("context a : b ≤ '≠' and c ≥ 4", "context a : b <= '≠' and c ≥ 4"),
+        *((f"include {sign}b.btq{sign}", 'include "b.btq"') for sign in "“”„‟«»"),
+        *((f"include {sign}b.btq{sign}", "include 'b.btq'") for sign in "‘’"),
+        ("include “b≤.btq”", 'include "b≤.btq"'),
+    ],
+)
+def test_characters_that_look_like_others(text: str, fixed: str) -> None:
+    assert_fix(text, "Write plain characters", fixed)
