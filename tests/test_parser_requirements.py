@@ -7,6 +7,7 @@ from syntax_asserts import assert_fix, assert_parse
 
 from btq_lang.parser import parse
 
+COMPARISONS = ("<=", "<", ">=", ">", "==", "!=")
 END = "found the end of the line"
 A_CLAUSE = "a clause: takes, keeps, in at least, on violation, …"
 A_BOUND = "a bound: at most, at least, less than, more than or between"
@@ -449,6 +450,21 @@ def test_broken_clause(clause: str, shown: str, problem: str) -> None:
 )
 def test_a_clause_head_is_a_subject_only_in_quotes(head: str) -> None:
     assert_clause(f"'{head}' keeps a", f"<'{head}'> keeps a")
+
+
+@pytest.mark.parametrize(
+    ("condition", "title", "mended"),
+    [
+        *((f"battery {sign} 3", "Put `keeps` before it", f"keeps battery {sign} 3") for sign in COMPARISONS),
+        ("time < 3 s", "Write `takes less than`", "takes less than 3 s"),
+        ("time <= 3 s", "Write `takes at most`", "takes at most 3 s"),
+        ("duration > 3 s", "Write `takes more than`", "takes more than 3 s"),
+        ("duration >= 3 s", "Write `takes at least`", "takes at least 3 s"),
+        ("time == 3 s", "Put `keeps` before it", "keeps time == 3 s"),
+    ],
+)
+def test_a_condition_without_a_verb(condition: str, title: str, mended: str) -> None:
+    assert_fix(f"QualityReq r\n    {condition}\n", title, f"QualityReq r\n    {mended}\n")
 
 
 @pytest.mark.parametrize(
