@@ -142,6 +142,12 @@ def test_other_trees(tree: str, part: str, *, expected: bool) -> None:
     assert told(tree, f"{DECLARED}BehaviorTree {name}\n    {part}\n") == (TOLD if expected else [])
 
 
+@pytest.mark.parametrize(("parent", "expected"), [("->", TOLD), ("||", [])])
+def test_a_tree_below_another_tree(parent: str, expected: list[str]) -> None:
+    others = f"BehaviorTree Part\n    SubTree Inner\nBehaviorTree Inner\n    {W.replace('level', '@level')}\n"
+    assert told(f"{parent}\n    SubTree Part\n    Action A", DECLARED + others) == expected
+
+
 def test_a_default_may_be_an_entry() -> None:
     tree = f"->\n    {W}\n    R->\n        Condition D\n        Action A"
     assert told(tree, DECLARED + "Condition D\n    output now : double\n") == TOLD
