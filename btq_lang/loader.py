@@ -168,6 +168,11 @@ def read(path: str) -> tuple[str | None, LoadProblem | None]:
             data = file.read()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         return None, LoadProblem(path, f"cannot be read: {_reason(error)}")
+    return decoded(path, data)
+
+
+def decoded(path: str, data: bytes) -> tuple[str | None, LoadProblem | None]:
+    """The text of what was read, as `read` says."""
     problem = None
     is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in data and not is_utf16:

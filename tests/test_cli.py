@@ -418,6 +418,30 @@ def test_a_binary_file_is_one_error(btq: Run, tmp_path: Path) -> None:
     assert (done.stdout, done.stderr, done.returncode) == expected
 
 
+@pytest.mark.parametrize(
+    ("data", "problem"),
+    [
+        (b"BehaviorTree M\n    SequenceStar\0\n", "this is not a text file"),
+        (b"BehaviorTree M\n    SequenceStar # caf\xe9\n", "2:23: this is not UTF-8: byte 0xe9"),
+        ("BehaviorTree M\n".encode("utf-16"), "1:1: this is UTF-16; save it as UTF-8"),
+    ],
+)
+@pytest.mark.parametrize(
+    "command", [("check",), ("check", "--fix"), ("format",), ("build",), ("trace",), ("graph",), ("import",)], ids=str
+)
+def test_standard_input_is_read_as_a_file_is(
+    command: tuple[str, ...], data: bytes, problem: str, tmp_path: Path
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "btq_lang", *command, "-"], cwd=tmp_path, input=data, capture_output=True
+    )
+    told = f"btq: <stdin>:{problem}" if problem[0].isdigit() else f"btq: <stdin>: {problem}"
+    assert done.returncode == 2
+    assert told in done.stderr.decode().splitlines()
+    if command[0] in ("format", "import") or "--fix" in command:
+        assert b"SequenceStar" not in done.stdout  # to write it back would lose something
+
+
 def test_what_fix_could_not_write_is_still_found(btq: Run, tmp_path: Path) -> None:
     file = tmp_path / "main.btq"
     file.write_text("BehaviorTree Main\n    SequenceStar\n        Dock\n")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
-from btq_lang.loader import Found, LoadProblem, absolute, collect, excluder, find_project, load
+from btq_lang.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
 from btq_lang.record import Record, replace
 from btq_lang.workspace import Workspace
 
@@ -68,6 +68,7 @@ class Files:
     def __init__(self) -> None:
         self.overlay: dict[str, str] = {}
         self.stdin: str | None = None
+        self._of_stdin: LoadProblem | None = None
         self.folders: tuple[str, ...] = (absolute("."),)
         self._known: dict[str, File] = {}
 
@@ -92,6 +93,10 @@ class Files:
             return projects[folder]
 
         for path in (self._read_stdin(stdin_filename) if path == STDIN else absolute(path) for path in paths):
+            if path == self.stdin and self._of_stdin is not None:
+                problems += [self._of_stdin] if self._of_stdin not in problems else []
+                if path not in self.overlay:
+                    continue
             if path in self.overlay:
                 members.setdefault(project_of(path).path or "", {})[path] = None
                 continue
@@ -116,7 +121,9 @@ class Files:
     def _read_stdin(self, filename: str | None) -> str:
         if self.stdin is None:
             self.stdin = absolute(filename or "<stdin>")
-            self.overlay[self.stdin] = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
+            text, self._of_stdin = decoded(self.stdin, sys.stdin.buffer.read())
+            if text is not None:
+                self.overlay[self.stdin] = text
         return self.stdin
 
     def _load(
@@ -129,8 +136,11 @@ class Files:
         loaded = load((path for path in paths if path not in known), project, includes_of, known)
         files = {path: self._file(path, text) for path, text in loaded.texts.items()}
         given = tuple(path for path in paths if path in files)
+        damaged = loaded.damaged
+        if self._of_stdin is not None:
+            damaged += tuple(path for path in given if path == self.stdin)
         project = replace(project, folders=self.folders)
-        return Group(Workspace(files, project), given, loaded.damaged, loaded.absent, project_file), loaded.problems
+        return Group(Workspace(files, project), given, damaged, loaded.absent, project_file), loaded.problems
 
     def _file(self, path: str, text: str) -> File:
         known = self._known.get(path)

@@ -56,7 +56,7 @@ def run(options: Namespace) -> int:
                         trouble.append(LoadProblem(path, f"cannot be written: {error.strerror}"))
                         changed -= 1
                         refused += 1
-            if from_stdin and not only_tell:
+            if from_stdin and not only_tell and path not in group.damaged:
                 write_stdout(done.text)
     for problem in trouble:
         print(f"btq: {problem}", file=sys.stderr)

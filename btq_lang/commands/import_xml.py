@@ -12,7 +12,7 @@ from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
-from btq_lang.loader import LoadProblem, absolute, find_project, read, shown, write_whole
+from btq_lang.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
 from btq_lang.project import include_candidates
 from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
@@ -71,7 +71,10 @@ def _target(path: str, options: Namespace) -> str:
 
 def _job(path: str, targets: Mapping[str, str], options: Namespace, problems: list[LoadProblem]) -> _Job | None:
     if path == _STDIN:
-        xml = sys.stdin.buffer.read().decode("utf-8", "replace").removeprefix("\ufeff")
+        xml, problem = decoded("<stdin>", sys.stdin.buffer.read())
+        if xml is None or problem is not None:  # as of a file
+            problems.extend([problem] if problem else [])
+            return None
         job = _Job("<stdin>", xml, import_xml(xml, options.keep_v3), None)
         return _without_side_file(job, "import the file by its name, beside its .qreq.json, to keep them")
     path = absolute(path)
