@@ -78,7 +78,8 @@ READS_SIBLINGS = {
     "features": frozenset({"checks", "fixes", "formatter", "btcpp"}),  # an editor shows what they find and would do
     # how wide a text is on a terminal, and its colours; a page shows verdicts; what is enforced is what a build does
     "trace": frozenset({"render", "evidence", "btcpp", "checks"}),
-    "evidence": frozenset({"btcpp", "render"}),  # which trees a build makes; the same of a text as for the trace
+    "diff": frozenset({"btcpp"}),  # which models a build has made
+    "evidence": frozenset({"btcpp", "render", "checks"}),  # which trees a build makes; errors
 }
 PROTOCOL = frozenset({"pygls", "lsprotocol"})
 SPEAKS_THE_PROTOCOL = frozenset({"server", "editor", "protocol", "handlers", "convert"})

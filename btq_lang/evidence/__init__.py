@@ -20,19 +20,22 @@ One invariant: what a log does not say is unknown, with the reason; nothing is g
     coverage.py, ticks.py   which nodes ran, how long they took, and how long they blocked the tree
     verdicts.py    what comes out, as data
     sentences.py   what a clause came to, and what to look at
+    verifying.py, notes.py, signal_sources.py   all of it in one call, and what is to be said beside
     table.py, json_document.py, csv_rows.py, junit.py, markdown.py   the writers; the HTML page is drawn by `trace/`
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
     from btq_lang.project_evidence import SignalSource
+
+FORMATS: Final = ("table", "json", "csv", "junit", "markdown")
 
 
 def verify(
@@ -95,3 +98,36 @@ def verify(
     others = [Foreign(key[0], number, key[1], differences[key]) for key, number in foreign.items()]
     results = tuple(each.result() for each in evaluations.values())
     return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))
+
+
+def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False) -> str:
+    """The verdicts in one of FORMATS.
+
+    Args:
+        colour: ANSI colours, for `table`.
+        verbose: for `table`: more violations of each clause.
+
+    Raises:
+        ValueError: there is no such format.
+    """
+    if form == "table":
+        from btq_lang.evidence.table import table
+
+        return table(report, colour, verbose)
+    if form == "json":
+        from btq_lang.evidence.json_document import json_text
+
+        return json_text(report)
+    if form == "csv":
+        from btq_lang.evidence.csv_rows import csv_text
+
+        return csv_text(report)
+    if form == "junit":
+        from btq_lang.evidence.junit import junit
+
+        return junit(report)
+    if form == "markdown":
+        from btq_lang.evidence.markdown import markdown
+
+        return markdown(report)
+    raise ValueError(f"unknown format {form!r}; expected one of {', '.join(FORMATS)}")

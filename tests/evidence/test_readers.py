@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
 
-from btq_lang.commands.verdict_formats import WRITERS, Judged
+from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence import verify as verify_logs
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import read
@@ -34,8 +34,8 @@ UNNUMBERED = "the nodes of its tree are not numbered 1, 2, 3 … as BehaviorTree
 def problems(path: Path) -> tuple[str, ...]:
     """What cannot be read of a log; the rest is judged, and written in every form."""
     report = verify_logs([str(path)], [MISSION], {}, lambda each: Path(each).name)
-    for write in WRITERS.values():
-        write(Judged(report, [MISSION], verbose=True))
+    for form in FORMATS:
+        write(report, [MISSION], form, verbose=True)
     return report.problems
 
 

@@ -7,32 +7,32 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from btq_lang.evidence.readers.samples import NoSamples, read_sources
-from btq_lang.loader import find_project, shown
+from btq_lang.loader import shown
 from btq_lang.near import did_you_mean, near
 from btq_lang.units import a_dimension
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
+    from btq_lang.project import Project
     from btq_lang.project_evidence import SignalSource
     from btq_lang.requirements.model import Signal
 
 
 def signal_sources(
-    missions: Sequence[Candidate], problems: list[str]
+    project: Project, file: str, missions: Sequence[Candidate], problems: list[str]
 ) -> tuple[Sequence[SignalSource], dict[str, Series]]:
     """The sources in `[evidence.signals]` of the missions' project, and the samples of those that are files.
 
-    What is wrong is added to the problems.
+    Args:
+        file: of the project, as people read it.
+        problems: what is wrong is added to them.
     """
-    roots = (each.workspace.project.root for each in missions if each.workspace.project.evidence)
-    found = find_project(next(roots, "."))
-    project = found.project
     if project.evidence is None:
         return (), {}
     sources = project.evidence.signals
     wrong = [problem for source in sources for problem in _wrong(source, missions)]
-    problems += [f"{shown(found.path or project.root)}: [evidence.signals]: {each}" for each in dict.fromkeys(wrong)]
+    problems += [f"{file}: [evidence.signals]: {each}" for each in dict.fromkeys(wrong)]
     try:
         return sources, {} if wrong else read_sources(sources, project.root)
     except NoSamples as error:

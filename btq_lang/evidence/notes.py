@@ -1,0 +1,93 @@
+"""What is to be said of a report beside its verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.checks import check
+from btq_lang.evidence.readers import SUFFIXES
+from btq_lang.evidence.wording import period
+from btq_lang.loader import shown
+from btq_lang.name_kinds import Kind
+from btq_lang.near import did_you_mean, near
+from btq_lang.rules import Severity
+from btq_lang.syntax import Signal
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.identity import Candidate
+    from btq_lang.evidence.model import Series
+    from btq_lang.evidence.verdicts import Report
+
+
+def ignored_columns(path: str, samples: Iterable[str], missions: Sequence[Candidate]) -> Iterator[str]:
+    """The columns that no mission reads, each with the names that may be meant."""
+    scopes = [mission.workspace.scope(mission.path) for mission in missions]
+    found = [each for scope in scopes for name in scope.names(Kind.SIGNAL) for each in scope.all(Kind.SIGNAL, name)]
+    signals = [each.symbol.target for each in found if isinstance(each.symbol.target, Signal)]
+    words = [word for each in signals for word in (each.name, each.source) if word is not None]
+    known = {word.text.strip("{} ").removeprefix("@") for word in words}
+    for name in samples:
+        if name not in known:
+            meant = did_you_mean(near(name, known))
+            yield f"{path}: column `{name}` is ignored, because no signal or entry has this name{meant}"
+
+
+def other_times(read_from: Iterable[tuple[str, Series]], report: Report) -> Iterator[str]:
+    """The files with samples long before or after all runs, as where their times are no seconds since the epoch.
+
+    A single sample may be of something that does not change.
+    """
+    times: dict[str, set[int]] = {}
+    for file, series in read_from:
+        times.setdefault(file, set()).update(series.times)
+    sources = [each for mission in report.missions for each in mission.sources]
+    begin = min((each.begin for each in sources if each.begin is not None), default=None)
+    end = max((each.end for each in sources if each.end is not None), default=None)
+    for file, found in times.items():
+        if begin is None or end is None or len(found) < 2:
+            continue
+        if max(found) < begin - _NEAR or min(found) > end + _NEAR:
+            yield (
+                f"{file}: its samples are from {period(min(found), max(found))}, and the runs from"
+                f" {period(begin, end)}; expected times in seconds since the epoch"
+            )
+
+
+def missions_with_errors(report: Report, missions: Sequence[Candidate]) -> Iterator[str]:
+    """The missions of the report in which something is wrong, so that a clause may not have been understood."""
+    judged = {mission.file for mission in report.missions}
+    for mission in missions:
+        if mission.path in judged:
+            found = (
+                each for file in mission.workspace.closure(mission.path) for each in check(mission.workspace, file)
+            )
+            if any(each.effective_severity is Severity.ERROR for each in found):
+                yield f"{shown(mission.path)} has errors, so clauses may be missing; run btq check"
+
+
+def missing_verdicts(report: Report, asked: Sequence[str]) -> Iterator[str]:
+    """Why there are no verdicts at all; asked: the missions that were named."""
+    if not report.missions and not report.problems:
+        differences = dict.fromkeys(each.difference for each in report.foreign if asked and each.difference)
+        if differences:
+            yield from (f"no log matches {', '.join(asked)}: {each}" for each in differences)
+        else:
+            yield "no log matches a known mission; name the mission with --mission FILE"
+    elif report.missions and not any(mission.runs for mission in report.missions):
+        yield "no run in any log, so there is nothing to judge"
+
+
+def no_logs(asked: Iterable[str]) -> str:
+    """What to say where no log was found in what was asked for."""
+    return f"no {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} below {', '.join(asked)}"
+
+
+def foreign_runs(report: Report) -> Iterator[str]:
+    """The runs of other missions."""
+    for each in report.foreign:
+        runs = f"{each.runs} run{'' if each.runs == 1 else 's'}"
+        yield f"{each.file}: {runs} {each.of}, not judged"
+
+
+_NEAR: Final = 60_000_000  # µs: a robot may log a minute before its tree starts, or after it has ended

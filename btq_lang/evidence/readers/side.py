@@ -1,0 +1,42 @@
+"""Side files beside logs: which mission a log is of, and the nodes that its build numbered."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+
+from btq_lang.btcpp.side_file import SIDE_SUFFIX
+from btq_lang.loader import absolute, read
+from btq_lang.record import Record
+
+
+class SideFile(Record):
+    """A side file, the mission that it says it is of, and the nodes that it lists."""
+
+    path: str
+    mission: str
+    nodes: list[tuple[int, str]]
+
+
+def side_files_beside(logs: Sequence[str]) -> Iterator[SideFile]:
+    """The side files beside logs."""
+    for folder in dict.fromkeys(os.path.dirname(absolute(log)) for log in logs):
+        try:
+            names = sorted(os.listdir(folder))
+        except OSError:
+            continue  # reading the log reports that
+        for name in names:
+            if name.endswith(SIDE_SUFFIX) and (side := side_file_at(f"{folder}/{name}")) is not None:
+                yield side
+
+
+def side_file_at(path: str) -> SideFile | None:
+    """A side file; None where there is none, or it is damaged."""
+    text = read(path)[0] if os.path.isfile(path) else None
+    try:
+        data = json.loads(text or "")
+        mission = absolute(os.path.join(os.path.dirname(path), data["mission"]["file"]))
+        return SideFile(path, mission, [(node["uid"], node["path"]) for node in data["nodes"]])
+    except (ValueError, RecursionError, KeyError, TypeError):
+        return None

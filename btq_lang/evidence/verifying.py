@@ -1,0 +1,129 @@
+"""Logs judged in one call, with what else is to be said of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from btq_lang.btcpp.export import xml_name
+from btq_lang.btcpp.side_file import side_path
+from btq_lang.evidence import verify, write
+from btq_lang.evidence.identity import Candidate
+from btq_lang.evidence.notes import (
+    ignored_columns,
+    missing_verdicts,
+    missions_with_errors,
+    no_logs,
+    other_times,
+)
+from btq_lang.evidence.readers import SUFFIXES, whole_bags
+from btq_lang.evidence.readers.bag import METADATA
+from btq_lang.evidence.readers.samples import NoSamples
+from btq_lang.evidence.readers.samples import read as read_samples
+from btq_lang.evidence.readers.side import side_file_at
+from btq_lang.evidence.signal_sources import signal_sources
+from btq_lang.loader import IS_SPECIAL, absolute, collect, is_special, shown
+from btq_lang.record import Record, replace
+
+if TYPE_CHECKING:
+    from btq_lang.evidence.model import Series
+    from btq_lang.evidence.verdicts import Report
+    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace import Workspace
+
+
+class Verification(Record):
+    """What logs say of missions.
+
+    Attributes:
+        report: the verdicts, with what is to be known of the samples and the runs of other missions.
+        problems: what keeps them from being complete: logs that cannot be read, missions with errors.
+    """
+
+    report: Report
+    problems: tuple[str, ...]
+
+    def write(self, form: str = "table", *, colour: bool = False, verbose: bool = False) -> str:
+        """The verdicts as a text.
+
+        Args:
+            form: `table`, `json`, `csv`, `junit` or `markdown`.
+            colour: ANSI colours, for `table`.
+            verbose: for `table`: more violations of each clause.
+
+        Raises:
+            ValueError: there is no such format.
+        """
+        return write(self.report, form, colour=colour, verbose=verbose)
+
+
+def verify_logs(
+    workspace: Workspace, path: str, logs: str | Sequence[str], *, signals: str | None = None
+) -> Verification:
+    """A verdict for each requirement of a mission, by what logs say that robots did.
+
+        >>> from btq_lang import Workspace, verify_logs
+        >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Dock\\n"})
+        >>> verify_logs(workspace, "main.btq", "gone.btlog").problems
+        ('gone.btlog: cannot be read: No such file or directory',)
+
+    Args:
+        path: of the mission in the workspace.
+        logs: files of FileLogger2 (`.btlog`) or SqliteLogger (`.db3`), ROS 2 bags (`.mcap`, `.db3`, folders), and
+            folders of such; one that cannot be read is a problem of the result, and the others are judged.
+        signals: samples as CSV or Parquet: seconds since the epoch, then one column for each signal or entry.
+
+    Raises:
+        KeyError: the workspace has no such file.
+        OSError: the samples cannot be read.
+        ValueError: the samples, or the sources in `[evidence.signals]` of the project, are not as expected.
+    """
+    side = side_file_at(side_path(xml_name(path)))
+    is_side = side is not None and side.mission == absolute(path)
+    name = os.path.splitext(os.path.basename(path))[0]
+    mission = Candidate(workspace, path, name, side.nodes if side is not None and is_side else None)
+    given = [logs] if isinstance(logs, str) else logs
+    files, unreachable = collect(given, workspace.project, (*SUFFIXES, METADATA))
+    problems = [*map(str, unreachable), *(f"{shown(each)}: {IS_SPECIAL}" for each in files if is_special(each))]
+    if not files and not problems:
+        problems.append(no_logs(given))
+    readable = [each for each in whole_bags(files) if not is_special(each)]
+    try:
+        samples = read_samples(signals) if signals is not None else {}
+    except NoSamples as error:
+        raise ValueError(f"{signals}: {error}") from error
+    wrong: list[str] = []
+    project = workspace.project
+    sources, of_files = signal_sources(project, shown(project.root), [mission], wrong)
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    found = judged(readable, [mission], (signals or "", samples), sources, of_files, [path])
+    return replace(found, problems=(*problems, *(found.problems if readable else ())))
+
+
+def judged(
+    logs: Sequence[str],
+    missions: Sequence[Candidate],
+    samples: tuple[str, Mapping[str, Series]],
+    sources: Sequence[SignalSource],
+    of_files: Mapping[str, Series],
+    asked: Sequence[str],
+    *,
+    with_timelines: bool = False,
+    told: Callable[[int, int], None] = lambda files, runs: None,
+) -> Verification:
+    """The verdicts of missions, and what else is to be said.
+
+    Args:
+        samples: the file that they are from, and the samples by signal or entry.
+        asked: the missions as they were asked for; none: all that are known.
+        sources, of_files, with_timelines, told: as of `verify`.
+    """
+    file, series = samples
+    report = verify(logs, missions, series, shown, sources, of_files, with_timelines=with_timelines, told=told)
+    read_from = [(file, each) for each in series.values()]
+    read_from += [(source.file, of_files[source.signal]) for source in sources if source.signal in of_files]
+    report = replace(report, remarks=(*ignored_columns(file, series, missions), *other_times(read_from, report)))
+    problems = (*report.problems, *missing_verdicts(report, asked), *missions_with_errors(report, missions))
+    return Verification(report, problems)
