@@ -6,6 +6,10 @@
     workspace = btq.open_workspace("missions")      # files, what they include, and their project
     found = btq.check(workspace, path)              # the diagnostics of one of its files
     tidy = btq.format_text(text).text               # what `btq format` writes
+    built = btq.build(workspace, path).files        # what `btq build` writes, in memory
+
+Likewise `import_xml`, `trace_table`, `draw_tree`, `diff_missions` and `verify_logs`.  All are typed, and `help` of each
+says its arguments and errors.
 
 Names are imported when they are first used, so that `import btq_lang` costs little.
 """
@@ -15,46 +19,75 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from btq_lang.btcpp.importing import Imported, import_xml
     from btq_lang.btcpp.opening import open_workspace
+    from btq_lang.building import Built, build
     from btq_lang.checks import check
     from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diff.changes import Change
+    from btq_lang.diff.comparison import diff_missions
+    from btq_lang.evidence.verifying import Verification, verify_logs
     from btq_lang.formatter import format_text
+    from btq_lang.graph.missions import draw_tree
     from btq_lang.parser import Parsed, parse
     from btq_lang.syntax import Node, Requirement, Tree
     from btq_lang.text import LineIndex, Span
+    from btq_lang.trace.missions import TraceTable, trace_table
     from btq_lang.version import __version__
     from btq_lang.workspace import Workspace
 
 __all__ = [
+    "Built",
+    "Change",
     "Diagnostic",
+    "Imported",
     "LineIndex",
     "Node",
     "Parsed",
     "Requirement",
     "Span",
+    "TraceTable",
     "Tree",
+    "Verification",
     "Workspace",
     "__version__",
+    "build",
     "check",
+    "diff_missions",
+    "draw_tree",
     "format_text",
+    "import_xml",
     "open_workspace",
     "parse",
+    "trace_table",
+    "verify_logs",
 ]
 
 _HOMES = {
+    "Built": "building",
+    "Change": "diff.changes",
     "Diagnostic": "diagnostics",
+    "Imported": "btcpp.importing",
     "LineIndex": "text",
     "Node": "syntax",
     "Parsed": "parser",
     "Requirement": "syntax",
     "Span": "text",
+    "TraceTable": "trace.missions",
     "Tree": "syntax",
+    "Verification": "evidence.verifying",
     "Workspace": "workspace",
     "__version__": "version",
+    "build": "building",
     "check": "checks",
+    "diff_missions": "diff.comparison",
+    "draw_tree": "graph.missions",
     "format_text": "formatter",
+    "import_xml": "btcpp.importing",
     "open_workspace": "btcpp.opening",
     "parse": "parser",
+    "trace_table": "trace.missions",
+    "verify_logs": "evidence.verifying",
 }
 
 

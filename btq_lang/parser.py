@@ -115,6 +115,11 @@ class Parsed:
 def parse(text: str) -> Parsed:
     """Parse a file.
 
+        >>> from btq_lang import parse
+        >>> (tree,) = parse("BehaviorTree Main\\n    Retry\\n        Dock\\n").trees
+        >>> [node.head.text for node in tree.walk()]
+        ['Retry', 'Dock']
+
     Args:
         text: any string at all.
 

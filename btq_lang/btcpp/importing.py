@@ -66,10 +66,20 @@ class Imported(Record):
 def import_xml(
     text: str, keep_v3: bool = False, for_people: bool = True, included_as: IncludedAs | None = None
 ) -> Imported:
-    """Read an XML file as a .btq file.
+    """A BehaviorTree.CPP XML file as a .btq file.
+
+        >>> from btq_lang import import_xml
+        >>> done = import_xml('<root BTCPP_format="4"><BehaviorTree ID="Main"><Dock/></BehaviorTree></root>')
+        >>> print(done.text, end="")
+        Root (BTCPP_format = 4)
+        <BLANKLINE>
+        BehaviorTree Main
+            Dock
+        >>> done.changes, done.diagnostics
+        ((), ())
 
     Args:
-        text: the XML, any string at all.
+        text: the XML, any string at all; what is wrong with it is in `diagnostics` of the result.
         keep_v3: leave what version 3 of the engine says as it is, instead of saying it as version 4 does.
         for_people: write `->` for Sequence and so on, and break long lines; for those who only check, nodes keep their
             names and lines are as long as they are, so that a comment silences a rule for all of an element, and

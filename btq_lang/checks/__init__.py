@@ -239,6 +239,12 @@ class Found(Record):
 def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
+        >>> from btq_lang import Workspace, check
+        >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Sequnce\\n        Action Dock\\n"})
+        >>> (found,) = check(workspace, "main.btq")
+        >>> found.rule, found.fixes[0].title
+        ('unknown-node', 'Replace `Sequnce` with `Sequence`')
+
     Args:
         path: one of the workspace's files.
         is_alone: say nothing of what is wrong in the files that it includes.

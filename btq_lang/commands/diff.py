@@ -10,13 +10,12 @@ from collections.abc import Callable, Collection, Iterator
 
 from btq_lang.btcpp.as_built import Built, as_built
 from btq_lang.btcpp.by_hand import ADVICE
-from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_generated, is_mission
-from btq_lang.btcpp.undeclared import made_models
+from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_built_of, is_mission
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import STDIN, Files, Group
 from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
-from btq_lang.diff import Change, Place, as_json, as_markdown, as_text
-from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared
+from btq_lang.diff import Place, as_json, as_markdown, as_text
+from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared, without_made_models
 from btq_lang.file import SUFFIXES, File
 from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
@@ -105,7 +104,7 @@ def _of_paths(paths: list[str], stdin_filename: str | None) -> Iterator[Comparis
         new = f"{new}/{os.path.basename(old)}" if os.path.isdir(new) else new
     sides = [{} if path is None else _sides(path) for path in (old, new)]
     for before, after in _pairs(*sides):
-        yield _without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
+        yield without_made_models(compared(sides[0].get(before, NOWHERE), sides[1].get(after, NOWHERE)))
 
 
 def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
@@ -121,7 +120,7 @@ def _with_stdin(paths: list[str], stdin_filename: str | None) -> Comparison:
             return NOWHERE
         return (_built_on_disk(absolute(path)) if path != STDIN else None) or _on_disk(path, stdin_filename)
 
-    return _without_made_models(compared(*map(side, paths)))
+    return without_made_models(compared(*map(side, paths)))
 
 
 def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
@@ -134,23 +133,6 @@ def _pairs(old: Collection[str], new: Collection[str]) -> list[tuple[str, str]]:
         pairs.append((name, name if name in new else next(filter(came.__contains__, other), name)))
         came.discard(pairs[-1][1])
     return sorted([*pairs, *zip(came, came, strict=True)])
-
-
-def _without_made_models(comparison: Comparison) -> Comparison:
-    """Leave out the models that a build has put into XML for nodes that nobody declares."""
-    made = {
-        (what, path, name)
-        for what, side in (("removed", comparison.old), ("added", comparison.new))
-        for path in side.paths
-        if side.workspace.files[path].origin is not None and is_generated(side.workspace.files[path].source)
-        for name in made_models(side.workspace, path)
-    }
-
-    def is_made(change: Change) -> bool:
-        place = change.new or change.old
-        return change.thing == "node model" and place is not None and (change.what, place.path, change.name) in made
-
-    return replace(comparison, changes=tuple(each for each in comparison.changes if not is_made(each)))
 
 
 def _sides(path: str) -> dict[str, Side]:
@@ -229,7 +211,7 @@ def _of_revisions(options: Namespace) -> Iterator[Comparison]:
             if sides == (NOWHERE, NOWHERE):
                 where = known.names[known.new] if known.new is not None else "here"
                 raise Trouble(f"{shown(path)}: no such file in {known.names[known.old]} or {where}")
-            yield _without_made_models(compared(*sides))
+            yield without_made_models(compared(*sides))
             continue
         for before, after in known.changed(path):
             yield compared(_revised(known, known.old, before, False), _revised(known, known.new, after, False))

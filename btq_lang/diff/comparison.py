@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
+from btq_lang.btcpp.marks import is_generated
+from btq_lang.btcpp.undeclared import made_models
 from btq_lang.diff import Change, Place, compare
 from btq_lang.diff.changes import GUARD, Detail
-from btq_lang.record import Record
+from btq_lang.record import Record, replace
 from btq_lang.text import Position
 from btq_lang.workspace import Workspace
 
@@ -71,10 +73,48 @@ class Comparison(Record):
         return f"{self.old.name} -> {self.new.name}"
 
 
+def diff_missions(old: Workspace, old_path: str, new: Workspace, new_path: str) -> tuple[Change, ...]:
+    """What changed between two missions; nothing if and only if they say the same.
+
+        >>> from btq_lang import Workspace, diff_missions
+        >>> old = Workspace.of({"main.btq": "BehaviorTree Main\\n    Retry (num_attempts = 2)\\n        Dock\\n"})
+        >>> new = Workspace.of({"main.btq": "BehaviorTree Main\\n    Retry (num_attempts = 3)\\n        Dock\\n"})
+        >>> (change,) = diff_missions(old, "main.btq", new, "main.btq")
+        >>> change.what, change.name, change.details
+        ('changed', 'Main/Retry', (Detail(aspect='num_attempts', old='2', new='3'),))
+
+    Args:
+        old_path, new_path: of the missions, in .btq or XML, in their workspaces, which may be the same one; what they
+            include is a part of them.
+
+    Raises:
+        KeyError: there is no such file.
+    """
+    sides = Side(old_path, old, old.closure(old_path), str), Side(new_path, new, new.closure(new_path), str)
+    return without_made_models(compared(*sides)).changes
+
+
 def compared(old: Side, new: Side) -> Comparison:
     """Compare two missions."""
     changes = compare(old.workspace, old.paths, new.workspace, new.paths)
     return Comparison(old, new, (*changes, *_by_hand(old, new)))
+
+
+def without_made_models(comparison: Comparison) -> Comparison:
+    """Leave out the models that a build has put into XML for nodes that nobody declares."""
+    made = {
+        (what, path, name)
+        for what, side in (("removed", comparison.old), ("added", comparison.new))
+        for path in side.paths
+        if side.workspace.files[path].origin is not None and is_generated(side.workspace.files[path].source)
+        for name in made_models(side.workspace, path)
+    }
+
+    def is_made(change: Change) -> bool:
+        place = change.new or change.old
+        return change.thing == "node model" and place is not None and (change.what, place.path, change.name) in made
+
+    return replace(comparison, changes=tuple(each for each in comparison.changes if not is_made(each)))
 
 
 def _by_hand(old: Side, new: Side) -> Iterator[Change]:

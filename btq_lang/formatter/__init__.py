@@ -64,10 +64,15 @@ class Formatted(Record):
 
 
 def format_text(text: str, options: FormatOptions = DEFAULTS) -> Formatted:
-    """Format a file.
+    """Format a file; where it has a syntax error, the result says so and has the text as it is.
+
+        >>> from btq_lang import format_text
+        >>> format_text("BehaviorTree   Main\\n  Dock( a=1 )\\n").text
+        'BehaviorTree Main\\n    Dock (a = 1)\\n'
 
     Args:
         text: any string at all.
+        options: how wide a line is, and the like.
     """
     parsed = parse(text)
     if error := refused(parsed):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements import Requirements, requirements
@@ -17,6 +18,32 @@ from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.graph.figure import Outline
+
+
+def draw_tree(
+    workspace: Workspace, path: str, form: str = "svg", *, qualities: bool = False, direction: str = "down"
+) -> str:
+    """The trees of a file as a picture.
+
+        >>> from btq_lang import Workspace, draw_tree
+        >>> workspace = Workspace.of({"main.btq": "BehaviorTree Main\\n    Dock\\n"})
+        >>> draw_tree(workspace, "main.btq")[:4]
+        '<svg'
+
+    Args:
+        path: of the file in the workspace.
+        form: `svg`, `dot` or `mermaid`.
+        qualities: with qualities and requirements beside their nodes.
+        direction: the position of the children, `down` or `right`.
+
+    Raises:
+        KeyError: there is no such file.
+        ValueError: the file has no trees, or there is no such form or direction.
+    """
+    found = figures(workspace, path, qualities)
+    if not found:
+        raise ValueError(f"{path} has no trees to draw")
+    return draw(found, form, direction)
 
 
 def figures(workspace: Workspace, path: str, with_qualities: bool = False) -> tuple[Figure, ...]:

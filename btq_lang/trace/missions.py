@@ -51,7 +51,7 @@ def trace_table(workspace: Workspace, *paths: str, bundle: bool = False) -> Trac
     """Which requirements hold for which nodes, how they are enforced, and what is missing.
 
         >>> from btq_lang import Workspace, trace_table
-        >>> text = 'Requirement rq1 "In time"\\n    takes at most 30 s\\nTree Main\\n    Dock satisfies rq1\\n'
+        >>> text = 'QualityReq rq1 "In time"\\n    takes at most 30 s\\nBehaviorTree Main\\n    Dock satisfies rq1\\n'
         >>> table = trace_table(Workspace.of({"main.btq": text}), "main.btq")
         >>> [(row.name, row.way) for row in table.overview.requirements]
         [('rq1', 'monitored')]
