@@ -10,44 +10,9 @@ import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from itertools import accumulate
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 from btq_lang.record import Record
-
-if TYPE_CHECKING:
-
-    class _Ends(NamedTuple):
-        start: int
-        end: int
-
-    class _Place(NamedTuple):
-        line: int
-        column: int
-else:  # as `collections.namedtuple` makes them, which takes longer to import than a small file to read
-
-    class _Two(tuple):
-        __slots__ = ()
-
-        def __new__(cls, first, second):
-            return tuple.__new__(cls, (first, second))
-
-        def __getnewargs__(self):
-            return tuple(self)
-
-        def __repr__(self):
-            first, second = self.__match_args__
-            return f"{type(self).__name__}({first}={self[0]!r}, {second}={self[1]!r})"
-
-    class _Ends(_Two):
-        __slots__ = ()
-        __match_args__ = ("start", "end")
-        start, end = property(lambda self: self[0]), property(lambda self: self[1])
-
-    class _Place(_Two):
-        __slots__ = ()
-        __match_args__ = ("line", "column")
-        line, column = property(lambda self: self[0]), property(lambda self: self[1])
-
 
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 
@@ -55,20 +20,22 @@ Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 LINE_END = re.compile(r"\r\n|\n|\r")
 
 
-class Span(_Ends):
+class Span(NamedTuple):
     """A half-open range of offsets."""
 
-    __slots__ = ()
+    start: int
+    end: int
 
     def shifted(self, by: int) -> Span:
         start, end = self
         return Span(start + by, end + by)
 
 
-class Position(_Place):
+class Position(NamedTuple):
     """A line and a column, both counted from 0."""
 
-    __slots__ = ()
+    line: int
+    column: int
 
 
 class Edit(Record):

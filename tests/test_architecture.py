@@ -18,7 +18,7 @@ PACKAGE = Path(btq_lang.__file__).parent
 # Row by row, from the ground up; a package stands for all its modules.
 ROWS: tuple[frozenset[str], ...] = (
     frozenset(
-        {"record", "record_inits", "garbage", "text", "places", "near", "globs"}
+        {"record", "garbage", "text", "places", "near", "globs"}
         | {"rules", "diagnostics", "units", "quantities", "version"}
     ),
     frozenset(

@@ -11,6 +11,7 @@ from itertools import compress, count
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from btq_lang.diagnostics import Place
+from btq_lang.record import fields_of
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
 from btq_lang.text import Span
 
@@ -244,7 +245,7 @@ def is_same(now: Any, before: Any) -> bool:
     if kind is tuple:
         return len(now) == len(before) and all(map(is_same, now, before))
     if kind in _LIGHT:
-        return all(map(is_same, now._values, before._values))
+        return all(is_same(getattr(now, field), getattr(before, field)) for field in fields_of(now))
     return kind in _PLAIN and bool(now == before)
 
 
