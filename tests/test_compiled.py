@@ -25,9 +25,8 @@ ROOT = Path(__file__).resolve().parents[1]
 
 TELL = """
 import json, sys
-from btq_lang import checks, parser
-from btq_lang.checks import ports
-from btq_lang.features import stretches
+from btq_lang import checks, parser, syntax
+from btq_lang.script import parser as script
 from btq_lang.features.colours import colours
 from btq_lang.workspace import Workspace
 
@@ -38,7 +37,7 @@ def told(part):
         return [type(part).__name__, *(told(getattr(part, field)) for field in type(part).__match_args__)]
     return repr(part)
 
-print(json.dumps([parser.__file__, ports.__file__, stretches.__file__]))
+print(json.dumps([parser.__file__, syntax.__file__, script.__file__]))
 for line in sys.stdin:
     text = json.loads(line)
     parsed = parser.parse(text)
@@ -130,7 +129,7 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts)
-    names = ("parser.py", "checks/ports.py", "features/stretches.py")
+    names = ("parser.py", "syntax.py", "script/parser.py")
     assert pure_files == [ROOT / "btq_lang" / name for name in names]
     assert [file.parent for file in compiled_files] == [(compiled / "btq_lang" / name).parent for name in names]
     assert {file.suffix for file in compiled_files}.isdisjoint({".py"})
