@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
     from btq_lang.name_kinds import Kind
-    from btq_lang.packed import PackedNames
     from btq_lang.places import Places
     from btq_lang.project import Project
     from btq_lang.symbols import Summary, Symbol
@@ -44,7 +43,6 @@ class File:
             the names of trees that this rests on.
     """
 
-    _packed: bytes
     known_errors: tuple[Project, tuple[File, ...], frozenset[str], tuple[tuple[Place, str], ...]] | None = None
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
@@ -89,29 +87,16 @@ class File:
         return after
 
     @property
-    def is_unpacked(self) -> bool:
-        """Whether more is held of it than `pack` keeps; nobody has asked yet for the names in a text that was not
-        parsed, so it is left as it is."""
-        known = self.__dict__
-        return "parsed" in known or ("_packed" in known and "text" in known)
+    def is_parsed(self) -> bool:
+        """Whether its tree is held."""
+        return "parsed" in self.__dict__
 
-    def pack(self) -> None:
-        """Hold nothing but the text and the names in it, in little room; the rest is made again for whoever asks."""
-        from btq_lang.packed import packed_names, packed_text  # only a server holds files that nobody works in
-
+    def let_go(self) -> None:
+        """Hold nothing but the text and the names in it; the rest is made again for whoever asks."""
         kept = {known: getattr(self, known) for known in _KEPT}
-        kept.update({known: packed_names(getattr(self, known)) for known in _KEPT_NAMES})
         kept.update({known: self.__dict__[known] for known in _KEPT_IF_ASKED if known in self.__dict__})
-        kept["_packed"] = self.__dict__.get("_packed") or packed_text(self.text)
         self.__dict__.clear()
         self.__dict__.update(kept)
-
-    @cached_property
-    def text(self) -> str:
-        """That which was packed."""
-        from btq_lang.packed import unpacked_text
-
-        return unpacked_text(self._packed)
 
     @cached_property
     def parsed(self) -> Parsed:
@@ -318,16 +303,15 @@ class File:
         )
 
     @cached_property
-    def defined_names(self) -> frozenset[Name] | PackedNames:
+    def defined_names(self) -> frozenset[Name]:
         return self.names.all
 
     def names_of(self, kind: Kind) -> tuple[str, ...]:
         """The names of a kind that the file defines, in any order."""
-        known = self.defined_names
-        return tuple([name for of, name in known if of is kind]) if isinstance(known, frozenset) else known.of(kind)
+        return tuple([name for of, name in self.defined_names if of is kind])
 
     @cached_property
-    def used_names(self) -> frozenset[Name] | PackedNames:
+    def used_names(self) -> frozenset[Name]:
         return frozenset((use.kind, use.name) for summary in self.summaries for use in summary.uses)
 
     def __reduce__(self) -> tuple[type[File], tuple[str, str, Origin | None]]:
@@ -365,8 +349,8 @@ def _start_of(entry: Entry) -> int:
 
 _ESCAPED = frozenset("\"'\\\r\n\t")  # a name with one of these may be written otherwise than it is
 _NOT_AS_IT_IS = _ESCAPED | {"."}  # between the names of a quality blanks may stand
-_KEPT = ("path", "origin", "included_paths")  # when it is packed: what holds nothing of the tree
-_KEPT_NAMES = ("defined_names", "used_names")
+# When the tree is let go: what holds nothing of it.
+_KEPT = ("path", "text", "origin", "included_paths", "defined_names", "used_names")
 _KEPT_IF_ASKED = ("kinds",)  # seldom
 _DIRECTIVE = "btq:"
 _LINE_ENDS = frozenset("\r\n")

@@ -7,7 +7,6 @@ is known here.
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterable, Set
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -150,21 +149,19 @@ class Session:
         )
 
     def let_go(self) -> None:
-        """Let go of what edits have replaced, while nobody waits for it.  Pack the files that nobody works in, where
-        what was made of them has become much: it is most of what a large folder takes of the memory, and nobody asks
-        for most of it again.  After a question about all files there are many: of these a few each time, for somebody
+        """Let go of what edits have replaced, while nobody waits for it, and of the trees of files that nobody works
+        in, where they have become much: they are most of what a large folder takes of the memory, and nobody asks for
+        most of them again.  After a question about all files there are many: of these a few each time, for somebody
         may ask for something else."""
         for answers in self._answers.values():
             answers.let_go()
         worked_in = self._worked_in()
         for workspace in self._workspaces:
-            held = [path for path, file in workspace.files.items() if file.is_unpacked]
+            held = [path for path, file in workspace.files.items() if file.is_parsed]
             idle = [path for path in held if path not in worked_in]
             if sum([len(workspace.files[path].text) for path in idle]) > _MOST_IDLE:
                 for each in self._workspaces:  # whoever has one of these holds what it was
-                    each.pack(idle[:_AT_ONCE])
-                if len(idle) <= _AT_ONCE:
-                    gc.collect()  # much of it refers to itself, and Python would wait until there is far more
+                    each.let_go(idle[:_AT_ONCE])
 
     def _worked_in(self) -> set[str]:
         """The files that are open, and those that are linked with them, in whichever workspace: they may share some."""

@@ -59,16 +59,16 @@ class Workspace:
             after._take_over(self, path)
         return after
 
-    def pack(self, paths: Iterable[str]) -> None:
-        """Hold as little of some files as can be; who holds a definition in one of them must not ask for it again.
+    def let_go(self, paths: Iterable[str]) -> None:
+        """Hold text and names alone of some files; who holds a definition in one of them must not ask for it again.
 
         Args:
             paths: those of other workspaces among them are nothing to this one.
         """
         gone = self.files.keys() & paths
         for path in gone:
-            if self.files[path].is_unpacked:
-                self.files[path].pack()
+            if self.files[path].is_parsed:
+                self.files[path].let_go()
         self._scopes = {path: scope for path, scope in self._scopes.items() if gone.isdisjoint(scope.paths)}
         self._everywhere.clear()
         self._main_trees.clear()

@@ -61,7 +61,7 @@ ROWS: tuple[frozenset[str], ...] = (
             "loader",
             "findings",
         }
-        | {"packed", "placeholders", "entry_types", "custom_nodes", "requirements", "graph", "findings"}
+        | {"placeholders", "entry_types", "custom_nodes", "requirements", "graph", "findings"}
     ),
     frozenset({"checks", "formatter", "render", "fixes", "btcpp", "diff", "features", "trace", "evidence"}),
     frozenset({"building"}),

@@ -55,7 +55,7 @@ def test_an_include_however_it_is_spelt(word: str, line: str) -> None:
 def test_what_has_none_is_not_parsed() -> None:
     file = File("/p/m.btq", "Root M\nBehaviorTree M\n    Drive # exclusively\n")
     assert file.includes == ()
-    assert not file.is_unpacked
+    assert not file.is_parsed
 
 
 @pytest.mark.parametrize("seed", range(20))

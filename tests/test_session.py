@@ -136,7 +136,7 @@ def patched(data: list[int], changes: list[Change]) -> list[int]:
 def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def held() -> set[str]:
         (workspace,) = session.workspaces()
-        return {Path(path).name for path, file in workspace.files.items() if file.is_unpacked}
+        return {Path(path).name for path, file in workspace.files.items() if file.is_parsed}
 
     session = session_of(folder, {f"{folder}/other.btq": OTHER})
     told = {path: session.diagnostics(path) for path in session.paths()}
@@ -147,7 +147,7 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
     assert held() == {"other.btq"}
     session.edit(f"{folder}/skills.btq", SKILLS)
     session.let_go()
-    assert held() == {"other.btq", "skills.btq"}  # which is open now: its text is compared
+    assert held() == {"other.btq"}  # the other one is open now, but says what is on the disk
     assert {path: session.diagnostics(path) for path in session.paths()} == told
     session.reload()
     assert {path: session.diagnostics(path) for path in session.paths()} == told
@@ -158,7 +158,7 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
 def test_many_files_are_let_go_of_in_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def held() -> int:
         (workspace,) = session.workspaces()
-        return sum(file.is_unpacked for file in workspace.files.values())
+        return sum(file.is_parsed for file in workspace.files.values())
 
     for number in range(12):
         (tmp_path / f"tree{number}.btq").write_text(OTHER, encoding="utf-8")
@@ -231,7 +231,7 @@ def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
     assert [fix.title for fix in unknown.fixes] == ["Include `skills.btq`"]
     workspace = session.workspace_of(other)
     assert workspace is not None
-    assert [path for path, file in workspace.files.items() if file.is_unpacked] == [other]
+    assert [path for path, file in workspace.files.items() if file.is_parsed] == [other]
 
 
 def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None:

@@ -145,3 +145,30 @@ def test_where_items_begin_is_known_after_any_edit(text: str) -> None:
             after, new = before.edited(edited), File("a.btq", edited)
             for one, other in zip(after.parsed.entries, new.parsed.entries, strict=True):
                 assert after.item_places[id(one.item)] == new.item_places[id(other.item)], (start, gone, come)
+
+
+def test_a_file_whose_tree_is_let_go_keeps_text_and_names() -> None:
+    text = FILES["/p/main.btq"]
+    file, never_parsed = File("/p/main.btq", text), File("/p/main.btq", text)
+    assert file.parsed.entries
+    for each in (file, never_parsed):
+        each.let_go()
+        assert (each.is_parsed, each.text) == (False, text)
+        assert each.included_paths == (("requirements.btq", False), ("lib/skills.btq", False))
+        assert sorted(each.names_of(Kind.TREE)) == ["Main", "Pick"]
+        assert [each.defines(Kind.TREE, name) for name in ("Pick", "Pic")] == [True, False]
+        assert {(Kind.MODEL, "MoveBase"), (Kind.REQUIREMENT, "fast"), (Kind.QUALITY, "gentleness")} <= each.used_names
+        assert not each.is_parsed
+        assert each == File("/p/main.btq", text)
+
+
+@pytest.mark.parametrize("text", ["", "signal battery\n"])
+def test_a_file_whose_tree_is_let_go_is_edited_as_any_other(text: str) -> None:
+    file = File("main.btq", FILES["/p/main.btq"])
+    file.let_go()
+    after, new = file.edited(text), File("main.btq", text)
+    assert (after.text, after.parsed.entries, after.names_of(Kind.SIGNAL)) == (
+        text,
+        new.parsed.entries,
+        new.names_of(Kind.SIGNAL),
+    )

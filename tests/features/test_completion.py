@@ -488,10 +488,10 @@ def test_where_a_name_is_declared_no_file_is_read_that_refers_to_nothing_undecla
         tree = "\nBehaviorTree B\n    X\n" if declares_it else "\n"
         workspace = Workspace.of({"main.btq": main, "user.btq": user + tree, "other.btq": other})
         for path in ("user.btq", "other.btq"):
-            workspace.files[path].pack()
+            workspace.files[path].let_go()
         assert [one.label for one in complete(workspace, "main.btq", len(main)).proposals] == labels
-        assert workspace.files["user.btq"].is_unpacked is not declares_it
-        assert not workspace.files["other.btq"].is_unpacked
+        assert workspace.files["user.btq"].is_parsed is not declares_it
+        assert not workspace.files["other.btq"].is_parsed
 
 
 ITEMS = ("tree", "mission", "req-time", "req-resource", "req-keeps", "req-odds", "skill")
