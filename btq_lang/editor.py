@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import gc
 import json
 import logging
 import os
@@ -25,7 +26,6 @@ from pygls.lsp.server import LanguageServer
 from btq_lang import failures, features
 from btq_lang.convert import Converter
 from btq_lang.findings import Findings
-from btq_lang.garbage import collect_in_pause, keep_what_is_there
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
 from btq_lang.version import __version__
@@ -93,7 +93,7 @@ class Server(LanguageServer):
         self._ready: set[str] = set()  # the files for whose first questions everything is there
         self.task: asyncio.Task[None] | None = None
         self.scanned = asyncio.Event()  # the folders were read once: before, what files there are is not known
-        self._is_settled = False  # what was read first will not be looked through for garbage again
+        self._is_settled = False  # what was read first is frozen for the garbage collector
         self._failures: set[object] = set()  # the places of those that are logged
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
@@ -348,10 +348,8 @@ class Server(LanguageServer):
             self._await_pause()
             return
         if self.scanned.is_set() and not self._is_settled:
-            keep_what_is_there()
+            gc.freeze()  # what was read first stays: to look through it would hold up an answer
             self._is_settled = True
-        else:
-            collect_in_pause()
         self._preparing = asyncio.ensure_future(self._prepare())
 
     async def _prepare(self) -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
-from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
 from btq_lang.record import replace
@@ -33,10 +32,7 @@ def run(options: CheckOptions) -> int:
     if problem := _usage_problem(options):
         print(f"btq check: {problem}", file=sys.stderr)
         return 2
-    return collecting_seldom(lambda: _run(options, Files()))
-
-
-def _run(options: CheckOptions, files: Files) -> int:
+    files = Files()
     code, watched = _check(options, files)
     if options.watch:
         from btq_lang.commands.again import run_again

@@ -17,7 +17,6 @@ from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diff import Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared, without_made_models
 from btq_lang.file import SUFFIXES, File
-from btq_lang.garbage import collecting_seldom
 from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
 from btq_lang.record import replace
 from btq_lang.render.colour import painter, wants_colour
@@ -30,10 +29,6 @@ class Trouble(Exception):
 
 def run(options: Namespace) -> int:
     """Compare and print; 0 the same, 1 different, 2 neither can be said."""
-    return collecting_seldom(lambda: _run(options))
-
-
-def _run(options: Namespace) -> int:
     try:
         comparisons = tuple(
             _of_revisions(options) if options.git is not None else _of_paths(options.paths, options.stdin_filename)

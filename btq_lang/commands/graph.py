@@ -8,7 +8,6 @@ from argparse import Namespace
 from btq_lang.checks import check
 from btq_lang.commands.files import Files, nothing_below, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
-from btq_lang.garbage import collecting_seldom
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
 from btq_lang.loader import LoadProblem, shown
@@ -18,10 +17,6 @@ from btq_lang.rules import UNREADABLE
 
 def run(options: Namespace) -> int:
     """Draw the trees of one file; what is wrong with it is drawn as far as it can be read."""
-    return collecting_seldom(lambda: _run(options))
-
-
-def _run(options: Namespace) -> int:
     if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq graph: {problem}", file=sys.stderr)
         return 2

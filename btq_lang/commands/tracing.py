@@ -8,7 +8,6 @@ from argparse import Namespace
 
 from btq_lang.commands.files import Files, nothing_below, usage_problem
 from btq_lang.commands.output import form_of, form_problem, write_output
-from btq_lang.garbage import collecting_seldom
 from btq_lang.render.colour import wants_colour
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
@@ -16,10 +15,6 @@ from btq_lang.trace.missions import trace_tables
 
 def run(options: Namespace) -> int:
     """Write the overview; of missions with errors what could be understood."""
-    return collecting_seldom(lambda: _run(options))
-
-
-def _run(options: Namespace) -> int:
     if problem := usage_problem(options.paths) or form_problem(options, FORMATS):
         print(f"btq trace: {problem}", file=sys.stderr)
         return 2

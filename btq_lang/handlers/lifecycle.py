@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 
 from lsprotocol import types
 
 from btq_lang.editor import Server
-from btq_lang.garbage import keep_what_is_there
 from btq_lang.handlers.progress import checking
 from btq_lang.session import Session
 
@@ -29,7 +29,7 @@ def register(server: Server) -> None:
         folders = [*server.workspace.folders] or [root for root in (server.workspace.root_uri,) if root]
         _work_in(session, tuple(map(convert.path, folders)))
         capabilities = server.client_capabilities.workspace
-        keep_what_is_there()
+        gc.freeze()  # what was imported stays
         try:
             await _register_watchers(server)
             if capabilities is not None and capabilities.configuration:
@@ -110,13 +110,9 @@ async def _first_check(server: Server) -> None:
         return
     async with checking(server, len(paths)) as told:
         server.check_soon(paths)
-        is_kept = False
         while server.task is not None and not server.task.done():
             told(len(paths) - len(server.waiting))
             await asyncio.wait((server.task,), timeout=0.2)
-            if not is_kept:  # what the first checks have read would be looked through whenever trees are let go
-                keep_what_is_there()
-                is_kept = True
 
 
 def _endings() -> tuple[str, ...]:
