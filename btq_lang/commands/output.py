@@ -48,6 +48,14 @@ def write_output(command: str, path: str | None, text: str) -> int:
     return 0
 
 
+def terminal_width() -> int:
+    """How many columns the terminal has."""
+    try:
+        return os.get_terminal_size().columns
+    except OSError:
+        return 120
+
+
 def _ending(options: Namespace) -> str:
     return os.path.splitext(options.output or "")[1].lower()
 

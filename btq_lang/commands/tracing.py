@@ -7,7 +7,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.files import Files, nothing_below, usage_problem
-from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.output import form_of, form_problem, terminal_width, write_output
 from btq_lang.render.colour import wants_colour
 from btq_lang.trace import FORMATS
 from btq_lang.trace.missions import trace_tables
@@ -28,17 +28,10 @@ def run(options: Namespace) -> int:
     table = trace_tables([(group.workspace, group.given) for group in groups], options.bundle)
     to_terminal = options.output is None and sys.stdout.isatty()
     colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
-    text = table.write(form_of(options, FORMATS), colour=colour, width=_width() if to_terminal else 120)
+    text = table.write(form_of(options, FORMATS), colour=colour, width=terminal_width() if to_terminal else 120)
     if code := write_output("trace", options.output, text):
         return code
     if table.errors:
         what = "an error" if table.errors == 1 else f"{table.errors} errors"
         print(f"btq trace: the missions have {what}, so the overview may be incomplete; run btq check", file=sys.stderr)
     return int(table.errors > 0)
-
-
-def _width() -> int:
-    try:
-        return os.get_terminal_size().columns
-    except OSError:
-        return 120

@@ -15,16 +15,22 @@ FORMATS: Final = (*evidence.FORMATS, "html")
 
 
 def write(
-    report: Report, missions: Sequence[Candidate], form: str, *, colour: bool = False, verbose: bool = False
+    report: Report,
+    missions: Sequence[Candidate],
+    form: str,
+    *,
+    colour: bool = False,
+    verbose: bool = False,
+    width: int | None = None,
 ) -> str:
     """The verdicts in one of FORMATS.
 
     Args:
         missions: that were given; those of the report are among them.
-        colour, verbose: for `table`.
+        colour, verbose, width: for `table`.
     """
     if form != "html":
-        return evidence.write(report, form, colour=colour, verbose=verbose)
+        return evidence.write(report, form, colour=colour, verbose=verbose, width=width)
     from btq_lang.trace.missions import trace_tables
     from btq_lang.trace.page import page
     from btq_lang.trace.verdicts import outcomes

@@ -14,7 +14,7 @@ from btq_lang.btcpp.export import xml_name
 from btq_lang.btcpp.side_file import side_path, xml_path
 from btq_lang.commands.disk import Disk
 from btq_lang.commands.files import Files, usage_problem
-from btq_lang.commands.output import form_of, form_problem, write_output
+from btq_lang.commands.output import form_of, form_problem, terminal_width, write_output
 from btq_lang.commands.progress import Progress
 from btq_lang.commands.verdict_formats import FORMATS, write
 from btq_lang.evidence.identity import Candidate
@@ -62,7 +62,8 @@ def run(options: Namespace) -> int:
             print(f"btq verify: {note}", file=sys.stderr)
         to_terminal = options.output is None and sys.stdout.isatty()
         colour = options.color == "always" or (options.color == "auto" and wants_colour(to_terminal, os.environ))
-        text = write(report, missions, form, colour=colour, verbose=options.verbose)
+        width = terminal_width() if to_terminal else None
+        text = write(report, missions, form, colour=colour, verbose=options.verbose, width=width)
         if code := write_output("verify", options.output, text):
             return code
     for problem in problems:

@@ -100,12 +100,13 @@ def verify(
     return Report(tuple(each for each in results if each.sources), tuple(others), tuple(problems))
 
 
-def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False) -> str:
+def write(report: Report, form: str, *, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
     """The verdicts in one of FORMATS.
 
     Args:
         colour: ANSI colours, for `table`.
         verbose: for `table`: more violations of each clause.
+        width: for `table`: the columns of a terminal; None: lines are as long as what they say.
 
     Raises:
         ValueError: there is no such format.
@@ -113,7 +114,7 @@ def write(report: Report, form: str, *, colour: bool = False, verbose: bool = Fa
     if form == "table":
         from btq_lang.evidence.table import table
 
-        return table(report, colour, verbose)
+        return table(report, colour, verbose, width)
     if form == "json":
         from btq_lang.evidence.json_document import json_text
 

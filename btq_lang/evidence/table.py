@@ -1,33 +1,39 @@
-"""Verdicts for people at a terminal."""
+"""Verdicts for people at a terminal, whose lines are no longer than it is wide; elsewhere each is one line."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.sentences import explained, headline, result, worst_violation
 from btq_lang.evidence.signals import NO_SAMPLES
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED
 from btq_lang.evidence.wording import counted, duration, period
-from btq_lang.render.cells import laid_out, printable
+from btq_lang.render.cells import printable
 from btq_lang.render.colour import painter
+from btq_lang.render.columns import broken, cells_of, narrowed
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verdicts import ClauseVerdict, MissionVerdicts, Report, RequirementVerdict, Verdict
     from btq_lang.render.colour import Paint
 
 
-def table(report: Report, colour: bool = False, verbose: bool = False) -> str:
+def table(report: Report, colour: bool = False, verbose: bool = False, width: int | None = None) -> str:
     """The verdicts of all missions, the ones to look at first.
 
     Args:
         verbose: with all that led to the worst violation of a clause, and further violations.
+        width: of the terminal, of at least 60 columns; None: lines are as long as what they say.
     """
     paint = painter(colour)
+    room = max(width, _LEAST) if width is not None else sys.maxsize
     lines: list[str] = []
     for index, mission in enumerate(report.missions):
         notes = [printable(f"  note: {remark}") for remark in report.remarks] if index == 0 else []
-        lines += [*_heading(mission), *notes, "", *_rows(mission, paint, verbose), "", *_summary(mission), ""]
+        lines += _broken([*_heading(mission), *notes], room)
+        lines += ["", *_rows(mission, paint, verbose, room), "", *_broken(_summary(mission), room), ""]
     return "\n".join(lines[:-1]) + "\n" if lines else ""
 
 
@@ -48,7 +54,7 @@ def _heading(mission: MissionVerdicts) -> Iterator[str]:
             yield printable(f"  note: {remark}")
 
 
-def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool) -> Iterator[str]:
+def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool, room: int) -> Iterator[str]:
     rows: list[tuple[Verdict, list[str], Sequence[str]]] = []
     for requirement in sorted(mission.requirements, key=lambda each: _ORDER.index(each.verdict)):
         title = requirement.title
@@ -60,12 +66,21 @@ def _rows(mission: MissionVerdicts, paint: Paint, verbose: bool) -> Iterator[str
             )
             rows.append((clause.verdict, [printable(text) for text in texts], below))
             name = title = ""  # once is enough
-    widths = [max(_cells(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
+    left = len(NEVER) + 4
+    widths = [max(cells_of(row[column]) for _, row, _ in rows) if rows else 0 for column in range(4)]
+    fitting = narrowed(widths, room - left - 2 * (sum(map(bool, widths)) - 1))
+    is_narrowed = fitting != widths
     for verdict, row, below in rows:
-        cells = [text + " " * (width - _cells(text)) for text, width in zip(row, widths, strict=False) if width]
-        word = verdict + " " * (len(NEVER) - len(verdict))
-        yield f"  {paint(_STYLES[verdict], word)}  {'  '.join([*cells, *row[4:]])}".rstrip()
-        yield from (f"{' ' * (len(NEVER) + 4)}{printable(line)}" for line in below)
+        *texts, hint = row
+        cells = [broken(text, width) for text, width in zip(texts, fitting, strict=True) if width]
+        if hint:
+            cells[-1] = [*cells[-1], *broken(hint, fitting[-1])] if is_narrowed else [f"{cells[-1][0]}  {hint}"]
+        word = paint(_STYLES[verdict], verdict + " " * (len(NEVER) - len(verdict)))
+        shown = [width for width in fitting if width]
+        for number, line in enumerate(zip_longest(*cells, fillvalue="")):
+            parts = [text + " " * (width - cells_of(text)) for text, width in zip(line, shown, strict=True)]
+            yield f"  {' ' * len(NEVER) if number else word}  {'  '.join(parts)}".rstrip()
+        yield from (f"{' ' * left}{line}" for line in _broken(map(printable, below), room - left))
     if not rows:
         yield "  the mission has no requirement to judge"
 
@@ -117,10 +132,11 @@ def _summary(mission: MissionVerdicts) -> Iterator[str]:
         yield printable(f"verified by people: {', '.join(mission.by_people)}")
 
 
-def _cells(text: str) -> int:
-    return laid_out(text)[1][-1]
+def _broken(lines: Iterable[str], room: int) -> Iterator[str]:
+    return (part for line in lines for part in broken(line, room))
 
 
+_LEAST: Final = 60
 _FURTHER: Final = 4  # violations that are explained beside the worst
 _NAMED: Final = 3  # nodes where failures began
 _LONG_TICK: Final = 0.01  # s, the period in which Nav2 ticks its trees

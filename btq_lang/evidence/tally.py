@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
-from btq_lang.evidence.wording import quantity
+from btq_lang.evidence.wording import measured
 from btq_lang.record import Record
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class Tally:
         worst = self._worst_now
         if worst is not None and worst.excess > self._worst_excess:
             self._worst_excess = worst.excess
-            self.worst = Worst(worst.si, quantity(worst.si, worst.unit, worst.bound), run.number)
+            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound), run.number)
         self._broken.clear()
         self._kept = self._unclear = 0
         self._worst_now = None
@@ -154,11 +154,11 @@ class Tally:
 
 def _violation(judgement: Judgement, path: str, chain: tuple[Link, ...], run: Run) -> Violation:
     measure = judgement.measure
-    measured = quantity(measure.si, measure.unit, measure.bound) if measure is not None else ""
+    value = measured(measure.si, measure.unit, measure.bound) if measure is not None else ""
     bound = measure.bound_text if measure is not None else ""
     at = (judgement.at - run.begin) / 1e6
-    why = judgement.said.replace("{}", measured)
-    return Violation(run.number, run.source, path, run.begin, at, measured, bound, why, chain)
+    why = judgement.said.replace("{}", value)
+    return Violation(run.number, run.source, path, run.begin, at, value, bound, why, chain)
 
 
 USUAL_CONFIDENCE: Final = 0.95  # of the limits that are shown where the requirement asks for none

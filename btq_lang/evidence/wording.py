@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING
 
-from btq_lang.units import from_si
+from btq_lang.units import from_si, parse_unit
 
 if TYPE_CHECKING:
     from btq_lang.units import Unit
@@ -24,12 +24,29 @@ def quantity(si: float, unit: Unit | None, bound: float | None = None) -> str:
     return number if unit is None or unit.symbol == "1" else f"{number} {unit.symbol}"
 
 
+def measured(si: float, unit: Unit | None, bound: float) -> str:
+    """A value beside its bound, in the unit of that; a time that is less than one of it in the unit that `duration`
+    takes."""
+    if unit is not None and unit.dimension == _SECOND.dimension and from_si(si, unit) < 1:
+        unit = _readable(si)
+    return quantity(si, unit, bound)
+
+
 def duration(seconds: float) -> str:
     """A duration in ms, s, min or h, whichever is read easily."""
-    for size, symbol in ((3600.0, "h"), (60.0, "min"), (1.0, "s")):
-        if seconds >= 2 * size or (size == 1.0 and seconds >= 1.0):
-            return f"{float(f'{seconds / size:.3g}'):.15g} {symbol}"
-    return f"{float(f'{seconds * 1000:.3g}'):.15g} ms"
+    return quantity(seconds, _readable(seconds))
+
+
+def _readable(seconds: float) -> Unit:
+    if seconds < 1:
+        return _MILLISECOND
+    return _HOUR if seconds >= 7200 else _MINUTE if seconds >= 120 else _SECOND
+
+
+def _unit(symbol: str) -> Unit:
+    found = parse_unit(symbol)
+    assert found is not None, "it is one"
+    return found
 
 
 def share(probability: float) -> str:
@@ -68,4 +85,5 @@ def counted(number: int, one: str) -> str:
     return f"{number} {one}{'' if number == 1 else 's'}"
 
 
+_MILLISECOND, _SECOND, _MINUTE, _HOUR = map(_unit, ("ms", "s", "min", "h"))
 _EPOCH = datetime(1970, 1, 1, tzinfo=timezone.utc)

@@ -9,8 +9,9 @@ import os.path
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from btq_lang.render.cells import cut, laid_out, printable
+from btq_lang.render.cells import cut, printable
 from btq_lang.render.colour import Paint, painter
+from btq_lang.render.columns import broken, cells_of, narrowed
 from btq_lang.trace.overview import At, Overview, RequirementRow
 from btq_lang.trace.wording import GAPS, shown_quality, summary, told
 
@@ -60,7 +61,7 @@ def _lines(overview: Overview, paint: Paint, width: int) -> Iterator[str]:
     ]
     yield from _table(heading, totals, paint, width, numbers_from=1)
     yield ""
-    yield from _broken(summary(overview), width)
+    yield from broken(summary(overview), width)
 
 
 def _number(number: int) -> str:
@@ -102,9 +103,9 @@ def _table(
     """A table; each cell is lines, the first of the first cell is what the row is about."""
     cells = [[[printable(line) for line in cell] for cell in row] for row in rows]
     widths = [
-        max(_cells(title), *(_cells(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
+        max(cells_of(title), *(cells_of(line) for row in cells for line in row[at])) for at, title in enumerate(heading)
     ]
-    widths = _narrowed(widths, width - _BETWEEN * (len(widths) - 1))
+    widths = narrowed(widths, width - _BETWEEN * (len(widths) - 1))
     yield _row(
         [_shortened(title, room) for title, room in zip(heading, widths, strict=True)],
         widths,
@@ -114,11 +115,11 @@ def _table(
     )
     yield paint("gutter", _row(["-" * room for room in widths], widths, numbers_from, paint))
     for row in cells:
-        broken = [
-            [part for line in cell for part in _broken(line, room)] for cell, room in zip(row, widths, strict=True)
+        in_lines = [
+            [part for line in cell for part in broken(line, room)] for cell, room in zip(row, widths, strict=True)
         ]
-        for at in range(max(map(len, broken))):
-            line = [cell[at] if at < len(cell) else "" for cell in broken]
+        for at in range(max(map(len, in_lines))):
+            line = [cell[at] if at < len(cell) else "" for cell in in_lines]
             yield _row(line, widths, numbers_from, paint, "message" if at == 0 else "")
 
 
@@ -126,57 +127,16 @@ def _row(cells: Sequence[str], widths: Sequence[int], numbers_from: int, paint: 
     """A line; style: of its first cell."""
     parts = []
     for at, (cell, room) in enumerate(zip(cells, widths, strict=True)):
-        blanks = " " * (room - _cells(cell))
+        blanks = " " * (room - cells_of(cell))
         shown = paint(_WAYS.get(cell, "message"), cell) if cell in _WAYS or (style and at == 0) else cell
         parts.append(blanks + shown if at >= numbers_from else shown + blanks)
     return (" " * _BETWEEN).join(parts).rstrip()
 
 
-def _narrowed(widths: list[int], room: int) -> list[int]:
-    """The widest columns give way until all fit."""
-    widths = list(widths)
-    while sum(widths) > room and max(widths) > _NARROWEST:
-        widths[widths.index(max(widths))] -= 1
-    return widths
-
-
-def _broken(text: str, room: int) -> list[str]:
-    """A text in lines, broken at blanks, and long words at `.`, `-`, `/` or, where there is none, anywhere; all lines
-    stand as far in as the first."""
-    words = text.lstrip(" ")
-    indent = len(text) - len(words)
-    room -= indent
-    lines: list[str] = []
-    for word in words.split(" "):
-        if lines and _cells(lines[-1]) + 1 + _cells(word) <= room:
-            lines[-1] += f" {word}"
-            continue
-        while _cells(word) > room:
-            at = _fitting(word, room)
-            lines.append(word[:at])
-            word = word[at:]
-        lines.append(word)
-    return [" " * indent + line for line in lines]
-
-
-def _fitting(word: str, room: int) -> int:
-    """How many characters of a word stand on a line."""
-    fits = 1
-    while fits < len(word) and _cells(word[: fits + 1]) <= room:
-        fits += 1
-    at = max(word.rfind(mark, 0, fits) for mark in ".-/")
-    return at + 1 if at > 0 else fits
-
-
 def _shortened(text: str, room: int) -> str:
-    return text if _cells(text) <= room else cut(text, 0, room - 1)
-
-
-def _cells(text: str) -> int:
-    return laid_out(text)[1][-1]
+    return text if cells_of(text) <= room else cut(text, 0, room - 1)
 
 
 _LEAST: Final = 60
 _BETWEEN: Final = 2  # blanks between columns
-_NARROWEST: Final = 8
 _WAYS: Final = {"enforced": "hint", "monitored": "info", "reviewed": "warning", "not attached": "error"}

@@ -432,7 +432,7 @@ def test_a_span_from_a_node_that_is_not_in_the_tree(verify: Verify) -> None:
             None,
             0.05,
         ),
-        ("sum of Move, Pick takes at most 0.039 s", "took 0.04 s together", "0.04 s", "0.039 s", 0.05),
+        ("sum of Move, Pick takes at most 0.039 s", "took 40 ms together", "40 ms", "0.039 s", 0.05),
     ],
 )
 def test_what_happened_in_words(

@@ -485,7 +485,7 @@ def test_odds_that_nothing_can_reach(form: str, verify: Verify) -> None:
 
 def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
     found = verify.clause("Move takes at most 0.03 s", f"{LONG} 50 1R 53 2R 90.2 2S 1S")
-    assert found["worst"] == {"si": pytest.approx(0.0372), "text": "0.0372 s", "run": 2}
+    assert found["worst"] == {"si": pytest.approx(0.0372), "text": "37.2 ms", "run": 2}
     assert found["violations"] == [
         {
             "run": 2,
@@ -493,9 +493,9 @@ def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
             "path": "Move::2",
             "start": "2026-11-20T21:22:20.050000Z",
             "at": pytest.approx(0.0402),
-            "measured": "0.0372 s",
+            "measured": "37.2 ms",
             "bound": "0.03 s",
-            "why": "took 0.0372 s",
+            "why": "took 37.2 ms",
             "chain": [
                 {
                     "kind": "self",
@@ -513,6 +513,13 @@ def test_a_violation_says_where_and_by_how_much(verify: Verify) -> None:
 def test_a_measure_has_as_many_digits_as_show_that_it_is_beyond_the_bound(verify: Verify) -> None:
     (found,) = verify.clause("Move takes at most 30 ms", "0 1R 2R 30.004 2S 3S 1S")["violations"]
     assert (found["measured"], found["bound"]) == ("30.004 ms", "30 ms")
+
+
+@pytest.mark.parametrize(
+    ("bound", "text"), [("1 h", "30 ms"), ("0.0300001 s", "30 ms"), ("40 ms", "30 ms"), ("1 us", "30000 us")]
+)
+def test_a_short_time_is_not_told_in_a_long_unit(bound: str, text: str, verify: Verify) -> None:
+    assert verify.clause(f"Move takes at most {bound}", LONG)["worst"]["text"] == text
 
 
 @pytest.mark.parametrize(

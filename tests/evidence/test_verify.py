@@ -159,7 +159,7 @@ TABLE = """\
                    Charge::5: `battery` was 17.5 % at the start, bound 17 %; sampled just before, while MoveToCharger ran (run 99 of lab.btlog, 206 ms after its start at 2026-11-20 21:23:11.036 UTC)
   satisfied        reliable       The mission succeeds nearly always     mission succeeds in at least 80 % of runs            186 of 200, at least 89.3 % with confidence 95 %
   satisfied        picked         Picking rarely fails                   every Pick succeeds in at least 90 % of activations  583 of 616, 94.6 %; limits 92.9 % to 96.1 % with confidence 95 % each
-  satisfied        swift          The tubes are moved swiftly            PickTube/Pick takes at most 1 s                      held so far in 447 activations, worst 0.087 s in run 136
+  satisfied        swift          The tubes are moved swiftly            PickTube/Pick takes at most 1 s                      held so far in 447 activations, worst 87 ms in run 136
   satisfied        ordered        Nothing is placed that was not picked  PickPlace/Place follows PickPlace/Pick succeeds      held so far in 583 activations
   undecided        placed         What was picked is placed              PickPlace/Place succeeds in at least 99 % of runs    159 of 162; 611 more without a violation decide it
 

@@ -188,7 +188,7 @@ LINES: list[tuple[str, str, str, str]] = [  # verb, demand, runs, line
         "sum",
         "sum of Move, Pick takes at most 0.039 s",
         TWICE,
-        "sum of Move, Pick: took 0.04 s together, bound 0.039 s; Move::3 ran 20 ms of it in 2 starts, 1 of them failed",
+        "sum of Move, Pick: took 40 ms together, bound 0.039 s; Move::3 ran 20 ms of it in 2 starts, 1 of them failed",
     ),
 ]
 
