@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sqlite3
 import struct
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+import lz4.frame
 import pytest
 from evidence_bags import HUMBLE, LOG, STORE, late_ends, names_of, text, tree_log, write_bag
 from evidence_logs import MAIN, MAIN_XML, START, Row, Verify, rows
+from rosbags.rosbag2 import storage_mcap
+from rosbags.rosbag2.storage_mcap import zstd
 from test_identity import DEMANDS
 
 from btq_lang.cli import main
 from btq_lang.evidence.model import NamedLog
-from btq_lang.evidence.readers import read
+from btq_lang.evidence.readers import read, unpacking
 
 LIMIT = "QualityReq rq : safety\n    Move takes at most 10 ms\n"
 NAMES = names_of(MAIN_XML)
@@ -251,6 +256,82 @@ def test_a_bag_that_was_cut_off(small: Verify) -> None:
     assert lines[0] == "2 runs in cut.mcap, 2026-11-20 21:22 UTC, mission main (as built now, 3 of 3 nodes)"
     assert lines[1].startswith("  note: cut off: the last ")
     assert lines[1].endswith(" bytes are not a whole record and are left out")
+
+
+def test_a_packed_chunk_that_was_cut_is_left_out_and_that_is_said(small: Verify) -> None:
+    many = " ".join(f"{50 * run} 1R 2R {50 * run + 8} 2S 3S 1S" for run in range(8000))
+    write_bag(small.folder / "bag", tree_log(rows(many), NAMES), compression="storage")
+    whole = (small.folder / "bag" / "bag.mcap").read_bytes()
+    *_, (begin, end) = chunks(whole)
+    (small.folder / "cut.mcap").write_bytes(whole[: end - 1])
+    cut = small.json("cut.mcap")
+    lost = f"cut off: the last {end - 1 - begin} bytes are not a whole record and are left out"
+    assert cut["sources"][0]["remarks"] == [lost]
+    assert 0 < cut["runs"] < small.json("bag")["runs"] == 8000
+
+
+def chunks(data: bytes) -> list[tuple[int, int]]:
+    """Where the chunks of an MCAP file begin and end, read without btq."""
+    found: list[tuple[int, int]] = []
+    begin = 8
+    while begin < len(data) - 8:
+        end = begin + 9 + int.from_bytes(data[begin + 1 : begin + 9], "little")
+        if data[begin] == 6:
+            found.append((begin, end))
+        begin = end
+    return found
+
+
+@pytest.mark.parametrize(
+    ("compression", "remark"),
+    [
+        ("storage", "the bag is damaged, and what comes after the damage is left out: X packed bytes are more than"),
+        ("message", "messages that cannot be decoded, left out: 1"),
+    ],
+)
+def test_what_is_packed_is_unpacked_up_to_a_limit(
+    compression: Literal["storage", "message"], remark: str, small: Verify, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A few bytes may be gigabytes of blanks."""
+    monkeypatch.setattr(unpacking, "MOST", 100_000)
+    logs = tree_log(rows(TWO_RUNS), NAMES)
+    write_bag(small.folder / "bag", [*logs, text("/tree", START, " " * 10**6)], "mcap", compression)
+    (log,) = read(str(small.folder / "bag"))
+    assert isinstance(log, NamedLog)
+    (said,) = log.remarks
+    assert re.sub(r"\d+ packed", "X packed", said).startswith(remark)
+    assert (len(log.times) > 0) == (compression == "message")
+
+
+@pytest.mark.parametrize("pack", [zstd.compress, lz4.frame.compress])
+def test_a_chunk_that_unpacks_to_more_than_it_says(pack: Callable[[bytes], bytes]) -> None:
+    unpacking.limit_chunks()
+    unpack = storage_mcap.DECOMPRESSORS["zstd" if pack is zstd.compress else "lz4"]
+    packed = pack(bytes(10**6))
+    assert unpack(packed, 10**6) == bytes(10**6)
+    assert unpack(packed + pack(b"ab"), 10**6 + 2) == bytes(10**6) + b"ab"
+    with pytest.raises(unpacking.TooLarge, match=f"{len(packed)} packed bytes are more than 1000 when unpacked"):
+        unpack(packed, 1000)
+    with pytest.raises(EOFError):
+        unpack(packed[:-5], 10**6)
+
+
+@pytest.mark.parametrize("path", ["bag", "bag/bag.db3"])
+def test_what_is_still_in_the_log_beside_a_bag_counts(path: str, small: Verify) -> None:
+    """As where the recorder was killed, or goes on."""
+    write_bag(small.folder / "bag", tree_log(rows(TWO_RUNS), NAMES), "sqlite3")
+    writer = sqlite3.connect(small.folder / "bag" / "bag.db3")
+    writer.execute("PRAGMA journal_mode = WAL")
+    writer.execute("PRAGMA wal_autocheckpoint = 0")
+    last = writer.execute("SELECT id, topic_id, timestamp, data FROM messages ORDER BY id DESC LIMIT 1").fetchone()
+    writer.execute("DELETE FROM messages WHERE id = ?", last[:1])
+    writer.commit()
+    writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    assert clause(small.json(path)) == (1, [])
+    writer.execute("INSERT INTO messages VALUES (?, ?, ?, ?)", last)
+    writer.commit()
+    assert clause(small.json(path)) == (2, [2])
+    writer.close()
 
 
 def test_bags_that_cannot_be_used(small: Verify) -> None:

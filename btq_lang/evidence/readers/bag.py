@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 from btq_lang.evidence.readers import sqlite
 from btq_lang.evidence.readers.bag_database import BagDatabase
 from btq_lang.evidence.readers.tree import NotALog
+from btq_lang.evidence.readers.unpacking import limit_chunks, unpacked
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -42,6 +43,7 @@ class Bag:
         self.connections: Final[list[Connection]] = [each for storage in storages for each in storage.connections]
         self.remarks: Final = remarks
         self._storages: Final = storages
+        self._packed: Final = [each for each in storages if _unpacks_by_itself(each)]
 
     def of_type(self, name: str) -> list[Connection]:
         """The topics of a type."""
@@ -65,7 +67,7 @@ class Bag:
                     break
                 try:
                     received = int(received)
-                    message = decoders[connection.msgtype](data)
+                    message = decoders[connection.msgtype](unpacked(data) if storage in self._packed else data)
                 except Exception:  # likewise
                     unread += 1
                 else:
@@ -89,6 +91,7 @@ def opened(path: str) -> Iterator[Bag]:
         import rosbags.rosbag2  # noqa: F401  # is it there?
     except ImportError as error:
         raise NotALog("a ROS 2 bag is read with rosbags; install it with pip install 'btq-lang[ros]'") from error
+    limit_chunks()
     remarks: list[str] = []
     storages: list[Any] = []
     try:
@@ -104,6 +107,9 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
     of its files."""
     from rosbags.rosbag2 import Reader
 
+    databases = sorted(each for each in os.listdir(path) if each.endswith(".db3"))
+    if any(sqlite.has_log(os.path.join(path, each)) for each in databases):  # which `rosbags` does not read
+        return [_file(os.path.join(path, each), remarks) for each in databases]
     storage = Reader.STORAGE_PLUGINS["dir"](Path(path))
     try:
         storage.open()
@@ -116,6 +122,14 @@ def _folder(path: str, remarks: list[str]) -> list[Any]:
         remarks.append(f"its files are read without {METADATA}: {_said(error)}")
         return [_file(os.path.join(path, each), remarks) for each in files]
     return [storage]
+
+
+def _unpacks_by_itself(storage: Any) -> bool:
+    """Whether each message is packed; the storage then gives them as they are, for it knows no limit."""
+    if getattr(getattr(storage, "metadata", None), "compression_mode", None) != "message":
+        return False
+    storage.metadata = storage.metadata._replace(compression_mode=None)
+    return True
 
 
 def _file(path: str, remarks: list[str]) -> Any:
@@ -134,8 +148,8 @@ def _file(path: str, remarks: list[str]) -> Any:
             storage = Reader.STORAGE_PLUGINS[".mcap"](_WholeFile(path, remarks))  # type: ignore[arg-type]  # only opened
             storage.open()
             return storage
-        is_cut = sqlite.missing_bytes(path) > 0
-        storage = BagDatabase(path, remarks) if is_cut else Reader.STORAGE_PLUGINS[".db3"](Path(path))
+        needs_sqlite = sqlite.missing_bytes(path) > 0 or sqlite.has_log(path)
+        storage = BagDatabase(path, remarks) if needs_sqlite else Reader.STORAGE_PLUGINS[".db3"](Path(path))
         storage.open()
     except (OSError, NotALog):
         raise

@@ -58,7 +58,13 @@ def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
         OSError: it cannot be read.
     """
     missing = missing_bytes(path)
-    database = sqlite3.connect(f"file:{pathname2url(path)}?mode=ro", uri=True)
+    how = "mode=ro"
+    if not os.access(os.path.dirname(path) or ".", os.W_OK) and not os.path.exists(f"{path}-shm"):
+        # There SQLite cannot keep the index that it needs for a log beside the database, even an absent one.
+        if has_log(path):
+            raise NotALog(f"{os.path.basename(path)}-wal has a part of it; copy both to a folder that can be written")
+        how = "immutable=1"
+    database = sqlite3.connect(f"file:{pathname2url(path)}?{how}", uri=True)
     try:
         database.text_factory = lambda data: data.decode("utf-8", "replace")
         if missing:
@@ -69,6 +75,14 @@ def opened(path: str, remarks: list[str]) -> Iterator[sqlite3.Connection]:
         raise NotALog(f"the database cannot be read: {error}") from error
     finally:
         database.close()
+
+
+def has_log(path: str) -> bool:
+    """Whether a part of a database is in the log beside it: it is being written, or its writer was killed."""
+    try:
+        return os.path.getsize(f"{path}-wal") > 0
+    except OSError:
+        return False
 
 
 def missing_bytes(path: str) -> int:

@@ -1,0 +1,53 @@
+"""Packed parts of a bag, unpacked to no more than a bag has reason to hold.
+
+One invariant: a chunk or a message that would be larger is an error before it is in memory, whatever it says of its own
+size.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+
+class TooLarge(Exception):
+    """What is packed is larger than it may be."""
+
+
+def limit_chunks() -> None:
+    """Let `rosbags` unpack chunks of MCAP files within the limit; by itself it has none."""
+    from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # it has no stubs
+    from rosbags.rosbag2 import storage_mcap
+
+    storage_mcap.DECOMPRESSORS["zstd"] = unpacked
+    storage_mcap.DECOMPRESSORS["lz4"] = lambda data, size: _whole(data, LZ4FrameDecompressor, size)
+
+
+def unpacked(data: bytes, size: int | None = None) -> bytes:
+    """What zstd has packed.
+
+    Args:
+        size: how large it should be, as the bag says; None: it does not.
+
+    Raises:
+        TooLarge: it is larger.
+    """
+    from rosbags.rosbag2.storage_mcap import zstd  # type: ignore[attr-defined]  # whichever this Python has
+
+    return _whole(data, zstd.ZstdDecompressor, size)
+
+
+def _whole(data: bytes, decompressor: Any, size: int | None) -> bytes:
+    most = MOST if size is None else min(size, MOST)
+    found = b""
+    while data:  # one frame follows another
+        frame = decompressor()
+        found += frame.decompress(data, max_length=most + 1 - len(found))
+        if len(found) > most:
+            raise TooLarge(f"{len(data)} packed bytes are more than {most} when unpacked")
+        if not frame.eof:
+            raise EOFError("what is packed has no end")
+        data = frame.unused_data
+    return found
+
+
+MOST: Final = 1 << 28  # bytes; rosbag2 writes chunks of less than 1 MB, or of one message
