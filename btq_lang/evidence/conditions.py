@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class Bound(Record):
-    """What a bound is at a moment.
+    """What a bound that is not a value is at a moment.
 
     Attributes:
         text: as typed.
@@ -64,7 +64,7 @@ class Reading(Record):
     name: str
     unit: Unit | None
     si: float
-    bound: Bound
+    bound: Value | Bound
     excess: float
 
 
@@ -97,7 +97,7 @@ def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
     return Unknown(_not_judged(condition))
 
 
-def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Bound | Unknown:
+def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Value | Bound | Unknown:
     """A bound at a moment: of a table the value of the first case that holds then."""
     if isinstance(bounded, Table):
         for case in bounded.cases:
@@ -108,7 +108,7 @@ def bound_at(bounded: Bounded, observed: Observed, moment: Moment) -> Bound | Un
                 return bound_at(case.value, observed, moment)
         return Unknown("no case of the bound holds")
     if isinstance(bounded, Value):
-        return Bound(bounded.si, bounded.unit, bounded.text)
+        return bounded
     value = _number(bounded, observed, moment)
     if isinstance(value, Unknown) or not isinstance(value, float):
         return value if isinstance(value, Unknown) else Unknown(f"`{bounded.text}` is not a number")

@@ -31,7 +31,10 @@ class Distribution:
             self._step = abs(measure.bound) / _FINEST or 1.0 / _FINEST
         self._last = measure
         at = floor((measure.si - self._origin) / self._step)
-        self._counts[at] = self._counts.get(at, 0) + 1
+        if at in self._counts:
+            self._counts[at] += 1
+            return
+        self._counts[at] = 1
         while max(self._counts) - min(self._counts) >= _MOST_STEPS:
             doubled: dict[int, int] = {}
             for at, number in self._counts.items():

@@ -1,7 +1,7 @@
 """What led to a violation: where the time went, where a failure began, which sample was read and who ran then.
 
-One invariant: of what has ended only sums are kept, for each node that is open those of the nodes below it, and of a
-run its last failure, so memory does not grow with a log.
+One invariant: of what has ended only sums are kept, for each judged node those of the nodes below it, and of a run its
+last failure, so memory does not grow with a log.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ class Explainer:
             judged: the nodes whose violations are to be explained.
         """
         self._tree: Final = tree
-        self._judged: Final = judged
         self._signals: Final = signals
-        self._below: Final[dict[int, Sums]] = {}  # of open nodes
+        self._below: Final[dict[int, Sums]] = {uid: {} for uid in judged}  # since the last end of each judged node
+        self._above: Final = {uid: [each for each in _above(uid, tree) if each in judged] for uid in tree.nodes}
         self._last: Final[dict[int, tuple[int, Outcome, Origin | None]]] = {}  # of open nodes: their last child
         self._ended: Final[dict[int, tuple[Activation, Sums, Origin | None]]] = {}  # the last one of each judged node
         self._leaves: Final[dict[int, Activation]] = {}  # the last one of each leaf
@@ -65,30 +65,33 @@ class Explainer:
 
     def see(self, activation: Activation) -> Origin | None:
         """An activation has ended; where its failure began, if it failed."""
-        uid, outcome, tree = activation.uid, activation.outcome, self._tree
+        uid, outcome = activation.uid, activation.outcome
         if self._is_over:
             self._failed = None
             self.over_run.clear()
         self._is_over = uid == ROOT
-        sums = self._below.pop(uid, None)
         child, came, origin = self._last.pop(uid, _NO_CHILD)
         if outcome != "F":
             origin = None
         elif came != "F":
             origin = Origin(uid, child, came)
-        if uid in self._judged:
-            self._ended[uid] = activation, dict(sums or {}), origin
-        if tree.last[uid] == uid:
+        if uid in self._below:
+            self._ended[uid] = activation, self._below[uid], origin
+            self._below[uid] = {}
+        if self._tree.last[uid] == uid:
             self._leaves[uid] = activation
             if self._is_over_run:
                 self.over_run.add(activation)
             if outcome == "F" and activation.end > activation.begin:
                 self._failed = activation
-        parent = tree.parent[uid]
-        if parent:
-            if outcome != "H" or parent not in self._last:  # what a node halts as it ends is not what ended it
-                self._last[parent] = uid, outcome, origin
-            self._add(parent, activation, sums)
+        parent = self._tree.parent[uid]
+        if parent and (outcome != "H" or parent not in self._last):  # what a node halts as it ends is not what ended it
+            self._last[parent] = uid, outcome, origin
+        for above in self._above[uid]:
+            sums = self._below[above].setdefault(uid, [0, 0, 0])
+            sums[0] += 1
+            sums[1] += outcome == "F"
+            sums[2] += activation.end - activation.begin
         return origin
 
     def chain(self, claim: Claim, judgement: Judgement, path: str) -> tuple[Link, ...]:
@@ -107,22 +110,6 @@ class Explainer:
                 text = f"it ran {duration(activation.seconds)}"
                 return (Link("self", path, text, activation.seconds, 1, int(activation.outcome == "F")),)
         return ()
-
-    def _add(self, parent: int, activation: Activation, sums: Sums | None) -> None:
-        """Add an activation, and those below it, to the sums of its parent."""
-        above = self._below.get(parent)
-        if above is None:
-            above = self._below[parent] = sums if sums is not None else {}
-        elif sums is not None:
-            for uid, (number, failed, time) in sums.items():
-                sum_ = above.setdefault(uid, [0, 0, 0])
-                sum_[0] += number
-                sum_[1] += failed
-                sum_[2] += time
-        own = above.setdefault(activation.uid, [0, 0, 0])
-        own[0] += 1
-        own[1] += activation.outcome == "F"
-        own[2] += activation.end - activation.begin
 
     def _parts(self, activation: Activation, sums: Sums) -> Iterator[Link]:
         """Where the time went: the nodes that ran for a twentieth of it, leaves first, then the longest."""
@@ -183,6 +170,12 @@ class Explainer:
                 path = self._tree.nodes[min(ran, key=lambda each: each.end).uid].path
                 text += f", while {path} ran"
             yield Link("sample", path, text, age / 1e6, 1, 0)
+
+
+def _above(uid: int, tree: LoggedTree) -> Iterator[int]:
+    """The nodes that a node is below of."""
+    while uid := tree.parent[uid]:
+        yield uid
 
 
 _NO_CHILD: Final[tuple[int, Outcome | None, Origin | None]] = (0, None, None)

@@ -70,11 +70,11 @@ class OverRun:
 
     def counts(self, begin: Moment, end: Moment) -> bool | Unknown:
         """Whether what lasts from one moment to another counts."""
-        return in_scope(self._scopes, self._verb, self.observed.between(begin, end))
+        return not self._scopes or in_scope(self._scopes, self._verb, self.observed.between(begin, end))
 
     def counts_one(self, activation: Activation) -> bool | Unknown:
         """Whether an activation counts."""
-        return in_scope(self._scopes, self._verb, self.observed.during(activation))
+        return not self._scopes or in_scope(self._scopes, self._verb, self.observed.during(activation))
 
     def starts(self) -> list[tuple[Activation, bool | Unknown]]:
         """What the nodes of the clause did that counts, or may count."""

@@ -20,7 +20,7 @@ from btq_lang.evidence.model import FAILURE, ROOT, RUNNING, SKIPPED, SUCCESS, Ac
 from btq_lang.evidence.wording import timestamp
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Outcome, Timing
+    from btq_lang.evidence.model import Moment, Outcome, Timing
 
 
 def activations(session: Session) -> Iterator[Activation]:
@@ -102,17 +102,15 @@ class _OpenNodes:
     """
 
     def __init__(self, tree: LoggedTree) -> None:
-        self.begun: Final[dict[int, int]] = {}
+        self.begun: Final[dict[int, Moment]] = {}
         self.running: Final[set[int]] = set()
         self._tree: Final = tree
-        self._first: Final[dict[int, int]] = {}  # the row with which each of them began
         self._distrusted: Final[set[int]] = set()
 
     def begin(self, uid: int, time: int, row: int) -> None:
         """A node is active, and so are those above it, whether they have written so or not."""
         while uid and uid not in self.begun:
-            self.begun[uid] = time
-            self._first[uid] = row
+            self.begun[uid] = time, row
             uid = self._tree.parent[uid]
 
     def end(
@@ -121,9 +119,8 @@ class _OpenNodes:
         """What ends with a node: what was active below it, innermost first, and the node itself."""
         found: list[Activation] = []
         last = self._tree.last[uid]
-        if last > uid:
-            inside = sorted([each for each in self.begun if uid < each <= last], reverse=True)
-            for each in inside:
+        if last > uid and len(self.begun) > 1:
+            for each in sorted([each for each in self.begun if uid < each <= last], reverse=True):
                 if each in self.running:
                     found.append(self._made(each, time, row, below, "latest" if below == "H" else "exact"))
                 else:  # only something below it has written a row
@@ -133,7 +130,7 @@ class _OpenNodes:
 
     def forget(self, uid: int) -> None:
         """A node is not active any more."""
-        self.begun.pop(uid, None)
+        del self.begun[uid]
         self.running.discard(uid)
         self._distrusted.discard(uid)
 
@@ -142,7 +139,7 @@ class _OpenNodes:
         self._distrusted.update(self.begun)
 
     def _made(self, uid: int, end: int, row: int, outcome: Outcome, timing: Timing) -> Activation:
-        begin, first = self.begun[uid], self._first[uid]
+        begin, first = self.begun[uid]
         timing = "broken" if uid in self._distrusted else timing
         self.forget(uid)
         return Activation(uid, begin, end, outcome, timing, first, row)

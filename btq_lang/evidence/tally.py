@@ -56,7 +56,7 @@ class Tally:
         self._worst_excess = float("-inf")
         self._broken: Final[list[tuple[Judgement, str, tuple[Link, ...]]]] = []  # of the run that is open
         self._kept = self._unclear = 0  # likewise
-        self._worst_now: Measure | None = None
+        self._worst_now: Measure | None = None  # where it is the worst of all runs
 
     def add(self, judgement: Judgement, path: str, end: int, chain: tuple[Link, ...]) -> None:
         """Count what an activation of the run that is open, or the run, came to.
@@ -76,12 +76,15 @@ class Tally:
         measure = judgement.measure
         if measure is not None:
             self.distribution.add(measure)
-        if measure is not None and (self._worst_now is None or measure.excess > self._worst_now.excess):
-            self._worst_now = measure
+            if measure.excess > self._worst_excess:
+                self._worst_excess = measure.excess
+                self._worst_now = measure
 
     def end_run(self, run: Run) -> None:
         """The run that was open has ended."""
         broken, kept, unclear = len(self._broken), self._kept, self._unclear
+        if not (broken or kept or unclear):
+            return
         shown = self._broken
         if self.counts_runs:  # a run holds where something in it was judged and all of it holds
             broken, kept, unclear = int(broken > 0), int(kept > 0), int(unclear > 0)
@@ -91,15 +94,15 @@ class Tally:
         self.counted += broken + kept
         self.violated += broken
         self.unknown += unclear
-        room = max(_MOST_VIOLATIONS - len(self.violations), 0)
-        self.violations.extend(_violation(*each, run) for each in shown[:room])
-        worst = self._worst_now
-        if worst is not None and worst.excess > self._worst_excess:
-            self._worst_excess = worst.excess
-            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound), run.number)
-        self._broken.clear()
+        if broken:
+            room = max(_MOST_VIOLATIONS - len(self.violations), 0)
+            self.violations.extend(_violation(*each, run) for each in shown[:room])
+            self._broken.clear()
         self._kept = self._unclear = 0
-        self._worst_now = None
+        if self._worst_now is not None:
+            worst = self._worst_now
+            self.worst = Worst(worst.si, measured(worst.si, worst.unit, worst.bound), run.number)
+            self._worst_now = None
 
     def is_worst_in(self, run: Run) -> bool:
         """Whether a run that has been counted has what is shown as the worst violation: the one furthest beyond the

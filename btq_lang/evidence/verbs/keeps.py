@@ -28,11 +28,11 @@ def judged_all_along(condition: Condition, activation: Activation, observed: Obs
     which it is unknown, else the one that came closest to breaking it."""
     unknown: Judgement | None = None
     closest: Judgement | None = None
-    is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # what is known only at the end
     for moment in observed.moments(condition):
         found = judged_at(condition, moment, observed, said)
         if found.holds is False:
             if activation.timing == "exact" or moment == observed.begin:
+                is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # so known only at the end
                 return replace(found, at=activation.end) if is_of_all else found
             return Judgement(None, found.at, "the log does not say whether it was still running")
         if found.holds is None:
