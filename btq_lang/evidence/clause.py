@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class _Place(Record):
-    """Where a clause holds in the log that is read: a node, or those whose events or durations it is about.
+    """Where a clause that is judged over a run holds: a node, or those whose events or durations it is about.
 
     Attributes:
         uids: its nodes.
@@ -68,22 +68,28 @@ class JudgedClause:
         parts = (claim.condition, claim.limit, *self._events, *(scope.condition for scope in requirement.scopes))
         self._running: Final = [each.target for part in parts for each in parts_in(part) if isinstance(each, Running)]
         self._not_judged: Final = self._why_not()
-        self._places: Final[dict[int, _Place]] = {}  # in the log that is read, by each of their nodes, as are these:
+        self._nodes: Final[list[int]] = []  # in the log that is read, as are these:
+        self._places: Final[list[_Place]] = []
         self._signals: Signals | None = None
         self._history: History | None = None
-        self._waiting: Final[list[tuple[Activation, str]]] = []  # until it is known what else ran meanwhile
+        self._waiting: Final[list[tuple[Activation, Observed, str]]] = []  # until it is known what else ran meanwhile
         self._paths: Final[dict[str, None]] = {}
         self._missing = ""
         self._has_run = self._waits = False
         self.explain: Callable[[Judgement, str], tuple[Link, ...]] = lambda judgement, path: ()
         self.explain_run: Callable[[Judgement, OverRun, Nearby], tuple[Link, ...]] = lambda judgement, run, others: ()
 
-    def join(self, joined: Joined, signals: Signals, history: History) -> list[int]:
-        """Read another log; the nodes of it that the clause holds for."""
+    def join(self, joined: Joined, signals: Signals, history: History, nearby: Callable[[int], Nearby]) -> list[int]:
+        """Read another log; the nodes of it that the clause holds for.
+
+        Args:
+            nearby: the other nodes as a clause at one node means them.
+        """
         self._signals, self._history = signals, history
+        self._nodes.clear()
         self._places.clear()
         for uids in self._own(joined) if not self._not_judged else ():
-            others = Nearby(uids[0], joined, history)
+            others = nearby(uids[0])
             needed = [target_of(each) for each in self._events if each.condition is None]
             if isinstance(self.claim.per, Target):
                 needed.append(self.claim.per)
@@ -93,17 +99,18 @@ class JudgedClause:
             if lost:
                 self._missing = self._missing or lost[0].why
                 continue
+            self._nodes.extend(uids)
             if self._judge_run is not None:
                 history.watch(uids)
-            place = _Place(joined.tree.nodes[uids[0]].path, uids, others)
-            self._places.update(dict.fromkeys(uids, place))
-        return [*self._places]
+                self._places.append(_Place(joined.tree.nodes[uids[0]].path, uids, others))
+        return self._nodes
 
-    def judge(self, activation: Activation, guard: Guard | None, path: str) -> None:
+    def judge(self, activation: Activation, guard: Guard | None, observed: Observed, path: str) -> None:
         """Count an activation of one of its nodes.
 
         Args:
             guard: what stopped it.
+            observed: what there is to know of it.
         """
         self._has_run = True
         self._waits = self._waits or activation.first != activation.last
@@ -111,9 +118,9 @@ class JudgedClause:
             said = f"stopped by its own guard after {duration(activation.seconds)}"
             self._add(Judgement(False, activation.end, said), path, activation.end)
         elif self._judge is not None and self._running:
-            self._waiting.append((activation, path))
+            self._waiting.append((activation, observed, path))
         elif self._judge is not None:
-            self._judge_one(activation, path)
+            self._judge_one(activation, observed, path)
 
     def refuse(self, refusal: Refusal, path: str) -> None:
         """Count a start that was refused for what a requirement demands: that breaks the demand, and no node succeeds
@@ -131,13 +138,13 @@ class JudgedClause:
         Args:
             root: the activation of its root.
         """
-        for activation, path in self._waiting:
-            self._judge_one(activation, path, root)
+        for activation, observed, path in self._waiting:
+            self._judge_one(activation, observed.during(activation), path, root)  # asked anew: a late sample may count
         self._waiting.clear()
         if self._judge_run is not None:
             judged = [
                 (judgement, place, over)
-                for place in dict.fromkeys(self._places.values())
+                for place in self._places
                 for over in (self._over(root, place),)
                 for judgement in self._judge_run(self.judged, over)
             ]
@@ -151,17 +158,13 @@ class JudgedClause:
                     self._tally.add(replace(found, starts=()), place.path, root.end, chain)
         self._tally.end_run(run)
 
-    def _judge_one(self, activation: Activation, path: str, root: Activation | None = None) -> None:
+    def _judge_one(self, activation: Activation, observed: Observed, path: str, root: Activation | None = None) -> None:
         """Count an activation.
 
         Args:
             root: of the run, where what it comes to rests on the order of what happened.
         """
         assert self._judge is not None, "the clause is judged by its activations"
-        assert self._signals is not None, "it is joined with a log"
-        others = self._places[activation.uid].others
-        is_end_known = activation.timing != "latest"
-        observed = Observed(self._signals, others, activation.started, activation.ended, is_end_known)
         counts = in_scope(self.requirement.scopes, self.claim.verb, observed)
         if counts is False:
             return
@@ -242,7 +245,7 @@ class JudgedClause:
         Args:
             keeping: as of a `Session`.
         """
-        for uid in self._places:
+        for uid in self._nodes:
             if self.claim.verb in ("tries", "runs") and not self._waits and tree.parent[uid] in keeping:
                 path = tree.nodes[uid].path
                 return f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"

@@ -59,6 +59,7 @@ class Reading(Record):
     Attributes:
         name: as typed: `battery`, `max(force)`.
         excess: how far it is on the wrong side of the bound, in SI; negative on the right side.
+        holds: whether the condition does.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Reading(Record):
     si: float
     bound: Value | Bound
     excess: float
+    holds: bool
 
 
 def truth(condition: Condition, observed: Observed, moment: Moment) -> Truth:
@@ -122,7 +124,7 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
         return reading_of(condition.condition, observed, moment)
     if isinstance(condition, Not):
         found = reading_of(condition.condition, observed, moment)
-        return replace(found, excess=-found.excess) if found is not None else None
+        return replace(found, excess=-found.excess, holds=not found.holds) if found is not None else None
     if isinstance(condition, Any):
         *cases, last = condition.conditions
         is_last = all(isinstance(case, Not) and truth(case, observed, moment) is False for case in cases)
@@ -140,7 +142,7 @@ def reading_of(condition: Condition, observed: Observed, moment: Moment) -> Read
         return None
     name = left.signal.name if isinstance(left, Read) else f"{left.function}({left.signal.name})"
     excess = value - bound.si if sign in ("<", "<=") else bound.si - value
-    return Reading(name, _unit(left), value, bound, excess)
+    return Reading(name, _unit(left), value, bound, excess, _COMPARISONS[sign](value, bound.si))
 
 
 def _compared(condition: Compare, observed: Observed, moment: Moment) -> Truth:

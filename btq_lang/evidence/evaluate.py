@@ -6,7 +6,7 @@ One invariant: state is kept only for what is open, the current run, and what ha
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.clause import JudgedClause
@@ -14,8 +14,9 @@ from btq_lang.evidence.contexts import Contexts
 from btq_lang.evidence.coverage import Coverage
 from btq_lang.evidence.explain import Explainer
 from btq_lang.evidence.guards import Guards
-from btq_lang.evidence.history import History
+from btq_lang.evidence.history import History, Nearby
 from btq_lang.evidence.model import ROOT
+from btq_lang.evidence.observed import Observed
 from btq_lang.evidence.runs import activations
 from btq_lang.evidence.signals import Signals
 from btq_lang.evidence.tally import Run
@@ -75,9 +76,10 @@ class MissionEvaluation:
         tree = session.tree
         signals = Signals(given, session.samples)
         history = History()
+        nearby = cache(lambda uid: Nearby(uid, joined, history))
         at: dict[int, list[JudgedClause]] = {}
         for clause in self._clauses:
-            for uid in clause.join(joined, signals, history):
+            for uid in clause.join(joined, signals, history, nearby):
                 at.setdefault(uid, []).append(clause)
         guards = Guards(tree, joined.enforcing(), at)
         over_runs = any(clause.is_over_run for clause in self._clauses)
@@ -102,8 +104,10 @@ class MissionEvaluation:
                     for clause in at[refusal.uid]:
                         clause.refuse(refusal, tree.nodes[refusal.uid].path)
                 for ended, guard in guards.settled(activation):
+                    path, is_end_known = tree.nodes[ended.uid].path, ended.timing != "latest"
+                    observed = Observed(signals, nearby(ended.uid), ended.started, ended.ended, is_end_known)
                     for clause in at[ended.uid]:
-                        clause.judge(ended, guard, tree.nodes[ended.uid].path)
+                        clause.judge(ended, guard, observed, path)
             if activation.uid == ROOT:
                 run = Run(first_run + runs, source, activation.begin, activation.end)
                 runs += 1

@@ -10,9 +10,10 @@ from btq_lang.evidence.verbs import Measure
 from btq_lang.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.evidence.conditions import Bound
     from btq_lang.evidence.model import Moment
     from btq_lang.evidence.observed import Observed
-    from btq_lang.requirements.model import Limit
+    from btq_lang.requirements.model import Limit, Value
 
 
 class Compared(Record):
@@ -44,20 +45,24 @@ def compared(limit: Limit, si: float, observed: Observed, moment: Moment) -> Com
     Args:
         si: what was measured.
     """
-    sides: list[Compared] = []
-    for index, each in enumerate((limit.value, limit.upper)):
-        if each is None:
-            continue
-        bound = bound_at(each, observed, moment)
-        if isinstance(bound, Unknown):
-            return bound
-        is_upper = limit.relation in ("<=", "<") or index == 1
-        excess = si - bound.si if is_upper else bound.si - si
-        if excess == 0 and limit.relation in ("<", ">"):
-            excess = _JUST
-        measure = Measure(si, bound.unit, bound.si, bound.text, excess)
-        sides.append(Compared(measure, is_upper, limit.upper is None))
-    return max(sides, key=lambda side: side.measure.excess)
+    first = _beside(limit, limit.relation in ("<=", "<"), si, bound_at(limit.value, observed, moment))
+    if limit.upper is None or isinstance(first, Unknown):
+        return first
+    second = _beside(limit, True, si, bound_at(limit.upper, observed, moment))
+    if isinstance(second, Unknown):
+        return second
+    return first if first.measure.excess >= second.measure.excess else second
+
+
+def _beside(limit: Limit, is_upper: bool, si: float, bound: Value | Bound | Unknown) -> Compared | Unknown:
+    """A measure beside one side of its bound."""
+    if isinstance(bound, Unknown):
+        return bound
+    excess = si - bound.si if is_upper else bound.si - si
+    if excess == 0 and limit.relation in ("<", ">"):
+        excess = _JUST
+    measure = Measure(si, bound.unit, bound.si, bound.text, excess)
+    return Compared(measure, is_upper, limit.upper is None)
 
 
 _JUST: Final = 1e-9  # what is as large as a bound that it must not reach breaks it

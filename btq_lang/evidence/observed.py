@@ -42,7 +42,7 @@ class Observed:
         is_end_known: otherwise it had ended by `end`.
     """
 
-    __slots__ = ("_contexts", "_nodes", "_signals", "begin", "end", "is_end_known")
+    __slots__ = ("_contexts", "_nodes", "_readings", "_signals", "begin", "end", "is_end_known")
 
     def __init__(self, signals: Signals, nodes: Nearby, begin: Moment, end: Moment, is_end_known: bool = True) -> None:
         """
@@ -52,6 +52,7 @@ class Observed:
         self._signals: Final = signals
         self._nodes: Final = nodes
         self._contexts: dict[tuple[str, Moment], bool | Unknown] | None = None
+        self._readings: dict[tuple[str, int], SampleValue | Unknown] = {}
         self.begin: Final = begin
         self.end: Final = end
         self.is_end_known: Final = is_end_known
@@ -66,8 +67,11 @@ class Observed:
         return Observed(self._signals, self._nodes, begin, end)
 
     def reading(self, signal: Signal, moment: Moment) -> SampleValue | Unknown:
-        """The value of a signal."""
-        return self._signals.reading(signal, moment[0])
+        """The value of a signal, which is looked up once: several clauses may be about one."""
+        key = signal.name, moment[0]
+        if key not in self._readings:
+            self._readings[key] = self._signals.reading(signal, moment[0])
+        return self._readings[key]
 
     def summary(self, function: str, signal: Signal) -> float | Unknown:
         """A function of the samples from beginning to end; the value that the signal begins with is one of them."""

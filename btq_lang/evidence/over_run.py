@@ -84,6 +84,8 @@ class OverRun:
     def stretches(self) -> list[Stretch]:
         """The parts of the run in which time counts, and those in which it may."""
         conditions = [scope.condition for scope in self._scopes if scope.word == "while"]
+        if not conditions:
+            return [Stretch(self.observed.begin, self.observed.end)]
         return self.with_all_along(All(tuple(conditions)))
 
     def with_all_along(self, condition: Condition) -> list[Stretch]:

@@ -139,9 +139,11 @@ class _OpenNodes:
         self._distrusted.update(self.begun)
 
     def _made(self, uid: int, end: int, row: int, outcome: Outcome, timing: Timing) -> Activation:
-        begin, first = self.begun[uid]
-        timing = "broken" if uid in self._distrusted else timing
-        self.forget(uid)
+        begin, first = self.begun.pop(uid)
+        self.running.discard(uid)
+        if uid in self._distrusted:
+            self._distrusted.remove(uid)
+            timing = "broken"
         return Activation(uid, begin, end, outcome, timing, first, row)
 
 

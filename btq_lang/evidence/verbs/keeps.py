@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.evidence.conditions import Reading
 from btq_lang.evidence.observed import parts_in
+from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement
-from btq_lang.evidence.verbs.leaves import judged_at
-from btq_lang.record import replace
+from btq_lang.evidence.verbs.leaves import judged, seen_at
 from btq_lang.requirements.model import Aggregate
 
 if TYPE_CHECKING:
-    from btq_lang.evidence.model import Activation
+    from btq_lang.evidence.model import Activation, Moment
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Claim, Condition
 
@@ -26,23 +27,22 @@ def judge(claim: Claim, activation: Activation, observed: Observed) -> Judgement
 def judged_all_along(condition: Condition, activation: Activation, observed: Observed, said: str) -> Judgement:
     """Whether a condition holds at every moment of an activation: the first at which it does not decides, else one at
     which it is unknown, else the one that came closest to breaking it."""
-    unknown: Judgement | None = None
-    closest: Judgement | None = None
+    unknown: tuple[Unknown, Moment] | None = None
+    closest: tuple[Reading | bool, Moment] | None = None
+    most = float("-inf")
     for moment in observed.moments(condition):
-        found = judged_at(condition, moment, observed, said)
-        if found.holds is False:
-            if activation.timing == "exact" or moment == observed.begin:
-                is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # so known only at the end
-                return replace(found, at=activation.end) if is_of_all else found
-            return Judgement(None, found.at, "the log does not say whether it was still running")
-        if found.holds is None:
-            unknown = unknown or found
-        elif closest is None or _excess(found) > _excess(closest):
-            closest = found
+        seen = seen_at(condition, moment, observed)
+        if isinstance(seen, Unknown):
+            unknown = unknown or (seen, moment)
+        elif seen is False or (isinstance(seen, Reading) and not seen.holds):
+            if activation.timing != "exact" and moment != observed.begin:
+                return Judgement(None, moment[0], "the log does not say whether it was still running")
+            is_of_all = any(isinstance(each, Aggregate) for each in parts_in(condition))  # what is known at the end
+            return judged(seen, activation.end if is_of_all else moment[0], said)
+        else:
+            excess = seen.excess if isinstance(seen, Reading) else most
+            if closest is None or excess > most:
+                closest, most = (seen, moment), excess
     result = unknown or closest
     assert result is not None, "the start is one of the moments"
-    return result
-
-
-def _excess(judgement: Judgement) -> float:
-    return judgement.measure.excess if judgement.measure is not None else float("-inf")
+    return judged(result[0], result[1][0], said)

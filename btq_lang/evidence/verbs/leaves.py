@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.evidence.conditions import reading_of, truth
+from btq_lang.evidence.conditions import Reading, reading_of, truth
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Judgement, Measure
 
@@ -29,13 +29,24 @@ def judged_at(condition: Condition, moment: Moment, observed: Observed, said: st
     Args:
         said: the sentence that the measure becomes a part of.
     """
-    time = moment[0]
-    found = truth(condition, observed, moment)
-    if isinstance(found, Unknown):
-        return Judgement(None, time, found.why)
+    return judged(seen_at(condition, moment, observed), moment[0], said)
+
+
+def seen_at(condition: Condition, moment: Moment, observed: Observed) -> Reading | bool | Unknown:
+    """Whether a condition holds at a moment, with what is measured where it compares something."""
     reading = reading_of(condition, observed, moment)
-    if reading is None:
-        return Judgement(found, time, said.replace("{}", f"the condition {'holds' if found else 'does not hold'}"))
-    bound = reading.bound
-    measure = Measure(reading.si, reading.unit, bound.si, bound.text, reading.excess)
-    return Judgement(found, time, said.replace("{}", f"`{reading.name}` was {{}}"), measure)
+    return reading if reading is not None else truth(condition, observed, moment)
+
+
+def judged(seen: Reading | bool | Unknown, time: int, said: str) -> Judgement:
+    """What a condition says at a time.
+
+    Args:
+        said: as of `judged_at`.
+    """
+    if isinstance(seen, Reading):
+        measure = Measure(seen.si, seen.unit, seen.bound.si, seen.bound.text, seen.excess)
+        return Judgement(seen.holds, time, said.replace("{}", f"`{seen.name}` was {{}}"), measure)
+    if isinstance(seen, Unknown):
+        return Judgement(None, time, seen.why)
+    return Judgement(seen, time, said.replace("{}", f"the condition {'holds' if seen else 'does not hold'}"))
