@@ -42,7 +42,7 @@ QualityReq g : safety
 QualityReq h : safety
     Pick follows Move succeeds
 QualityReq i : performance-efficiency
-    Move runs at most 100 per 1 s
+    Move runs at most 100 per 20 ms
 QualityReq j : reliability
     mission succeeds
     in at least 90 % of runs
@@ -59,7 +59,7 @@ Action Pick
 ROWS = ((0, 1, 1), (0, 2, 1), (20, 2, 2), (20, 3, 1), (25, 3, 2), (25, 1, 2), (26, 2, 0), (26, 3, 0), (26, 1, 0))
 
 FETCH = """\
-signal battery : % from {level}
+signal battery : % from {level} level
 QualityReq a : performance-efficiency
     every Follow takes at most 8 s
 QualityReq b : reliability

@@ -1,0 +1,41 @@
+"""What `bench/evidence.py` compares is comparable: the bare loop finds the activations that `verify` counts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bare_loops
+import pytest
+import robot_log
+from evidence_logs import btlog, write_db3
+
+from btq_lang.evidence import verify
+from btq_lang.evidence.verdicts import MissionVerdicts
+
+
+def judged(robot: robot_log.Robot, rows: list[robot_log.Row], log: Path) -> MissionVerdicts:
+    report = verify([str(log)], [robot.mission], robot_log.battery(rows[-1][0]), str)
+    assert report.problems == ()
+    (mission,) = report.missions
+    return mission
+
+
+@pytest.mark.parametrize(("make", "nodes", "runs"), [(robot_log.tiny, 3, 200), (robot_log.fetching, 31, 5)])
+def test_loop_finds_what_is_judged(make, nodes, runs, tmp_path):
+    robot = make()
+    rows = robot.rows(1800)
+    log, database = tmp_path / "a.btlog", tmp_path / "a.db3"
+    log.write_bytes(btlog(robot.xml, rows))
+    write_db3(database, robot.xml, [rows])
+    mission = judged(robot, rows, log)
+    assert (sum(number for _, number in mission.outcomes), len(mission.nodes)) == (runs, nodes)
+    assert all(each.verdict not in ("unknown", "never exercised") for each in mission.requirements)
+    found = bare_loops.btlog(log)
+    ended = {uid: each.succeeded + each.failed + each.halted for uid, each in enumerate(mission.nodes, 1)}
+    assert {uid: len(found.get(uid, ())) for uid in ended} == ended
+    assert [each.verdict for each in judged(robot, rows, database).requirements] == [
+        each.verdict for each in mission.requirements
+    ]
+    assert {uid: len(each) for uid, each in bare_loops.db3(database).items()} == {
+        uid: len(each) for uid, each in found.items()
+    }
