@@ -6,7 +6,7 @@ What `btq_lang.evidence` says of a log is held against it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from literal_log import micros
@@ -36,27 +36,45 @@ class ClauseResult:
     experiments: tuple[Verdict, ...]
 
 
-class Literal(OverRuns):
+class Session(OverRuns):
     """A session, judged."""
+
+    def judged(self, applied: Applied, claim: Claim) -> list[Judged]:
+        """What it comes to, with its scopes."""
+        requirement = applied.requirement
+        if isinstance(applied.subject, Span):
+            return self.span(applied.subject, claim, requirement)
+        if isinstance(applied.subject, Total):
+            return self.total(applied.subject, claim, requirement)
+        judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
+        return [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
+
+
+class Literal:
+    """All sessions, judged together; their runs are numbered on."""
+
+    def __init__(self, sessions: Sequence[Session]) -> None:
+        self.sessions = sessions
+        self.runs = [run for session in sessions for run in session.runs]
+        self.activations = [each for session in sessions for each in session.activations]
 
     def clause(self, applied: Applied, claim: Claim) -> ClauseResult:
         """A claim of an applied requirement, with its scopes, odds and window."""
         requirement = applied.requirement
-        if isinstance(applied.subject, Span):
-            judged = self.span(applied.subject, claim, requirement)
-        elif isinstance(applied.subject, Total):
-            judged = self.total(applied.subject, claim, requirement)
-        else:
-            judge = self.over_runs if claim.verb in _OVER_RUNS else self.of_activations
-            judged = [each for uid in self.uids(applied.subject) for each in judge(uid, claim, requirement)]
-        judged = self.last(requirement, sorted(judged, key=lambda each: (each.run, each.at, each.decided)))
+        judged: list[Judged] = []
+        before = 0
+        for session in self.sessions:
+            judged += [replace(each, run=each.run + before) for each in session.judged(applied, claim)]
+            before += len(session.runs)
+        judged.sort(key=lambda each: (self.runs[each.run].begin, each.run, each.at, each.decided))
+        judged = self.last(requirement, judged)
         experiments = [each.verdict for each in judged]
         if requirement.odds is not None and requirement.odds.experiments == "runs":
             of_runs = [[each.verdict for each in judged if each.run == run] for run in range(len(self.runs))]
             experiments = [all_of(verdicts) for verdicts in of_runs]
         verdict = self.verdict(requirement, experiments)
         targets = applied.subject.targets if isinstance(applied.subject, Total) else ()
-        nodes = {uid for target in targets for uid in self.uids(target)} or {each.uid for each in judged}
+        nodes = {uid for target in targets for uid in self.sessions[0].uids(target)} or {each.uid for each in judged}
         if verdict == "satisfied" and not any(each.uid in nodes for each in self.activations):
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
@@ -93,7 +111,7 @@ class Literal(OverRuns):
             since = max((run.end for run in self.runs), default=0) - micros(window.seconds)
             counted = [each for each in counted if each.at >= since]
         elif window.experiments == "runs":
-            runs = sorted({each.run for each in counted})[-(window.count or 0) :]
+            runs = [*dict.fromkeys(each.run for each in counted)][-(window.count or 0) :]
             counted = [each for each in counted if each.run in runs]
         else:
             counted = counted[-(window.count or 0) :]

@@ -13,6 +13,7 @@ from pathlib import Path
 if __name__ == "__main__":  # as pytest has it for tests
     sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
+import literal
 from literal import ClauseResult, Literal
 from literal_verbs import OPEN
 from random_runs import Case, case
@@ -21,7 +22,7 @@ from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
-from btq_lang.requirements.model import Applied, Claim, Requirement, Span, Total
+from btq_lang.requirements.model import Applied, Claim, Requirement, Span, Target, Total
 from btq_lang.units import to_si
 
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
@@ -43,7 +44,9 @@ class Hunt:
         """Judge the case of a seed twice."""
         made = case(seed)
         evaluation = MissionEvaluation(made.mission)
-        evaluation.read(Session(made.joined.tree, iter(made.rows)), made.joined, made.series, 1, "log")
+        read = 0
+        for rows in made.sessions:
+            read += evaluation.read(Session(made.joined.tree, iter(rows)), made.joined, made.series, read + 1, "log")
         literal = literal_of(made)
         found = made.mission.requirements
         for requirement in evaluation.result().requirements:
@@ -94,14 +97,12 @@ def literal_of(made: Case) -> Literal:
         name: [(time, value if (unit := signals[name].unit) is None else to_si(value, unit)) for time, value in values]
         for name, values in made.samples.items()
     }
-    return Literal(
-        made.joined.tree,
-        made.subtrees,
-        made.rows,
-        samples,
-        signals,
-        lambda target: [uid for _, uid in made.joined.instances(target) if uid is not None],
-    )
+
+    def instances(target: Target) -> list[int]:
+        return [uid for _, uid in made.joined.instances(target) if uid is not None]
+
+    tree, subtrees = made.joined.tree, made.subtrees
+    return Literal([literal.Session(tree, subtrees, rows, samples, signals, instances) for rows in made.sessions])
 
 
 def expected_of(made: Case, requirement: Requirement, judged: ClauseResult, has_path: bool) -> dict[str, object]:

@@ -150,7 +150,12 @@ class Log:
         return None if signal.fresh is not None and time - at > micros(signal.fresh) else value
 
     def aggregate(self, function: str, signal: Signal, a: Activation) -> float | None:
-        """Over what a signal was in an activation: as it began, if that is known, and each sample since."""
+        """Over what a signal was in an activation: as it began, if that is known, and each sample since; `count` of
+        samples alone."""
+        if function == "count":
+            times = {time for time, _ in self.samples.get(signal.name, ()) if a.begin <= time <= a.end}
+            is_unclear = not a.is_exact and any(time > a.begin for time in times)
+            return None if is_unclear or not self.samples.get(signal.name) else len(times)
         sampled = [time for time, _ in self.samples.get(signal.name, ()) if a.begin < time <= a.end]
         times = sorted({a.begin, *(time for time, _ in self.changes if a.begin < time <= a.end)})
         known = [(time, self.sample(signal, time)) for time in times]

@@ -6,6 +6,7 @@ at all; it may lack all rows to IDLE, be cut off, and have runs that nobody ende
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -43,6 +44,7 @@ class Case:
 
     Attributes:
         subtrees: the uids of SubTree nodes.
+        sessions: the rows of each, in the order in which they are read.
         samples: by signal, in its own unit.
     """
 
@@ -50,7 +52,7 @@ class Case:
     mission: Candidate
     joined: Joined
     subtrees: frozenset[int]
-    rows: list[Transition]
+    sessions: list[list[Transition]]
     samples: dict[str, list[tuple[int, SampleValue]]]
 
     @property
@@ -76,7 +78,11 @@ def case(seed: int) -> Case:
             break
     root = candidate.requirements.mission
     assert root is not None
-    run, rows = runs(candidate, root, chance)
+    run, rows = runs(candidate, root, chance, 0.0)
+    sessions = [rows]
+    while chance.random() < 0.2:
+        run, rows = runs(candidate, root, chance, run.now + 1.0)
+        sessions.insert(chance.choice([0, len(sessions)]), rows)  # files may be read in any order
     logged = [
         (uid, each.element.get("ID") or each.element.tag, each.path, run.parent[uid])
         for uid, (each, _) in enumerate(nodes, 1)
@@ -85,7 +91,7 @@ def case(seed: int) -> Case:
     assert joined is not None
     assert joined.how == "as built now", text
     subtrees = frozenset(uid for uid, (each, _) in enumerate(nodes, 1) if each.element.tag == "SubTree")
-    return Case(text, candidate, joined, subtrees, rows, samples(chance, rows))
+    return Case(text, candidate, joined, subtrees, sessions, samples(chance, sorted(itertools.chain(*sessions))))
 
 
 # ---- Missions -------------------------------------------------------------------------------------------------------
@@ -269,8 +275,10 @@ def condition(chance: random.Random, labels: list[str], depth: int = 2) -> str:
     if chance.random() < 0.05:
         return f"node {chance.choice(labels)}"
     if chance.random() < 0.05:
-        function = chance.choice(["max", "min", "mean", "p95", "stddev", "change"])
-        return f"{function}(energy) <= {chance.randint(0, 8) * 5} Wh"
+        function = chance.choice(["max", "min", "mean", "p95", "stddev", "change", "count"])
+        return (
+            f"{function}(energy) <= {chance.randint(0, 4) if function == 'count' else f'{chance.randint(0, 8) * 5} Wh'}"
+        )
     return chance.choice(
         [
             *("near", "close", "fast", "careful", "not careful", 'state == "up"', 'state != "down"', "speed > 0 m/s"),
@@ -326,11 +334,10 @@ class LoggedRun(engine.Run):
             self.rows.append((START + round(self.now * 1e6), self.uids[node], STATUS[status]))
 
 
-def runs(mission: Candidate, root: SourceNode, chance: random.Random) -> tuple[LoggedRun, list[Transition]]:
-    """The last one of some runs, and the rows of all of them."""
+def runs(mission: Candidate, root: SourceNode, chance: random.Random, now: float) -> tuple[LoggedRun, list[Transition]]:
+    """The last one of some runs from a time on, and the rows of all of them."""
     resets = chance.random() < 0.7
     rows: list[Transition] = []
-    now = 0.0
     for _ in range(chance.randint(1, 8)):
         run = LoggedRun(mission, root, chance, rows, resets)
         run.now = now

@@ -9,7 +9,7 @@ import duckdb
 import numpy
 import pytest
 from evidence_bags import LOG, STORE, Message, names_of, number, stamp, stamped, tree_log, write_bag
-from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, write_db3
+from evidence_logs import MAIN, MAIN_XML, START, Verify, btlog, rows, samples, write_db3
 
 NAMES = names_of(MAIN_XML)
 MISSION = "signal battery : % from {level}\nQualityReq rq : safety\n    every Move needs battery > 20 %\n" + MAIN
@@ -348,6 +348,17 @@ def test_samples_of_another_time_than_the_runs(times: tuple[float, float], perio
     (robot.folder / "b.csv").write_text("\n".join([*lines, f"{START / 1e6},50"]), encoding="utf-8")
     robot.text("run.btlog", "--format", "csv")
     assert robot.errors == ""
+
+
+def test_the_samples_of_a_file_count_for_every_robot(robot: Verify) -> None:
+    """And before those of its own topic, which count for it alone."""
+    own = [number(f"/robot{each}/charge", START - 1, value) for each, value in ((1, 10), (2, 90))]
+    logs = [tree_log(RUNS, NAMES, topic=f"/robot{each}{LOG}") for each in (1, 2)]
+    source(robot, 'topic = "/charge", field = "data"', [*own, *logs[0], *logs[1]])
+    low = [(run, "`battery` was 10 % at the start") for run in (1, 2, 3, 4)]
+    assert levels(robot) == (4, low[:2])
+    (robot.folder / "one.csv").write_text(samples("battery", {-1: 10}), encoding="utf-8")
+    assert levels(robot, "bag", "--signals", "one.csv") == (4, low)
 
 
 # ---- logs of the project ----
