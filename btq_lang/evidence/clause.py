@@ -220,7 +220,9 @@ class JudgedClause:
         return found
 
     def _is_own(self, guard: Guard) -> bool:
-        """Whether a guard was put around the node for this clause."""
+        """Whether a guard was put around the node for this clause; none is for a span or a sum."""
+        if isinstance(self._subject, Span | Total):
+            return False
         return guard.requirement == self.requirement.name and self.claim.verb in _STOPPED_BY.get(guard.kind, ())
 
     def _why_not(self) -> str:

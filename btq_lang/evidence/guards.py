@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.evidence.model import ROOT
 from btq_lang.record import Record
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class Guards:
     """The guards around some nodes of a tree, while a log is read.
 
     Attributes:
-        concerned: those nodes and the guards; no other activation changes anything here.
+        concerned: those nodes, the guards and the root; no other activation changes anything here.
     """
 
     def __init__(self, tree: LoggedTree, enforcing: Mapping[int, str], judged: Collection[int]) -> None:
@@ -56,8 +57,8 @@ class Guards:
         self._guards: Final = {uid: Guard(tree.nodes[uid].kind, name) for uid, name in enforcing.items()}
         self._around: Final[dict[int, tuple[int, ...]]] = {}  # innermost first
         self._refuse: Final[dict[int, tuple[str, list[int]]]] = {}
-        self._waiting: Final[dict[int, list[tuple[Activation, tuple[int, ...]]]]] = {}
-        self.concerned: Final = {*judged, *enforcing}
+        self._waiting: list[tuple[Activation, tuple[int, ...]]] = []
+        self.concerned: Final = {*judged, *enforcing, ROOT}
         for uid in judged:
             around: list[int] = []
             above = tree.parent[uid]
@@ -76,15 +77,22 @@ class Guards:
         uid = activation.uid
         around = self._around.get(uid)
         found: list[tuple[Activation, Guard | None]] = []
+        waiting, self._waiting = self._waiting, []
+        for halted, guards in waiting:
+            if uid not in guards and uid != ROOT:
+                self._waiting.append((halted, guards))
+                continue
+            further = guards[guards.index(uid) + 1 :] if uid in guards else ()
+            is_inside = activation.started <= halted.started  # else that one has left no row, and this one came later
+            if is_inside and activation.outcome == "H" and further:
+                self._waiting.append((halted, further))
+            else:
+                is_stopped = is_inside and activation.outcome == "F" and uid in guards
+                found.append((halted, self._guards[uid] if is_stopped else None))
         if around and activation.outcome == "H":
-            self._waiting.setdefault(around[0], []).append((activation, around[1:]))
+            self._waiting.append((activation, around))
         elif around is not None:
             found.append((activation, None))
-        for halted, further in self._waiting.pop(uid, ()):
-            if activation.outcome == "H" and further:
-                self._waiting.setdefault(further[0], []).append((halted, further[1:]))
-            else:
-                found.append((halted, self._guards[uid] if activation.outcome == "F" else None))
         return found
 
     def refused(self, activation: Activation) -> list[Refusal]:

@@ -40,7 +40,14 @@ class Session(OverRuns):
     """A session, judged."""
 
     def judged(self, applied: Applied, claim: Claim) -> list[Judged]:
-        """What it comes to, with its scopes."""
+        """What it comes to, with its scopes, and with what its guards did."""
+        requirement = applied.requirement
+        nodes = [] if isinstance(applied.subject, Span | Total) else self.uids(applied.subject)
+        refused = [each for uid in nodes for each in self.refused(uid, claim, requirement)]
+        return [*self.unguarded(applied, claim), *refused]
+
+    def unguarded(self, applied: Applied, claim: Claim) -> list[Judged]:
+        """What it comes to, but for the starts that a guard refused."""
         requirement = applied.requirement
         if isinstance(applied.subject, Span):
             return self.span(applied.subject, claim, requirement)
@@ -75,7 +82,8 @@ class Literal:
         verdict = self.verdict(requirement, experiments)
         targets = applied.subject.targets if isinstance(applied.subject, Total) else ()
         nodes = {uid for target in targets for uid in self.sessions[0].uids(target)} or {each.uid for each in judged}
-        if verdict == "satisfied" and not any(each.uid in nodes for each in self.activations):
+        ran = {each.uid for each in self.activations} | {each.uid for each in judged if each.is_refused}
+        if verdict == "satisfied" and not nodes & ran:
             verdict = "never exercised"  # where others ran that it might have run in, or after
         return ClauseResult(verdict, tuple(judged), tuple(experiments))
 

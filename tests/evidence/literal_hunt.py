@@ -101,8 +101,8 @@ def literal_of(made: Case) -> Literal:
     def instances(target: Target) -> list[int]:
         return [uid for _, uid in made.joined.instances(target) if uid is not None]
 
-    tree, subtrees = made.joined.tree, made.subtrees
-    return Literal([literal.Session(tree, subtrees, rows, samples, signals, instances) for rows in made.sessions])
+    of_tree, known = (made.joined.tree, made.subtrees), (samples, signals, instances, made.guards)
+    return Literal([literal.Session(*of_tree, rows, *known) for rows in made.sessions])
 
 
 def expected_of(made: Case, requirement: Requirement, judged: ClauseResult, has_path: bool) -> dict[str, object]:

@@ -49,6 +49,7 @@ class Log:
         samples: by signal, in SI, in the order of their times.
         signals: all of the mission, by name.
         instances: the uids of the instances of a written node.
+        guards: the nodes that a build has put around others, with the requirement of each.
 
     Attributes:
         changes: the moments at which anything changes: rows, samples, and samples that grow too old.
@@ -62,11 +63,13 @@ class Log:
         samples: Samples,
         signals: Mapping[str, Signal],
         instances: Callable[[Target], list[int]],
+        guards: Mapping[int, str],
     ) -> None:
         self.tree = tree
         self.subtrees = subtrees
         self.samples = samples
         self.instances = instances
+        self.guards = guards
         self.activations = activations(tree, rows)
         self.runs = self.of(ROOT)
         self.changes = {each.start for each in self.activations}
@@ -171,8 +174,10 @@ class Log:
         return {"max": max, "min": min, "mean": statistics.fmean, "stddev": statistics.pstdev}[function](values)
 
     def uids(self, subject: Target | Mission | None) -> list[int]:
-        """The instances of a node."""
-        return self.instances(subject) if isinstance(subject, Target) else [ROOT]
+        """The instances of a node; the mission is the written root, never a wrapper."""
+        if isinstance(subject, Target):
+            return self.instances(subject)
+        return next([uid] for uid in self.tree.nodes if uid not in self.guards)
 
     def of(self, uid: int) -> list[Activation]:
         """What one of them did."""

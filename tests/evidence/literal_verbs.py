@@ -24,6 +24,7 @@ class Judged:
 
     Attributes:
         at: its end, or that of the run.
+        is_refused: it did not start.
         decided: when that was decided, of several in a run that are judged when the run has ended.
     """
 
@@ -32,6 +33,7 @@ class Judged:
     verdict: Verdict
     at: int
     decided: int = 0
+    is_refused: bool = False
 
 
 class OfActivations(Log):
@@ -39,9 +41,48 @@ class OfActivations(Log):
 
     def of_activations(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
         """takes, succeeds, needs, keeps, never, leaves, uses at one instance of a node."""
-        if claim.verb in ("keeps", "never"):
-            return [judged(each, self.keeps(each, claim, requirement)) for each in self.of(uid)]
-        return [judged(each, self.scoped(each, self.whole(each, claim), requirement)) for each in self.of(uid)]
+        return [
+            judged(each, False)  # stopped by the requirement's own enforcement is always violated
+            if self.is_stopped(each, claim, requirement)
+            else judged(each, self.keeps(each, claim, requirement))
+            if claim.verb in ("keeps", "never")
+            else judged(each, self.scoped(each, self.whole(each, claim), requirement))
+            for each in self.of(uid)
+        ]
+
+    def is_stopped(self, a: Activation, claim: Claim, requirement: Requirement) -> bool:
+        """Whether a guard that stands around the node for this clause has halted it: the nearest one above it that was
+        not halted itself, and failed."""
+        uid, inner = self.tree.parent[a.uid], a
+        while uid in self.guards and inner.outcome == "H":
+            inner = next((each for each in reversed(self.of(uid)) if each.start <= inner.start <= each.stop), inner)
+            kinds = {"Timeout": ("takes", "succeeds"), "ReactiveSequence": ("keeps", "never", "uses", "succeeds")}
+            if inner.uid == uid and inner.outcome == "F":
+                own = self.guards[uid] == requirement.name
+                return own and claim.verb in kinds.get(self.tree.nodes[uid].kind, ())
+            uid = self.tree.parent[uid]
+        return False
+
+    def refused(self, uid: int, claim: Claim, requirement: Requirement) -> list[Judged]:
+        """The starts that a guard's condition before the node has refused; one that `needs` has counts for needs and
+        succeeds."""
+        found = []
+        above = self.tree.parent[uid]
+        while above in self.guards:
+            verb = self.tree.nodes[above].path.rpartition("_")[2]
+            checks = [
+                each
+                for each in self.activations
+                if self.tree.parent[each.uid] == above
+                and self.tree.nodes[each.uid].kind == "ScriptCondition"
+                and each.outcome == "F"
+                and verb in ("needs", "tries", "follows")
+            ]
+            own = claim.verb == verb and self.guards[above] == requirement.name
+            if own or (claim.verb == "succeeds" and verb == "needs"):
+                found += [Judged(each.run, uid, False, each.end, each.end, True) for each in checks]
+            above = self.tree.parent[above]
+        return found
 
     def whole(self, a: Activation, claim: Claim) -> Verdict:
         """What one activation comes to, whatever the scope; not of keeps and never, where that is a matter of time."""

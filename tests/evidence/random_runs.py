@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 import engine_simulator as engine
 from check_asserts import workspace_of
+from random_guards import Guarded
 
+from btq_lang.btcpp.wrappers import MARK
 from btq_lang.evidence.identity import Candidate, Joined, join
 from btq_lang.evidence.model import (
     FAILURE,
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 STATUS = {engine.IDLE: IDLE, engine.RUNNING: RUNNING, engine.SUCCESS: SUCCESS, engine.FAILURE: FAILURE}
 ACTIONS = ("Move", "Pick", "Look")
 START = 1_795_209_740_000_000  # µs since the epoch
-MOST_NODES = 25
+MOST_NODES = 40
 MOST_ROWS = 300
 
 
@@ -44,6 +46,7 @@ class Case:
 
     Attributes:
         subtrees: the uids of SubTree nodes.
+        guards: the nodes that a build has put around others, with the requirement of each.
         sessions: the rows of each, in the order in which they are read.
         samples: by signal, in its own unit.
     """
@@ -52,6 +55,7 @@ class Case:
     mission: Candidate
     joined: Joined
     subtrees: frozenset[int]
+    guards: dict[int, str]
     sessions: list[list[Transition]]
     samples: dict[str, list[tuple[int, SampleValue]]]
 
@@ -73,25 +77,27 @@ def case(seed: int) -> Case:
         candidate = Candidate(workspace_of({"main.btq": text}), "main.btq", "main", None)
         problems = [each.diagnostic for each in candidate.requirements.problems]
         assert not any(each.severity == Severity.ERROR for each in problems), (text, problems)
-        nodes = [*next(candidate.builds()).running.all]
-        if len(nodes) <= MOST_NODES:
+        build = next(candidate.builds())
+        elements = [each.element for each, _ in build.running.all]
+        if len(elements) <= MOST_NODES:
             break
     root = candidate.requirements.mission
     assert root is not None
-    run, rows = runs(candidate, root, chance, 0.0)
-    sessions = [rows]
-    while chance.random() < 0.2:
-        run, rows = runs(candidate, root, chance, run.now + 1.0)
+    guards = {uid: name for uid, each in enumerate(elements, 1) if (name := each.get(MARK)) is not None}
+    tree = build.tree()
+    assert len(tree.nodes) == len(elements)
+    now = 0.0
+    sessions: list[list[Transition]] = []
+    while not sessions or chance.random() < 0.2:
+        now, rows = runs(candidate, root, chance, now + 1.0)
+        rows = as_logged(chance, tree, Guarded(tree, guards, chance).of(rows))
         sessions.insert(chance.choice([0, len(sessions)]), rows)  # files may be read in any order
-    logged = [
-        (uid, each.element.get("ID") or each.element.tag, each.path, run.parent[uid])
-        for uid, (each, _) in enumerate(nodes, 1)
-    ]
-    joined = join([candidate], LoggedTree(logged))
+    joined = join([candidate], tree)
     assert joined is not None
     assert joined.how == "as built now", text
-    subtrees = frozenset(uid for uid, (each, _) in enumerate(nodes, 1) if each.element.tag == "SubTree")
-    return Case(text, candidate, joined, subtrees, sessions, samples(chance, sorted(itertools.chain(*sessions))))
+    subtrees = frozenset(uid for uid, each in enumerate(elements, 1) if each.tag == "SubTree")
+    sampled = samples(chance, sorted(itertools.chain(*sessions)))
+    return Case(text, candidate, joined, subtrees, guards, sessions, sampled)
 
 
 # ---- Missions -------------------------------------------------------------------------------------------------------
@@ -199,6 +205,8 @@ def requirement(chance: random.Random, name: str, labels: list[str]) -> str:
             lines.append(f"confidence {chance.choice(['60 %', '90 %', '95 %'])}")
         if chance.random() < 0.2:
             lines.append(f"over last {chance.choice(['5 activations', '2 runs', '4 s'])}")
+    elif chance.random() < 0.4:
+        lines.append(f"on violation {chance.choice(['fail', 'fail', 'halt'])}")
     return "\n    ".join([head, *lines]) + apply
 
 
@@ -297,8 +305,7 @@ class LoggedRun(engine.Run):
     """A run whose changes of status are written down.
 
     Attributes:
-        uids: of its nodes, numbered as the engine does: depth first.
-        parent, last: by uid, the node above and the last one below.
+        uids: of its nodes, numbered as the engine does in a tree without guards: depth first.
     """
 
     def __init__(
@@ -308,17 +315,13 @@ class LoggedRun(engine.Run):
         self.rows = rows
         self.resets = resets
         self.uids: dict[engine.Sim, int] = {}
-        self.parent: dict[int, int] = {}
-        self.last: dict[int, int] = {}
         self.status: dict[engine.Sim, str] = {}
-        self.number(self.root, 0)
+        self.number(self.root)
 
-    def number(self, node: engine.Sim, parent: int) -> None:
-        uid = self.uids[node] = len(self.uids) + 1
-        self.parent[uid] = parent
+    def number(self, node: engine.Sim) -> None:
+        self.uids[node] = len(self.uids) + 1
         for child in node.children:
-            self.number(child, uid)
-        self.last[uid] = len(self.uids)
+            self.number(child)
 
     def drawn(self, leaf: SourceNode) -> float:
         return self.chance.choice([0.0, 0.25, 0.5, 1.0, 1.0, 2.0, 3.5])
@@ -334,8 +337,8 @@ class LoggedRun(engine.Run):
             self.rows.append((START + round(self.now * 1e6), self.uids[node], STATUS[status]))
 
 
-def runs(mission: Candidate, root: SourceNode, chance: random.Random, now: float) -> tuple[LoggedRun, list[Transition]]:
-    """The last one of some runs from a time on, and the rows of all of them."""
+def runs(mission: Candidate, root: SourceNode, chance: random.Random, now: float) -> tuple[float, list[Transition]]:
+    """When some runs from a time on have ended, and their rows."""
     resets = chance.random() < 0.7
     rows: list[Transition] = []
     for _ in range(chance.randint(1, 8)):
@@ -352,14 +355,14 @@ def runs(mission: Candidate, root: SourceNode, chance: random.Random, now: float
         elif resets:
             run.write(run.root, engine.IDLE)
         now = run.now + chance.choice([0.0, 0.25, 1.0])
-    return run, as_logged(chance, run, rows)
+    return run.now, rows
 
 
-def as_logged(chance: random.Random, run: LoggedRun, rows: list[Transition]) -> list[Transition]:
+def as_logged(chance: random.Random, tree: LoggedTree, rows: list[Transition]) -> list[Transition]:
     """Rows as control nodes like Nav2's write them, some or all to IDLE left out, cut off, and with pauses."""
     habits = {}
     if chance.random() < 0.4:
-        inner = [uid for uid, last in run.last.items() if last > uid]
+        inner = [uid for uid, last in tree.last.items() if last > uid]
         habits = {uid: chance.choice(["late", "only its result", "IDLE first"]) for uid in inner}
         habits[ROOT] = chance.choice(["late", "IDLE first"])  # a run whose end nobody writes would be part of the next
     found: list[Transition] = []
@@ -370,7 +373,7 @@ def as_logged(chance: random.Random, run: LoggedRun, rows: list[Transition]) -> 
         habit = habits.get(uid)
         if late is not None:
             _, parent, _ = late
-            found += [row, late] if parent < uid <= run.last[parent] else [late, row]
+            found += [row, late] if parent < uid <= tree.last[parent] else [late, row]
             late = None
         elif habit == "late" and status == RUNNING:
             late = row

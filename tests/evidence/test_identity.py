@@ -139,11 +139,26 @@ LIMITED = MAIN_XML.replace(
         ("0 1R 2R 0.1 3R 10 3I 2I 1I", "never exercised", ""),  # stopped by somebody else
         ("0 1R 2R 0.1 3R 10 3F 2F 1F", "satisfied", ""),
         ("0 1R 2R 0.1 3R 10 3S 2S 4S 1S", "satisfied", ""),
+        # The guard left no row in the run in which the node was halted, and failed in the next one.
+        ("0 1R 3R 10 3I 1F 15 1R 2R 3R 20 3F 2F 1F", "satisfied", ""),
     ],
 )
 def test_what_its_own_guard_stops_is_violated(runs: str, expected: str, why: str, verify: Verify) -> None:
     found = verify.clause(LIMIT, runs, xml=LIMITED)
     assert (found["verdict"], "".join(each["why"] for each in found["violations"])) == (expected, why)
+
+
+def test_a_sum_is_not_what_a_guard_has_stopped(verify: Verify) -> None:
+    """It stood around the node for another clause of the requirement."""
+    limits = "sum of Move, Pick takes at most 90 ms\n    Move takes at most 20 ms\n    on violation fail"
+    uid = several(verify, f"QualityReq rq : safety\n    {limits}\n", "")
+    move, limit = uid["Move"], uid["rq_limit"]
+    log = btlog(
+        (verify.folder / "tree.xml").read_text(encoding="utf-8"), rows(f"0 1R {limit}R {move}R 20 {move}I {limit}F 1F")
+    )
+    (verify.folder / "run.btlog").write_bytes(log)
+    (found,) = verify.json("run.btlog", "--mission", "main.btq")["requirements"]
+    assert [(each["verdict"], each["counted"]) for each in found["clauses"]] == [("satisfied", 1), ("violated", 1)]
 
 
 def several(verify: Verify, requirements: str, before: str) -> dict[str, int]:
