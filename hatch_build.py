@@ -24,7 +24,7 @@ PACKAGE = "btq_lang"
 COMPILED = (
     *("lexer", "parser"),
     *("attributes", "blocks", "claims", "clauses", "conditions", "cursor", "item_words", "nodes"),
-    *("characters", "node_clauses", "quantities", "scan", "slips", "syntax", "token_list", "tokens", "words"),
+    *("node_clauses", "quantities", "scan", "slips", "syntax", "tokens", "words"),
     *(f"script/{module}" for module in ("__init__", "check", "mistakes", "parser", "tokens", "tree", "versions")),
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.

@@ -26,14 +26,13 @@ from mutators import Mutant, mutants, with_bug
 ROOT = Path(__file__).resolve().parents[1]
 
 # The modules of a room, and the tests that must find a bug in them, the quickest first: globs, also for folders that a
-# room may get one day; one that matches nothing is ignored.  Not the parser's short cuts (`plain`, `patterns`): where a
-# bug has one decline a line that it could read, the result is the same.
+# room may get one day; one that matches nothing is ignored.
 ROOMS = {
     "parser": (
-        "lexer.py token_list.py parser.py cursor.py nodes.py attributes.py claims.py conditions.py clauses.py "
+        "lexer.py parser.py cursor.py nodes.py attributes.py claims.py conditions.py clauses.py "
         "blocks.py item_words.py slips.py syntax/suggestions.py grammar/**/*.py",
         "test_lexer.py test_parser*.py test_first_mistakes.py "
-        "lexer/**/test_*.py parser/**/test_*.py grammar/**/test_*.py test_plain.py",
+        "lexer/**/test_*.py parser/**/test_*.py grammar/**/test_*.py",
     ),
     "checks": ("checks/**/*.py", "test_rules.py test_checks_*.py test_budgets.py checks/**/test_*.py"),
     "btcpp": (

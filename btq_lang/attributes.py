@@ -63,22 +63,18 @@ class AttributeParser(ClauseParser):
         self.advance()
         self.group += 1
         while self.kind != CLOSE and self.kind != NEWLINE:
-            if self.kind == NAME or self.kind == STRING:
-                following = self.index + 1
-                if self.kinds[following] == OPERATOR and self.raws[following] == "=":
-                    pairs.append(self.pair())
-                elif self.kind == NAME and self.raw in NODE_CLAUSES:
-                    clauses.append(self.node_clause())
-                elif self.kind == NAME and self.raw == "parameters":
-                    self.advance()
-                    if not self.at_key():
-                        self.expected("`key = value` after `parameters`")
-                    continue
-                else:
-                    self.not_an_attribute(pairs, clauses)
+            if (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "=":
+                pairs.append(self.pair())
+            elif self.kind == NAME and self.raw in NODE_CLAUSES:
+                clauses.append(self.node_clause())
+            elif self.at_word("parameters"):
+                self.advance()
+                if not self.at_key():
+                    self.expected("`key = value` after `parameters`")
+                continue
             else:
                 self.not_an_attribute(pairs, clauses)
-            if self.kind == OPERATOR and self.raw == ",":
+            if self.raw == ",":
                 self.advance()
         self.group -= 1
         self.advance()
@@ -138,18 +134,19 @@ class AttributeParser(ClauseParser):
 
     def pair(self) -> Pair:
         """Pair = Name "=" Value"""
-        key = self.take()
-        self.advance()
+        index = self.index
+        key = Word(self.kind, self.starts[index] - self.base, self.raw)
+        self.go_to(index + 2)
         return Pair(key, self.value())
 
     def value(self) -> Word | None:
         """Value = STRING | NAME | NUMBER | QUANTITY | BRACED"""
-        if self.kind not in VALUES and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
+        whole = self.kind in VALUES
+        if not whole and (self.kind not in (SYMBOL, OPERATOR) or self.raw in ("=", ",")):
             self.expected("a value: a string, a name, a number, a quantity or {key}")
             return None
-        whole = self.kind in VALUES
         word = self.take()
-        if whole and (self.at_key() or not self.joins()):
+        if whole and (self.kind == CLOSE or not self.joins() or self.at_key()):
             return word
         if self.kind == STRING and word.kind != STRING:
             return self.half_quoted(word)
@@ -169,9 +166,9 @@ class AttributeParser(ClauseParser):
 
     def joins(self) -> bool:
         """Whether the token at hand makes one value with the one before it: there is no blank between."""
-        if self.kind in (NEWLINE, OPEN, CLOSE) or self.raw == "," or self.raw == "=":
+        if not self.adjacent(self.index):
             return False
-        return self.adjacent(self.index)
+        return self.kind not in (NEWLINE, OPEN, CLOSE) and self.raw not in (",", "=")
 
     def ends_value(self) -> bool:
         """Whether what may follow a value follows."""

@@ -54,6 +54,7 @@ class Cursor:
         self._line_start = 0  # of the logical line
         self._said: list[int] | None = None  # where it found a mistake in it
         self._in_wake = self._would_complain = False  # the line follows brackets that ended early; it has a mistake
+        self._ends_early = False  # it ends brackets early itself
         self._unclosed = len(text)  # the first of its brackets that is not closed
 
     # ---- lines ----
@@ -61,48 +62,48 @@ class Cursor:
     def scan(self) -> None:
         """Cut the open line into tokens and stand on the first."""
         lexer = self.lexer
-        self.known = len(lexer.problems)
-        self._in_wake = self._makes_wake() and not self.text[self._line_end() : lexer.line_start].strip()
+        # What follows a line that ends its brackets early is probably the rest of the brackets, and so is what follows
+        # that; that a `)` is missing has been said.
+        wakes = self._would_complain if self._in_wake else self._ends_early
+        self._in_wake = wakes and not self.text[self._line_end() : lexer.line_start].strip()
         self._would_complain = False
+        self.known = len(lexer.problems)
         self._line_start = lexer.line_start
         lexer.scan()
+        self._ends_early = lexer.ends_early
         self.kinds, self.starts, self.raws = lexer.kinds, lexer.starts, lexer.raws
         self.index = 0
         self.kind = self.kinds[0]
         self.raw = self.raws[0]
         self._said = None
 
-    def _makes_wake(self) -> bool:
-        """Whether the line just read ends its brackets early, or is itself what is left of such brackets.
-
-        What follows it is then probably the rest of the brackets, and that a `)` is missing has been said.
-        """
-        if self._in_wake:
-            return self._would_complain
-        return len(self.kinds) > 1 and self.kinds[-2] == CLOSE and not self.raws[-2]
-
     def is_in_wake(self) -> bool:
         """Whether a mistake on the line just read may hide one on the next."""
-        return self._in_wake or self._makes_wake()
+        return self._in_wake or self._ends_early
 
     def _line_end(self) -> int:
         return self.starts[-1] + len(self.raws[-1])
 
     def end_line(self, notes: tuple[str, ...] = (), fixes: tuple[Fix, ...] = ()) -> int:
         """NL: complain of what is left of the line, open the next one; return where this one's last token ends."""
-        self.skip_last_sign()
         if self.kind != NEWLINE:
-            if not notes and self.at_name() and self.is_behind_name():
-                notes = (_QUOTES,)
-            if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
-                notes = ("a name that contains a point goes in quotes",)
-            if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
-                notes = ("a quantity has one number and one unit: `1.5 h`, `90 min`",)
-            self.expected("the end of the line", notes, fixes)
+            self.skip_last_sign()
+        if self.kind != NEWLINE:
+            self.no_end(notes, fixes)
         last = len(self.kinds) - 2
         end = self.starts[last] + len(self.raws[last]) if last >= 0 else self.starts[0]
         self.more = self.lexer.open_line()
         return end - self.base
+
+    def no_end(self, notes: tuple[str, ...], fixes: tuple[Fix, ...]) -> None:
+        """Complain of what is left of the line."""
+        if not notes and self.at_name() and self.is_behind_name():
+            notes = (_QUOTES,)
+        if not notes and self.at(".") and self.kinds[self.index + 1] == NAME and self.adjacent(self.index + 1):
+            notes = ("a name that contains a point goes in quotes",)
+        if not notes and self.kind == QUANTITY and self.index and self.kinds[self.index - 1] == QUANTITY:
+            notes = ("a quantity has one number and one unit: `1.5 h`, `90 min`",)
+        self.expected("the end of the line", notes, fixes)
 
     def skip_sign(self, *signs: str) -> None:
         """Report a sign as other languages have it after a word, and pass over it: `on violation: fail`."""
@@ -150,13 +151,17 @@ class Cursor:
 
     def take(self) -> Word:
         """The token at hand as a word, and on to the next."""
-        word = Word(self.kind, self.starts[self.index] - self.base, self.raw)
-        self.advance()
+        index = self.index
+        word = Word(self.kind, self.starts[index] - self.base, self.raw)
+        if self.kind != NEWLINE:
+            self.index = index + 1
+            self.kind = self.kinds[index + 1]
+            self.raw = self.raws[index + 1]
         return word
 
     def at_key(self) -> bool:
         """Whether `key =` is at hand."""
-        return (self.kind == NAME or self.kind == STRING) and self.is_operator(self.index + 1, "=")
+        return (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "="
 
     def is_behind_name(self) -> bool:
         """Whether the token before the one at hand is a NAME."""

@@ -13,21 +13,41 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.characters import HASH, SLASH
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import (
+    APOSTROPHE,
+    CAPITAL_A,
+    CAPITAL_Z,
+    CLOSING,
+    COMMA,
+    EQUALS,
+    HASH,
+    LINE_FEED,
+    NINE,
+    OPENING,
+    QUOTE,
+    RETURN,
+    SLASH,
+    SMALL_A,
+    SMALL_Z,
+    SPACE,
+    TAB,
+    ZERO,
+    begins_name,
     blanks_end,
     braced_end,
+    ink_map,
     line_end,
     line_opening,
     line_start,
     name_end,
     number_at,
     string_end,
-    symbol_at,
+    symbol_end,
     unit_run,
+    word_map,
 )
 from btq_lang.slips import (
     ATTRIBUTES,
@@ -42,9 +62,13 @@ from btq_lang.slips import (
 from btq_lang.syntax import quote as quoted
 from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import (
+    BLANK,
     BRACED,
     CLOSE,
+    COMMENT,
+    DEDENT,
     ERROR,
+    INDENT,
     NAME,
     NEWLINE,
     NUMBER,
@@ -53,9 +77,54 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
+    Token,
 )
 
+if TYPE_CHECKING:
+    from mypy_extensions import i64
+
 State: TypeAlias = "tuple[tuple[str, ...], tuple[tuple[str, ...], ...], int]"
+
+
+def tokens(text: str) -> tuple[Token, ...]:
+    """All tokens of a text, blanks and comments included, INDENT and DEDENT where blocks open and close."""
+    lexer = Lexer(text)
+    comments = lexer.comments
+    found: list[Token] = []
+    end = level = told = 0
+    while lexer.open_line():
+        lexer.scan()
+        told = _fill(found, text, end, lexer.starts[0], comments, told)
+        end = lexer.starts[0]
+        step = INDENT if lexer.level > level else DEDENT
+        found += [Token(step, end, "")] * abs(lexer.level - level)
+        level = lexer.level
+        for kind, start, raw in zip(lexer.kinds, lexer.starts, lexer.raws, strict=True):
+            told = _fill(found, text, end, start, comments, told)
+            found.append(Token(kind, start, raw))
+            end = start + len(raw)
+    _fill(found, text, end, len(text), comments, told)
+    found += [Token(DEDENT, len(text), "")] * level
+    return tuple(found)
+
+
+def pieces(text: str) -> list[tuple[int, int, str]]:
+    """Kind, start and text of all tokens but brackets, line ends, blanks and what begins nothing: a third of
+    what `tokens` has, and quickly."""
+    lexer = Lexer(text)
+    comments = lexer.comments
+    found: list[tuple[int, int, str]] = []
+    told = 0
+    while lexer.open_line():
+        lexer.scan()
+        of_line = [*zip(lexer.kinds, lexer.starts, lexer.raws, strict=True)]
+        if told < len(comments):
+            of_line += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+            of_line.sort(key=_start_of)
+            told = len(comments)
+        found += [piece for piece in of_line if piece[0] not in _SILENT]
+    found += [(COMMENT, start, text[start:end]) for start, end in comments[told:]]
+    return found
 
 
 class Lexer:
@@ -71,12 +140,15 @@ class Lexer:
         kinds, starts, raws: the tokens of the line after `scan`; the last one is always a NEWLINE.
         comments: start and end of every comment so far.
         problems: what was wrong so far.
+        ends_early: the line ends brackets that have no `)`, and nothing follows these.
         ended_early: how many brackets ended before a line further left, while no other has opened since.
     """
 
     def __init__(self, text: str) -> None:
         self.text: Final = text
         self.size: Final = len(text)
+        self.words: Final = word_map(text)
+        self.ink: Final = ink_map(text)
         self.position = 1 if text.startswith("\ufeff") else 0
         self.level = 0
         self.line_start = self.position
@@ -86,6 +158,7 @@ class Lexer:
         self.raws: list[str] = []
         self.comments: list[tuple[int, int]] = []
         self.problems: list[Diagnostic] = []
+        self.ends_early = False
         self.ended_early = 0
         self._cut_until = -1  # the end of the last line that ended its brackets early
         self.columns: list[str] = [""]
@@ -96,9 +169,11 @@ class Lexer:
         self._strange = False  # a character that begins nothing was reported on this line
         self._stray_until = -1  # the end of the last line of text where a `)` was reported
         self._wrong_units = 0  # how many were reported on this line
-        self._last_line = 0  # where the line of text at hand begins; lines inside strings and comments do not count
+        self._line_blanks = ""  # of the line of text at hand, but for lines inside strings and comments
         self._root_level = -1  # the level of an open Root block's items
         self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
+        self._has_returns: Final = "\r" in text
+        self._has_escapes: Final = "\\" in text
         self._no_comment_end = self.size + 1  # nor any */
 
     # ---- lines ----
@@ -106,13 +181,13 @@ class Lexer:
     def open_line(self) -> bool:
         """Go to the next line that says something and find its level; False at the end of the text."""
         text, size = self.text, self.size
-        start, position = line_opening(text, self.position, self.blanks)
+        start, position = line_opening(text, self.ink, self.position)
         blanks = text[start:position]
         while position < size and ord(text[position]) in (HASH, SLASH):
             end = self._comment(position)
             if end == position:
                 break
-            start_behind, position = line_opening(text, end, self.blanks)
+            start_behind, position = line_opening(text, self.ink, end)
             if start_behind > end:
                 start = start_behind
                 blanks = text[start:position]
@@ -193,52 +268,88 @@ class Lexer:
 
     def scan(self) -> None:
         """Cut the opened line into tokens, through all lines that its brackets join."""
-        self.kinds, self.starts, self.raws = [], [], []
-        self._brackets.clear()
+        kinds: list[int] = []
+        starts: list[int] = []
+        raws: list[str] = []
+        self.kinds, self.starts, self.raws = kinds, starts, raws
+        brackets = self._brackets
         self._strange = False
         self._wrong_units = 0
-        self._last_line = self.line_start
-        position = self.position
-        text, size = self.text, self.size
+        self._line_blanks = self.blanks
+        text, words = self.text, self.words
+        size: i64 = self.size
+        position: i64 = self.position
         while position < size:
-            character = text[position]
-            if character == " " or character == "\t":
+            code: i64 = ord(text[position])
+            if code == SPACE:
                 position += 1
-            elif character == "\n" or character == "\r":
-                if not self._brackets:
-                    break
-                position = self._continue(position)
-                if not self._brackets:
-                    break
-            elif character.isalpha() or character == "_":
-                position = self._name(position)
-            elif character == '"' or character == "'":
-                position = self._string(position, character)
-            elif character == "=" or character == ",":
-                position = self._operator(position)
-            elif character == "(":
-                self._brackets.append((position, self._blanks()))
+                continue
+            end = position + 1
+            if code >= CAPITAL_A and (SMALL_A <= code <= SMALL_Z or code <= CAPITAL_Z or begins_name(code)):
+                kind = NAME
+                end = name_end(text, words, position)
+                if code < SMALL_A and end <= position + 3 and (further := symbol_end(text, position)) >= end:
+                    kind = SYMBOL
+                    end = further
+            elif code == EQUALS:
+                kind = OPERATOR
+                if end < size and ord(text[end]) == EQUALS:
+                    end += 1
+            elif code in (QUOTE, APOSTROPHE):
+                kind = STRING
+                end = self._string_end(position, text[position])
+                if end < 0:
+                    position = self._no_string(position, text[position])
+                    continue
+            elif code == OPENING:
+                kind = OPEN
+                brackets.append((position, self._line_blanks))
                 self.ended_early = 0
-                position = self._add(OPEN, position, position + 1)
-            elif character == ")":
-                position = self._close(position)
-            elif (character == "#" or character == "/") and (end := self._comment(position)) > position:
-                position = end
-            elif "0" <= character <= "9":
+            elif code == CLOSING and brackets:
+                kind = CLOSE
+                brackets.pop()
+            elif code == COMMA:
+                kind = OPERATOR
+            elif code == TAB:
+                position += 1
+                continue
+            elif code in (LINE_FEED, RETURN):
+                if brackets:
+                    position = self._continue(position)
+                if not brackets:
+                    break
+                continue
+            elif ZERO <= code <= NINE:
                 position = self._number(position)
+                continue
             else:
-                position = self._other(position, character)
-        if self._brackets and position >= size:
-            self._end_brackets(len(self._brackets), size, None)
+                position = self._other(position, text[position])
+                continue
+            kinds.append(kind)
+            starts.append(position)
+            raws.append(text[position:end])
+            position = end
+        self._end_line(position)
+
+    def _end_line(self, position: i64) -> None:
+        """NEWLINE, and what is remembered of the line"""
+        if self._brackets:
+            self._end_brackets(len(self._brackets), position, None)
+        raws = self.raws
+        self.ends_early = len(raws) > 0 and raws[-1] == ""
         end = position
-        if position < size and text[position] in "\r\n":
-            end = position + (2 if text.startswith("\r\n", position) else 1)
+        if position < self.size:
+            end += 2 if self._has_returns and self.text.startswith("\r\n", position) else 1
         self._add(NEWLINE, position, end)
         self.position = end
-        if len(self.kinds) > 1 and self.kinds[-2] == CLOSE and not self.raws[-2]:
+        if self.ends_early:
             self._cut_until = end
-        if self._is_root_line():
+        if raws[0] == "Root" and self._is_root_line():
             self._root_level = self.level + 1
+
+    def first_word(self) -> str:
+        """The NAME that the opened line begins with; else it begins with no such text."""
+        return self.text[self.position : name_end(self.text, self.words, self.position)]
 
     def line_end(self) -> int:
         """Where the line of text at hand ends."""
@@ -250,34 +361,23 @@ class Lexer:
 
     # ---- tokens, each from its first character to the position behind it ----
 
-    def _add(self, kind: int, start: int, end: int) -> int:
+    def _add(self, kind: int, start: i64, end: i64) -> i64:
         self.kinds.append(kind)
         self.starts.append(start)
         self.raws.append(self.text[start:end])
         return end
 
-    def _name(self, start: int) -> int:
-        end = name_end(self.text, start)
+    def _other(self, start: i64, character: str) -> i64:
+        """Symbols, signs, braces and comments; what begins nothing is reported once a line and left out."""
         text = self.text
-        word = text[start:end]
-        kind = NAME
-        if len(word) <= 3 and (symbol := symbol_at(text, start)):
-            if len(symbol) >= len(word):
-                kind, end = SYMBOL, start + len(symbol)
-        elif end < self.size and text[end] in "#/" and text.startswith(_COMMENT_SIGNS, end):
-            return self._quote_this(start)
-        return self._add(kind, start, end)
-
-    def _operator(self, start: int) -> int:
-        text = self.text
-        two = text[start : start + 2]
-        return self._add(OPERATOR, start, start + 2 if two in _TWO else start + 1)
-
-    def _other(self, start: int, character: str) -> int:
-        """Symbols, signs and braces; what begins nothing is reported once a line and left out."""
-        text = self.text
-        if symbol := symbol_at(text, start):
-            return self._add(SYMBOL, start, start + len(symbol))
+        if character == "#" or character == "/":
+            behind = self._comment(start)
+            if behind > start:
+                return behind
+        if character == ")":
+            return self._close_nothing(start)
+        if (end := symbol_end(text, start)) > start:
+            return self._add(SYMBOL, start, end)
         if (
             character == "-"
             and start + 1 < self.size
@@ -289,8 +389,8 @@ class Lexer:
             return self._add(BRACED, start, braced)
         if character in "#/" and text.startswith(_COMMENT_SIGNS, start):
             return self._quote_this(start)
-        if text[start : start + 2] in _TWO or character in ":.<>+-*/%^":
-            return self._operator(start)
+        if (two := text[start : start + 2]) in _TWO or character in ":.<>+-*/%^":
+            return self._add(OPERATOR, start, start + 2 if two in _TWO else start + 1)
         if character == "!" or text.startswith("&&", start):  # the parser knows whether a condition is meant
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
@@ -377,7 +477,7 @@ class Lexer:
         text = self.text
         at = line_end(text, start)
         while at < self.size:
-            first, at = line_opening(text, at, "")
+            first, at = line_opening(text, self.ink, at)
             if at - first <= len(self.blanks):
                 behind = blanks_end(text, at + 1, self.size)
                 is_alone = behind >= self.size or text[behind] in "\r\n"
@@ -418,7 +518,7 @@ class Lexer:
             return False
         return not _has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
 
-    def _number(self, start: int) -> int:
+    def _number(self, start: i64) -> i64:
         kind, end = number_at(self.text, start)
         if kind == ERROR:
             unit = blanks_end(self.text, end, self.size)
@@ -428,28 +528,29 @@ class Lexer:
                 self.problems.append(unknown_unit(self.text, unit, end))
         return self._add(kind, start, end)
 
-    def _string(self, start: int, quote: str) -> int:
-        """A string runs to its closing quote, however many lines; if there is none, to the end of its line."""
+    def _string_end(self, start: i64, quote: str) -> i64:
+        """A string runs to its closing quote, however many lines; -1 where there is none, or none begins."""
+        if start >= (self._no_double if quote == '"' else self._no_single):
+            return -1
         text = self.text
-        end = -1
-        if start < (self._no_double if quote == '"' else self._no_single):
-            end = string_end(text, start + 1, quote)
-            if end < 0:
-                if quote == '"':
-                    self._no_double = start
-                else:
-                    self._no_single = start
-        raw = text[start:end] if end >= 0 else ""
-        has_lines = "\n" in raw or "\r" in raw
-        if (end < 0 or has_lines) and self._closes_path(start):
-            return self._add(ERROR, start, start + 1)
+        end: i64 = string_end(text, start + 1, quote)
         if end < 0:
-            return self._unclosed_string(start, quote)
-        if has_lines:
+            if quote == '"':
+                self._no_double = start
+            else:
+                self._no_single = start
+            return -1
+        if text.find("\n", start, end) >= 0 or (self._has_returns and text.find("\r", start, end) >= 0):
+            if self._closes_path(start):
+                return -1
             self._check_lines(start, end)
-        if "\\" in raw:
-            self.problems += unknown_escapes(start, raw)
-        return self._add(STRING, start, end)
+        if self._has_escapes and text.find("\\", start, end) >= 0:
+            self.problems += unknown_escapes(start, text[start:end])
+        return end
+
+    def _no_string(self, start: i64, quote: str) -> i64:
+        """A quote that closes the path of an include, or one that is not closed."""
+        return self._add(ERROR, start, start + 1) if self._closes_path(start) else self._unclosed_string(start, quote)
 
     def _closes_path(self, start: int) -> bool:
         """Whether a quote at the end of its line closes what stands behind `include` without an opening one: no string
@@ -583,16 +684,14 @@ class Lexer:
 
     # ---- brackets ----
 
-    def _close(self, position: int) -> int:
-        if not self._brackets:
-            if self.ended_early:  # it is the one that was missed
-                self.ended_early -= 1
-            elif position > self._stray_until:
-                self._report("syntax-error", position, position + 1, "unexpected `)`: no bracket is open")
-                self._stray_until = line_end(self.text, position)
-            return position + 1
-        self._brackets.pop()
-        return self._add(CLOSE, position, position + 1)
+    def _close_nothing(self, position: i64) -> i64:
+        """A `)` where no bracket is open."""
+        if self.ended_early:  # it is the one that was missed
+            self.ended_early -= 1
+        elif position > self._stray_until:
+            self._report("syntax-error", position, position + 1, "unexpected `)`: no bracket is open")
+            self._stray_until = line_end(self.text, position)
+        return position + 1
 
     def _close_square(self, position: int) -> int:
         span = Span(position, position + 1)
@@ -601,22 +700,16 @@ class Lexer:
         self._brackets.pop()
         return self._add(CLOSE, position, position + 1)
 
-    def _blanks(self) -> str:
-        """The blanks at the start of the line at hand."""
-        return self.text[self._last_line : blanks_end(self.text, self._last_line, self.size)]
-
-    def _continue(self, position: int) -> int:
+    def _continue(self, position: i64) -> i64:
         """Behind a line end in brackets: the next line, or `position` where the line ends the brackets early."""
-        text, size = self.text, self.size
-        start = at = position
-        while at < size and text[at] in " \t\r\n":
-            if text[at] in "\r\n":
-                start = at + 1
-            at += 1
-        self._last_line = start
-        if at >= size or text[at] == ")" or text.startswith(_COMMENT_SIGNS, at):
+        text = self.text
+        start, at = line_opening(text, self.ink, position)
+        blanks = self._line_blanks = text[start:at]
+        if at >= self.size:
             return at
-        blanks = text[start:at]
+        code: i64 = ord(text[at])
+        if code in (CLOSING, HASH) or (code == SLASH and text.startswith(_COMMENT_SIGNS, at)):
+            return at
         if self._at_top_column(blanks) and _TOP_LINE.match(text, at):
             self._end_brackets(len(self._brackets), position, at)
             return position
@@ -690,6 +783,37 @@ class Lexer:
         self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
 
 
+# ---- all tokens ----
+
+
+def _start_of(piece: tuple[int, int, str]) -> int:
+    return piece[1]
+
+
+def _fill(found: list[Token], text: str, end: int, start: int, comments: list[tuple[int, int]], told: int) -> int:
+    """Add what the lexer passed over between two tokens: blanks, comments and characters that begin nothing.
+
+    Args:
+        told: how many of the comments were added before.
+
+    Returns:
+        How many are now.  (A function inside of `tokens` would hold all of these, compiled, until Python looks for
+        garbage.)
+    """
+    while told < len(comments) and comments[told][0] < start:
+        comment, behind = comments[told]
+        found += _gaps(text, end, comment)
+        found.append(Token(COMMENT, comment, text[comment:behind]))
+        end = behind
+        told += 1
+    found += _gaps(text, end, start)
+    return told
+
+
+def _gaps(text: str, start: int, end: int) -> list[Token]:
+    return [Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _GAP.finditer(text, start, end)]
+
+
 # ---- blanks ----
 
 
@@ -726,6 +850,7 @@ _TOP_LINE: Final = re.compile(
           (?! [ \t]* = )
     """
 )
+_GAP: Final = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
 _WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
 _TWICE_BRACED: Final = re.compile(r"\{(\{[^{}\r\n]*\})\}")
@@ -736,6 +861,7 @@ _VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ 
 
 # ---- tables ----
 
+_SILENT: Final = (OPEN, CLOSE, NEWLINE)
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _COMMENT_SIGNS: Final = ("#", "//", "/*")
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong

@@ -40,6 +40,7 @@ from btq_lang.tokens import (
     NODE_CLAUSES,
     NUMBER,
     OPEN,
+    OPERATOR,
     QUANTITY,
     STRING,
     SYMBOL,
@@ -67,45 +68,54 @@ class NodeParser(AttributeParser):
             while block.level >= inner:
                 blocks.pop().close()
                 block = blocks[-1]
-            node = None
             self.scan()
-            word = self.raw if self.kind == NAME else ""
-            if word in NODE_CLAUSES:
-                if len(blocks) > 1 or block.has_nodes():
-                    block.clauses += self.clause_line_behind(inner, block.children)
-                else:  # the tree's own: XML may stand before it, as it may among ports
-                    block.clauses += self.clause_line(inner)
-            elif word == "QualityReq" and self.is_requirement():
-                block.clauses.append(self.requirement_line(inner))
-            elif word == "xml":
-                block.children.append(self.verbatim())
-                self.no_block(inner)
-            elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
-                if block.clauses:
-                    self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
-                ports.append(self.port())
-                self.no_block(inner)
-            else:
-                if len(blocks) > MAX_DEPTH:
-                    if not told_too_deep:
-                        told_too_deep = True
-                        self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
-                    blocks.pop().close()
-                    block = blocks[-1]
-                node = self.node(inner)
-            if node is not None:
-                block.children.append(node)
-                if self.more and lexer.level > inner:
-                    block = Block(inner, node)
-                    blocks.append(block)
+            if self.kind == NAME and self.raw in _NO_KINDS and self.other_line(inner, blocks, ports):
+                continue
+            if len(blocks) > MAX_DEPTH:
+                if not told_too_deep:
+                    told_too_deep = True
+                    self.complain("nested-too-deep", self.here(), _TOO_DEEP, (OF_ITS_OWN,))
+                blocks.pop().close()
+                block = blocks[-1]
+            node = self.node(inner)
+            if node is None:
+                continue
+            block.children.append(node)
+            if self.more and lexer.level > inner:
+                block = Block(inner, node)
+                blocks.append(block)
         for open_block in blocks:
             open_block.close()
         return tuple(ports), tuple(blocks[0].clauses), tuple(blocks[0].children)
 
+    def other_line(self, level: int, blocks: list[Block], ports: list[Port]) -> bool:
+        """ClauseLine | Port | Verbatim, into the last of the open blocks; False where the word at hand begins a node"""
+        block = blocks[-1]
+        word = self.raw
+        if word in NODE_CLAUSES:
+            if len(blocks) > 1 or block.has_nodes():
+                block.clauses += self.clause_line_behind(level, block.children)
+            else:  # the tree's own: XML may stand before it, as it may among ports
+                block.clauses += self.clause_line(level)
+        elif word == "QualityReq" and self.is_requirement():
+            block.clauses.append(self.requirement_line(level))
+        elif word == "xml":
+            block.children.append(self.verbatim())
+            self.no_block(level)
+        elif word in DIRECTIONS and len(blocks) == 1 and not block.has_nodes():
+            if block.clauses:
+                self.complain("syntax-error", self.here(), "ports go before satisfices, satisfies and tags")
+            ports.append(self.port())
+            self.no_block(level)
+        else:
+            return False
+        return True
+
     def node(self, level: int) -> Node | None:
         """Kind [ Label ] [ Attributes ] { NodeClause } NL"""
-        self.skip_dash()
-        start = self.start()
+        if self.kind == OPERATOR:
+            self.skip_dash()
+        start = self.starts[self.index] - self.base
         category: Word | None = None
         kind: Word | None = None
         if self.kind == NAME and self.raw in CATEGORIES:
@@ -113,13 +123,14 @@ class NodeParser(AttributeParser):
             self.skip_glued_colon()
             if self.at_label():
                 kind = self.take()
-        elif self.is_doc_string():
+        elif self.kind == STRING and self.is_doc_string():
             self.other_comment(self.here().start + 3)
             self.end_line()
             return None
         elif self.kind == NAME or self.kind == SYMBOL or self.kind == STRING:
             kind = self.take()
-            self.skip_last_sign()
+            if self.kind == OPERATOR:
+                self.skip_last_sign()
         else:
             self.no_node()
             self.end_line()
@@ -130,20 +141,21 @@ class NodeParser(AttributeParser):
         label = None
         if self.kind == NAME and self.kinds[self.index + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
             clauses.append(self.node_clause(meant))
-        elif self.at_label():
+        elif self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES):
             label = self.take()
         attributes: tuple[Pair, ...] = ()
         if self.kind == OPEN:
             attributes = self.attributes(clauses)
         while self.kind == NAME and self.raw in NODE_CLAUSES:
             clauses.append(self.node_clause())
-        bare = self.index == 1 and self.at_bare_value()  # `key = value` after a forgotten bracket
+        bare = False
         if self.kind != NEWLINE:
+            bare = self.index == 1 and self.at_bare_value()  # `key = value` after a forgotten bracket
             self.leftover(kind, label is not None, clauses)
         end = self.end_line()
         if bare and not self.deeper(level):
             return None
-        return Node(start, end, category, kind, label, attributes, tuple(clauses), ())
+        return Node(start, end, category, kind, label, attributes, tuple(clauses) if clauses else (), ())
 
     def skip_dash(self) -> None:
         """Report the dash of a list as YAML and Markdown have it, and pass over it: `- Go`."""
@@ -476,6 +488,7 @@ XML: Final = (
 )
 CHILD: Final = "a child goes on a line of its own below its parent, indented"
 _TAG: Final = re.compile(r"""<([^\W\d]\w*)((?:\s+[\w:]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>""")
+_NO_KINDS: Final = NODE_CLAUSES | DIRECTIONS | {"QualityReq", "xml"}
 _NOT_NODES: Final = frozenset(("root", "BehaviorTree", "TreeNodesModel", "include"))
 _COMMENT_ENDS: Final = ("-->", '"""', "'''")
 _STATEMENTS: Final = {

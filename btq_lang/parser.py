@@ -18,7 +18,7 @@ from btq_lang.garbage import NotCollecting
 from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.nodes import NodeParser
 from btq_lang.record import replace
-from btq_lang.scan import blanks_end, is_name, is_unit, line_end, name_end, number_end, path_end
+from btq_lang.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -91,7 +91,7 @@ class Parsed:
     @property
     def tokens(self) -> tuple[Token, ...]:
         """All tokens, blanks and comments included: joined, their texts are the file.  Made when first asked for."""
-        from btq_lang.token_list import tokens  # a check does not ask
+        from btq_lang.lexer import tokens  # a check does not ask
 
         if self._tokens is None:
             self._tokens = tokens(self.text)
@@ -294,7 +294,7 @@ class Parser(NodeParser):
         """Whether the open line looks like an item, wherever it stands; a node may look like a model."""
         if not self.more:
             return False
-        word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
+        word = self.lexer.first_word()
         return word in ITEM_WORDS and word not in CATEGORIES and word != "xml"
 
     def entry(self, item: Item, in_root: bool) -> None:
@@ -643,7 +643,7 @@ class Parser(NodeParser):
         """Whether the open line is an item again, or what is meant for one, or stands further left."""
         if self.lexer.level > level:
             return self.begins_item()
-        word = self.text[self.lexer.position : name_end(self.text, self.lexer.position)]
+        word = self.lexer.first_word()
         if self.lexer.level < level or word in ITEM_WORDS:
             return True
         return not word.startswith("<") and bool(item_word_meant(word))

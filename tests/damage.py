@@ -39,9 +39,9 @@ from btq_lang.checks import check  # noqa: E402
 from btq_lang.diff import compare  # noqa: E402
 from btq_lang.formatter import format_text  # noqa: E402
 from btq_lang.graph.picture import picture  # noqa: E402
+from btq_lang.lexer import tokens  # noqa: E402
 from btq_lang.parser import parse  # noqa: E402
 from btq_lang.rules import Severity  # noqa: E402
-from btq_lang.token_list import tokens  # noqa: E402
 from btq_lang.trace import write as write_overview  # noqa: E402
 from btq_lang.trace.collect import collect  # noqa: E402
 from btq_lang.workspace import Workspace  # noqa: E402

@@ -24,12 +24,10 @@ ROWS: tuple[frozenset[str], ...] = (
     frozenset(
         {
             "tokens",
-            "characters",
             "scan",
             "measured",
             "slips",
             "lexer",
-            "token_list",
             "words",
             "node_clauses",
             "syntax",

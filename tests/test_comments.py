@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from layouts import relaid
 
 from btq_lang.comments import Comment, Comments, comments
+from btq_lang.lexer import tokens
 from btq_lang.parser import parse
-from btq_lang.token_list import tokens
 from btq_lang.tokens import COMMENT
 
 PLACES = ("before", "within", "behind", "first", "last")

@@ -13,9 +13,9 @@ from layouts import has_errors, places, relaid, said, words
 from missions import mission
 
 from btq_lang.formatter import FormatOptions, format_range, format_text
+from btq_lang.lexer import tokens
 from btq_lang.parser import parse
 from btq_lang.text import apply_edits
-from btq_lang.token_list import tokens
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT
 
 ROOT = Path(__file__).resolve().parents[1]

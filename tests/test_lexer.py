@@ -13,9 +13,8 @@ from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import EXPERIMENTS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.item_words import ITEM_WORDS
-from btq_lang.lexer import Lexer
+from btq_lang.lexer import Lexer, tokens
 from btq_lang.parser import parse
-from btq_lang.token_list import tokens
 from btq_lang.tokens import BLANK, DEDENT, DIRECTIONS, INDENT, NAMES, NEWLINE, NODE_CLAUSES, SYMBOLS, Token
 
 

@@ -13,9 +13,9 @@ from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
 from btq_lang.btcpp.source import Source
 from btq_lang.file import File
+from btq_lang.lexer import tokens
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Apply, Claim, Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
-from btq_lang.token_list import tokens
 from btq_lang.tokens import COMMENT
 
 

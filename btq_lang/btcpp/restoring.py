@@ -16,6 +16,7 @@ from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.file import is_btq
+from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
 from btq_lang.record import Record, replace
@@ -36,7 +37,6 @@ from btq_lang.syntax import (
     Tree,
 )
 from btq_lang.text import Edit, LineIndex, Span, apply_edits
-from btq_lang.token_list import tokens
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 
 

@@ -15,6 +15,7 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, xml_tag
 from btq_lang.catalog.qualities import EDITIONS, find
 from btq_lang.file import File
+from btq_lang.lexer import tokens
 from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
 from btq_lang.record import Record
@@ -56,7 +57,6 @@ from btq_lang.syntax import (
     walk,
 )
 from btq_lang.text import Span
-from btq_lang.token_list import tokens
 from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.units import convert, parse_unit, to_si
 from btq_lang.workspace import Workspace

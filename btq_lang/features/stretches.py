@@ -25,11 +25,11 @@ from btq_lang.features.looks import (
     plain_look,
 )
 from btq_lang.features.meaning import match_of
+from btq_lang.lexer import pieces
 from btq_lang.mentions import Listener, What, tell
 from btq_lang.record import Record
 from btq_lang.syntax import Entry, Requirement
 from btq_lang.text import LINE_END, Span, width_of
-from btq_lang.token_list import pieces
 from btq_lang.tokens import COMMENT, OPERATOR, SYMBOL
 
 if TYPE_CHECKING:

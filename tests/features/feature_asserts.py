@@ -38,11 +38,11 @@ from btq_lang.features.rename import Refusal, prepare_rename, rename
 from btq_lang.features.semantic_tokens import encoded_within, groups, stretch_of
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
+from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
 from btq_lang.project import Project
 from btq_lang.rules import Severity
 from btq_lang.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
-from btq_lang.token_list import tokens as tokens_of
 from btq_lang.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN
 from btq_lang.workspace import Workspace
 
