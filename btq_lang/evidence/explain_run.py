@@ -153,7 +153,7 @@ def _failed(activations: Iterable[Activation]) -> int:
 
 def ago(time: int) -> str:
     """How long before something was, in µs."""
-    return f"{duration(time / 1e6)} before" if time >= JUST_BEFORE else "just before"
+    return f"{duration(time / 1e6)} before" if time >= _JUST_BEFORE else "just before"
 
 
 def _begin(activation: Activation) -> int:
@@ -162,5 +162,5 @@ def _begin(activation: Activation) -> int:
 
 _CAME_TO: Final = {"S": "had succeeded", "F": "had failed", "H": "had been halted"}
 _ENDED: Final = {"F": "failed", "H": "halted", "O": "still running", "S": "succeeded"}
-JUST_BEFORE: Final = 1000  # µs
+_JUST_BEFORE: Final = 1000  # µs
 _KEPT: Final = 1000  # of each leaf

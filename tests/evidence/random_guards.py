@@ -58,7 +58,7 @@ class Guarded:
         self.write(uid, status)
         for guard in around if status != RUNNING else ():
             if self.status[guard] == RUNNING:
-                status = self.after(guard, uid, status)
+                status = self.after(guard, status)
                 self.close(guard, status)
         return None
 
@@ -77,7 +77,7 @@ class Guarded:
                     return False
         return True
 
-    def after(self, guard: int, uid: int, status: int) -> int:
+    def after(self, guard: int, status: int) -> int:
         """What a guard comes to when the node in it has: a check that follows may fail."""
         for leaf in self.leaves(guard, before=False) if status == SUCCESS else ():
             status = SUCCESS if self.chance.random() < 0.8 else FAILURE
@@ -88,9 +88,11 @@ class Guarded:
         """Let a guard stop the node in it now and then."""
         for guard in self.guards:
             kind = self.tree.nodes[guard].kind
-            if self.status[guard] != RUNNING or kind not in ("Timeout", "ReactiveSequence"):
-                continue
-            if self.chance.random() > 0.03:
+            if (
+                self.status[guard] != RUNNING
+                or kind not in ("Timeout", "ReactiveSequence")
+                or self.chance.random() > 0.03
+            ):
                 continue
             inside = next(uid for uid in range(guard, self.tree.last[guard] + 1) if uid not in self.guards)
             if self.status[inside] != RUNNING:
