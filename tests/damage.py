@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "features")]  # as pytest has them
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "ide")]  # as pytest has them
 
 from check_asserts import assert_sound  # noqa: E402
 from feature_asserts import answer_everything  # noqa: E402
@@ -110,7 +110,7 @@ def _short(chance: random.Random, item: str) -> str:
 def _sources() -> tuple[tuple[tuple[str, ...], ...], ...]:
     """The missions of each origin, each as the texts of its items."""
     examples = [path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp")]
-    golden = (ROOT / "tests" / "golden").glob("*.btq")
+    golden = (ROOT / "tests" / "btcpp" / "golden").glob("*.btq")
     pages = (ROOT / "btq_lang" / "rules").glob("*.md")
     blocks = (block for page in sorted(pages) for block in BLOCK.findall(page.read_text("utf-8")))
     every_form = [(ROOT / "tests" / "every_form.btq").read_text("utf-8")]

@@ -30,7 +30,7 @@ from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted(folder.name for folder in (ROOT / "examples").iterdir() if folder.is_dir())
-GOLDEN = ROOT / "tests" / "golden"
+GOLDEN = ROOT / "tests" / "btcpp" / "golden"
 
 # What a skill puts out when nothing else is said, by the type of the port.
 VALUES = {"double": 80.0, "int": 3, "bool": True, "string": "a", "std::string": "a"}

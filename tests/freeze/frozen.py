@@ -90,7 +90,7 @@ def pages() -> tuple[str, ...]:
 def missions() -> tuple[tuple[str, str], ...]:
     """Every mission in one text that the repository has, by a name."""
     whole = [
-        *(path for path in paths("tests/golden") if path.endswith(".btq")),
+        *(path for path in paths("tests/btcpp/golden") if path.endswith(".btq")),
         *(path for path in paths("examples") if path.endswith((".btq", ".qualitybtcpp"))),
         "tests/every_form.btq",
         "tests/evidence/lab.btq",

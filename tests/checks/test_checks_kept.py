@@ -1,0 +1,272 @@
+"""What checks keep from one edit to the next is what they would find anew."""
+
+from __future__ import annotations
+
+import gc
+import random
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import missions
+import pytest
+
+from btq_lang.checks import CHECKS, Check, check, check_again
+from btq_lang.checks.answers import Answers
+from btq_lang.checks.demanded import Demanded
+from btq_lang.checks.view import View
+from btq_lang.diagnostics import Diagnostic
+from btq_lang.requirements.budgets import Budgets
+from btq_lang.syntax import Entry, Include, Tree
+from btq_lang.workspace import Workspace
+
+EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
+MAIN = """include "skills.btq"
+include "requirements.btq"
+Root Main
+BehaviorTree Main
+    ->
+        Pick (from = {shelf} speed = 3) satisfies rq1
+        SubTree Carry (to = "x")
+        ScriptAction (name = "Place it")
+        Timeout (msec = 30 s)
+            Place satisfies rq2
+BehaviorTree Help
+    ? (name = "a")
+        Inverter (name = "a")
+            Pick satisfices performance, gentleness
+        Sleep
+        SubTree Carry
+"""
+SKILLS = """Action Pick
+    input from : string
+    input speed : double
+quality gentleness : safety
+BehaviorTree Carry
+    input to : string
+    Move (to = {to})
+"""
+REQUIREMENTS = """signal battery : %
+QualityReq rq1 : safety "Slowly"
+    takes at most 3 s
+QualityReq rq2 "Then"
+    keeps battery > 3 %
+    on violation fail
+"""
+FILES = {"/p/main.btq": MAIN, "/p/skills.btq": SKILLS, "/p/requirements.btq": REQUIREMENTS}
+BOARDS = """include "skills.btq"
+Action Take
+    input what : string
+    output taken : int
+Action Look
+    output seen : string
+BehaviorTree Main
+    ->
+        Take (what = {goal} taken = {count})
+        SubTree Carry (to = {goal} speed = {count})
+        SubTree Bring (_autoremap = true)
+        Script (code = "goal_x := 1; done := True")
+        Look (seen = text)
+BehaviorTree Bring
+    R?
+        Take (what = {gaol} taken = {@count})
+        SubTree Round (a = {count})
+        SubTree "" (_skipIf = "done")
+BehaviorTree Round
+    ->
+        AlwaysFailure
+        SubTree Bring (_while = "goal == 1")
+        ScriptCondition (name = "Near?")
+        Look (seen = {a})
+BehaviorTree Alone
+    Fallback
+        ScriptAction (name = "Near!")
+        SubTree Round
+        Look (seen = 3)
+        Look (seen = 4)
+        Look (seen = 5)
+"""
+PIECES = (
+    *(
+        "\n",
+        "    ",
+        "Pick",
+        "Carry",
+        "rq1",
+        "rq2",
+        "a",
+        "1",
+        '"',
+        "(",
+        ")",
+        "{",
+        "}",
+        "# ",
+        "-",
+        " = ",
+        ", ",
+        "?",
+        "->",
+    ),
+    *("\n    ->\n", "\nBehaviorTree B\n    Pick (from = 3)\n", "\nAction Move\n    input to : int\n", " satisfies rq1"),
+    *(
+        "\nsignal s : %\n",
+        "\nquality q : safety\n",
+        "qualities iso25010-2011\n",
+        " (name = a)",
+        " satisfices performance",
+    ),
+    *(
+        "\nQualityReq rq3\n",
+        "Root B\n",
+        "TreeNodesModel\n",
+        "SubTree ",
+        "Timeout",
+        "Inverter",
+        "30 s",
+        'include "main.btq"\n',
+        "{goal}",
+        "@",
+        " (_autoremap = true)",
+        " (a = {b})",
+        'Script (code = "goal := 1")',
+        "AlwaysSuccess",
+        "\nSubTree Round\n",
+        "\n        SubTree Alone (to = {goal})\n",
+        "BehaviorTree Bring\n    AlwaysFailure\n",
+    ),
+)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(
+    "files",
+    [
+        FILES,
+        {"/p/main.btq": EVERY_FORM},
+        {"/p/main.btq": BOARDS, "/p/skills.btq": SKILLS},
+        {"/p/main.btq": missions.mission(60, 2, "classic")},
+        {"/p/main.btq": missions.mission(60, 2, "short")},
+    ],
+    ids=["includes", "every form", "entries", "classic", "short"],
+)
+def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
+    chance = random.Random(seed)
+    workspace = Workspace.of(files)
+    kept = {path: Answers() for path in files}
+    for step in range(60):
+        path = chance.choice(sorted(files))
+        text = workspace.files[path].text
+        at = chance.randrange(len(text) + 1)
+        gone = chance.choice((0, 0, 1, 1, 5))
+        text = text[:at] + chance.choice((*PIECES, "", "")) + text[at + gone :]
+        if chance.random() < 0.15:
+            text = files[path]  # mend it all: after a mistake in syntax there is less to find
+        workspace = workspace.with_file(path, text)
+        texts = {each: file.text for each, file in workspace.files.items()}
+        fresh = Workspace.of(texts)
+        for each in files:
+            assert check_again(workspace, each, kept[each]).diagnostics == check(fresh, each), (step, each, texts)
+
+
+def test_what_no_quote_closes_is_not_empty() -> None:
+    workspace = Workspace.of(
+        {"/p/main.btq": 'QualityReq "Slowly\nQualityReq rq1 : safety "Calm"\n    takes at most 3 s\n'}
+    )
+    anew, kept = check(workspace, "/p/main.btq"), check_again(workspace, "/p/main.btq", Answers()).diagnostics
+    assert [each.rule for each in anew] == [each.rule for each in kept] == ["unclosed-string"]
+
+
+@pytest.mark.parametrize("spelling", ["classic", "short"])
+def test_trees_and_requirements_change_names_and_places(spelling: missions.Spelling) -> None:
+    """In a file of so many trees that what is kept of all of them is brought up to date, and not made anew."""
+    chance = random.Random(1)
+    lines = missions.mission(300, 3, spelling).split("\n")
+    kept = Answers()
+    workspace = Workspace.of({"/p/main.btq": "\n".join(lines)})
+    for step in range(40):
+        named = [at for at, line in enumerate(lines) if line.lstrip().startswith(("BehaviorTree", "QualityReq"))]
+        one, other = chance.choice(named), chance.choice(named)
+        change = chance.randrange(3)
+        if change == 0:
+            lines[one], lines[other] = lines[other], lines[one]
+        else:
+            lines[one] = lines[one][:-1] if change == 1 else f"{lines[one]}a"
+        text = "\n".join(lines)
+        workspace = workspace.with_file("/p/main.btq", text)
+        fresh = Workspace.of({"/p/main.btq": text})
+        assert check_again(workspace, "/p/main.btq", kept).diagnostics == check(fresh, "/p/main.btq"), (step, text)
+
+
+def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
+    """The trees of a file that the checks are asked for when some files become others."""
+    asked: list[str] = []
+
+    def noting(_: View, entry: Entry) -> Iterator[Diagnostic]:
+        assert isinstance(entry.item, Tree)
+        asked.append(entry.item.name.text if entry.item.name is not None else "")
+        yield from ()
+
+    monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
+    workspace = Workspace.of(before)
+    answers = Answers()
+    check_again(workspace, path, answers)
+    asked.clear()
+    for other, text in after.items():
+        workspace = workspace.with_file(other, text)
+    assert check_again(workspace, path, answers).diagnostics == check(Workspace.of({**before, **after}), path)
+    return asked[: len(asked) - len(workspace.files[path].parsed.trees)]  # without the check of the texts alone
+
+
+def test_an_edit_in_one_tree_asks_for_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    edited = {"/p/main.btq": MAIN.replace("Sleep", "Sleeep")}
+    assert asked_after(monkeypatch, FILES, edited, "/p/main.btq") == ["Help"]
+
+
+def test_a_model_that_changes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    edited = {"/p/skills.btq": SKILLS.replace("input speed", "input haste")}
+    assert asked_after(monkeypatch, FILES, edited, "/p/main.btq") == ["Main", "Help"]
+
+
+@pytest.mark.parametrize(
+    "text", [EVERY_FORM, BOARDS, missions.mission(60, 2, "classic"), missions.mission(60, 2, "short")]
+)
+def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    """Else it would be asked again of every item after every edit, as those of an include are, which look at the other
+    files, and what renames a tree wherever it is named; with these all of an item are asked twice."""
+    asked: list[tuple[str, type]] = []
+
+    def watched(check: Check) -> Check:
+        def noting(view: View, entry: Entry) -> Iterator[Diagnostic]:
+            asked.append((check.__name__, type(entry.item)))
+            yield from check(view, entry)
+
+        return noting
+
+    for item, checks in CHECKS.items():
+        monkeypatch.setitem(CHECKS, item, tuple(map(watched, checks)))
+    answers = Answers()
+    workspace = Workspace.of({"/p/main.btq": text})
+    check_again(workspace, "/p/main.btq", answers)
+    asked.clear()
+    check_again(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq", answers)
+    last = type(workspace.files["/p/main.btq"].parsed.entries[-1].item)
+    asked = [each for each in asked if each[1] is not Include and each[0] != "forbidden_name"]
+    assert {item for _, item in asked} <= {last}
+    assert set(Counter(asked).values()) <= {1, 2}
+
+
+def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
+    """What is found out of a workspace holds the whole of it: in a ring, all of the last thousand keys would stay."""
+    workspace, answers = Workspace.of(FILES), Answers()
+    gc.collect()
+    gc.disable()
+    try:
+        for letter in "abc":
+            workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
+            check_again(workspace, "/p/main.btq", answers)
+            answers.let_go()
+        kinds = [type(each) for each in gc.get_objects()]
+        assert (kinds.count(Demanded), kinds.count(Budgets)) == (0, 0)
+    finally:
+        gc.enable()

@@ -1,0 +1,132 @@
+"""docs/grammar.md: sentences that it makes are read without a complaint, and no word of the parser is left out."""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+from typing import TypeAlias
+
+import pytest
+
+from btq_lang.claims import HAPPENINGS, VERBS
+from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
+from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
+from btq_lang.item_words import ITEM_WORDS
+from btq_lang.parser import parse
+from btq_lang.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "grammar.md").read_text(encoding="utf-8")
+TOKENS = {
+    "NAME": ("alpha", "beta-2", "gamma_", "Größe", "delta?"),
+    "STRING": ('"a string"', "'another'"),
+    "NUMBER": ("6", "0.25", "1e3"),
+    "QUANTITY": ("30 s", "3 %", "0.25 m/s"),
+    "UNIT": ("s", "%", "m/s", "1", "bool"),
+    "BRACED": ("{entry}", "{@entry}", "{=}"),
+    "SYMBOL": tuple(sorted(SYMBOLS)),
+}
+LAYOUT = ("NL", "INDENT", "DEDENT")
+
+# A part of a rule: ("word", its text), ("name", of a production), ("one" or "all", parts), ("maybe" or "many", part).
+Part: TypeAlias = tuple[str, "str | Part | list[Part]"]
+
+
+def grammar() -> dict[str, Part]:
+    """The productions of the page."""
+    (text,) = re.findall(r"^```ebnf\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    text = re.sub(r"\(\*.*?\*\)", "", text)
+    words = re.findall(r'"[^"]*"|\w+|[=;|{}\[\]()]', text)
+    found: dict[str, Part] = {}
+    while words:
+        name, equals = words.pop(0), words.pop(0)
+        assert (name.isidentifier(), equals, name in found) == (True, "=", False)
+        found[name] = _either(words)
+        assert words.pop(0) == ";"
+    return found
+
+
+def _either(words: list[str]) -> Part:
+    parts = [_sequence(words)]
+    while words[0] == "|":
+        words.pop(0)
+        parts.append(_sequence(words))
+    return parts[0] if len(parts) == 1 else ("one", parts)
+
+
+def _sequence(words: list[str]) -> Part:
+    closing = {"(": ")", "[": "]", "{": "}"}
+    parts: list[Part] = []
+    while words[0] not in ("|", ";", ")", "]", "}"):
+        word = words.pop(0)
+        if word in closing:
+            inner = _either(words)
+            assert words.pop(0) == closing[word]
+            parts.append({"(": inner, "[": ("maybe", inner), "{": ("many", inner)}[word])
+        else:
+            parts.append(("word", word[1:-1]) if word.startswith('"') else ("name", word))
+    return ("all", parts)
+
+
+RULES = grammar()
+
+
+def sentence(chance: random.Random) -> str:
+    """A random file."""
+    words: list[str] = []
+    _derive(("name", "File"), chance, words, 0)
+    lines, line, level = [], "", 0
+    for word in words:
+        if word in ("INDENT", "DEDENT"):
+            level += 1 if word == "INDENT" else -1
+        elif word == "NL":
+            lines.append("    " * level + line.strip())
+            line = ""
+        else:
+            line += word if word == "::" or line.endswith("::") else f" {word}"
+    return "\n".join(lines) + "\n"
+
+
+def _derive(part: Part, chance: random.Random, words: list[str], depth: int) -> None:
+    kind, what = part
+    likely = 0.5 * 0.85**depth  # less and less goes deeper
+    if kind == "word":
+        words.append(str(what))
+    elif kind == "name":
+        if what in TOKENS:
+            words.append(chance.choice(TOKENS[str(what)]))
+        elif what in LAYOUT:
+            words.append(str(what))
+        else:
+            _derive(RULES[str(what)], chance, words, depth + 1)
+    elif kind == "all":
+        for each in what:
+            _derive(each, chance, words, depth)  # type: ignore[arg-type]  # a list here
+    elif kind == "one":
+        # Deep down the alternatives that stand first, which lead back to themselves nowhere.
+        _derive(chance.choice(what if depth < 25 else what[:1]), chance, words, depth)  # type: ignore[arg-type]  # as above
+    elif kind == "maybe":
+        if chance.random() < likely:
+            _derive(what, chance, words, depth)  # type: ignore[arg-type]  # a part here
+    else:
+        while chance.random() < (0.9 if depth < 3 else likely):
+            _derive(what, chance, words, depth)  # type: ignore[arg-type]  # as above
+
+
+def test_every_production_is_used_and_defined() -> None:
+    used = set(re.findall(r"\('name', '(\w+)'\)", repr(list(RULES.values()))))
+    assert used - set(TOKENS) - set(LAYOUT) == set(RULES) - {"File"}
+
+
+@pytest.mark.parametrize("seed", range(400))
+def test_what_the_grammar_makes_is_read(seed: int) -> None:
+    text = sentence(random.Random(seed))
+    found = [each for each in parse(text).diagnostics if each.rule == "syntax-error"]
+    assert [(text[each.span.start :].split("\n")[0], each.message) for each in found] == []
+
+
+def test_no_word_of_the_parser_is_left_out() -> None:
+    words = set(re.findall(r"\('word', '([^']+)'\)", repr(list(RULES.values()))))
+    known = {*ITEM_WORDS, *NODE_CLAUSES, *DIRECTIONS, *VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, *ACTIONS, *METHODS}
+    assert known | set(FUNCTIONS) | set(COMPARISONS) <= words
+    assert all(f"`{symbol}`".replace("|", "\\|") in PAGE for symbol in SYMBOLS if symbol.isascii())

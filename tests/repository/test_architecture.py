@@ -1,0 +1,180 @@
+"""The rooms of ARCHITECTURE.md, held: what may import what, and that no circle of imports exists."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+from missions import SEED, mission
+
+import btq_lang
+
+PACKAGE = Path(btq_lang.__file__).parent
+
+# From the ground up: a room, which is a package or a module beside it, imports from rooms above it only.
+ROWS = (
+    ("util",),
+    ("catalog",),
+    ("diagnostics",),
+    ("syntax",),
+    ("lexer",),
+    ("grammar",),
+    ("parser",),
+    ("workspace",),
+    ("formatter", "requirements"),
+    ("btcpp", "graph"),
+    ("checks",),
+    ("diff", "render"),
+    ("evidence",),
+    ("ide", "trace"),
+    ("preview",),
+    ("commands",),
+    ("lsp",),
+    ("server",),
+    ("cli",),
+    ("__main__",),
+)
+ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
+READS_THE_DISK = {"loader.py", "rules/__init__.py", "preview/__init__.py"}
+READS_LOGS = "evidence/readers/"
+# Which rooms know a package of others.
+ONLY_IN = {"lxml": {"btcpp"}, "pygls": {"lsp", "server"}, "lsprotocol": {"lsp", "server"}}
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def imports(tree: ast.AST, is_loaded: bool = True) -> Iterator[tuple[str, bool]]:
+    """What a module imports, and whether it does so when it is loaded: not in a function, nor for type checkers."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.Import):
+            yield from ((name.name, is_loaded) for name in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0
+            yield from ((f"{node.module}.{name.name}", is_loaded) for name in node.names)
+        else:
+            is_for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+            is_function = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
+            yield from imports(node, is_loaded and not is_for_types and not is_function)
+
+
+IMPORTS = {name: list(imports(ast.parse(path.read_text(encoding="utf-8")))) for name, path in MODULES.items()}
+
+
+def imported_module(name: str) -> str:
+    """The module of btq that an import names, or that holds what it names."""
+    while name not in MODULES:
+        name = name.rpartition(".")[0]
+    return name
+
+
+def room(module: str) -> str:
+    return module.split(".")[1]
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name != "btq_lang"])
+def test_a_module_imports_from_rooms_above_its_own(module: str) -> None:
+    if room(module) not in ROW_OF:  # not moved yet
+        return
+    for name, _ in IMPORTS[module]:
+        first = name.partition(".")[0]
+        if first in ONLY_IN:
+            assert room(module) in ONLY_IN[first], f"{module} imports {name}"
+        if first == "btq_lang":
+            target = imported_module(name)
+            assert target != "btq_lang", f"{module} imports {name}"
+            if room(target) not in ROW_OF:
+                continue
+            is_above = ROW_OF[room(target)] < ROW_OF[room(module)]
+            assert is_above or room(target) == room(module), f"{module} imports {name}"
+
+
+def test_no_circle_exists_among_modules_as_they_are_loaded() -> None:
+    order = TopologicalSorter(
+        {
+            module: {imported_module(name) for name, is_loaded in found if is_loaded and name.startswith("btq_lang.")}
+            - {module}
+            for module, found in IMPORTS.items()
+        }
+    )
+    order.prepare()  # raises CycleError, which names the modules
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_only_the_edges_open_files(path: Path) -> None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    opened = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "open"]
+    name = path.relative_to(PACKAGE).as_posix()
+    assert not opened or name in READS_THE_DISK or name.startswith(READS_LOGS)
+
+
+def test_a_file_without_clauses_needs_no_requirements() -> None:
+    text = 'QualityReq rq1 "In time"\nBehaviorTree Main\n    Action Drive satisfies rq1\n'
+    program = (
+        "import sys; from btq_lang.checks import check; from btq_lang.workspace import Workspace\n"
+        f"assert check(Workspace.of({{'a.btq': {text!r}}}), 'a.btq') == ()\n"
+        "print([name for name in sys.modules if name.startswith('btq_lang.requirements')])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
+    )
+    assert run.stdout == "[]\n"
+
+
+def test_no_module_is_named_as_one_of_the_standard_library() -> None:
+    assert not {path.stem for path in MODULES.values()} & (sys.stdlib_module_names - {"__init__", "__main__"})
+
+
+@pytest.mark.parametrize(
+    ("statement", "absent"),
+    [
+        ("import btq_lang", {"pygls", "lsprotocol", "lxml", "btq_lang.parser"}),
+        (
+            "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
+            {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
+            | {"argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
+        ),
+        (
+            "import btq_lang.commands.arguments",
+            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.catalog", "btq_lang.requirements", "dataclasses"},
+        ),
+        ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "btq_lang.parser"}),
+        (
+            "import site; site.main(); import btq_lang.server",  # what an editor waits for
+            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
+        ),
+    ],
+)
+def test_what_a_start_does_not_import(statement: str, absent: set[str]) -> None:
+    program = f"{statement}\nimport sys\nprint(sorted(set(sys.modules) & {absent!r}))"
+    run = subprocess.run(
+        [sys.executable, "-S", "-c", f"import sys; sys.path.insert(0, '.')\n{program}"],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=PACKAGE.parent,
+    )
+    assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_small_file_is_checked_without_heavy_modules(tmp_path: Path) -> None:
+    file = tmp_path / "mission.btq"
+    file.write_text(mission(100, SEED, "short"), encoding="utf-8")
+    program = (
+        "import sys; sys.path.insert(0, '.'); import btq_lang.cli\n"
+        f"btq_lang.cli.main(['check', {str(file)!r}])\n"
+        "print(sorted({'dataclasses', 'inspect', 'argparse', 'json', 'pathlib'} & set(sys.modules)))"
+    )
+    command = [sys.executable, "-S", "-c", program]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, cwd=PACKAGE.parent)
+    assert run.stdout.splitlines()[-1] == "[]"

@@ -1,0 +1,121 @@
+"""What other people's CI runs of ours: the commands in the hooks and in the action do what they say."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+# `shell: bash` as GitHub runs it, but for the file that it writes the step to.
+BASH = ("bash", "--noprofile", "--norc", "-eo", "pipefail", "-c")
+CLEAN = "BehaviorTree Main\n    Dock\n"
+WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
+
+
+def read(name: str) -> Any:
+    return yaml.safe_load((ROOT / name).read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def programs(tmp_path: Path) -> dict[str, str]:
+    """An environment in which `btq` is this checkout's."""
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    program = folder / "btq"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m btq_lang "$@"\n')
+    program.chmod(0o755)
+    return {**os.environ, "PATH": f"{folder}{os.pathsep}{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize(
+    ("hook", "text", "code"),
+    [
+        ("btq-check", CLEAN, 0),
+        ("btq-check", WRONG, 1),
+        ("btq-format", WRONG.replace("  ", " "), 0),
+        ("btq-build", CLEAN, 1),  # there is no XML
+    ],
+)
+def test_a_hook_runs(hook: str, text: str, code: int, tmp_path: Path, programs: dict[str, str]) -> None:
+    (tmp_path / "main.btq").write_text(text)
+    (entry,) = (each for each in read(".pre-commit-hooks.yaml") if each["id"] == hook)
+    given = ["main.btq"] if entry.get("pass_filenames", True) else []
+    run = subprocess.run([*entry["entry"].split(), *given], cwd=tmp_path, env=programs, capture_output=True)
+    assert run.returncode == code, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize("hook", ["btq-check", "btq-build"])
+def test_a_hook_looks_at_all_missions_whatever_is_committed(hook: str) -> None:
+    """A model, a project file, or a mission that is taken away breaks others; XML may be edited by hand."""
+    (entry,) = (each for each in read(".pre-commit-hooks.yaml") if each["id"] == hook)
+    assert (entry["pass_filenames"], entry["always_run"], "files" in entry) == (False, True, False)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize(
+    ("step", "code", "said"),
+    [
+        ("Check", 1, "::warning file=main.btq,line=3,"),
+        ("Format", 0, ""),
+        ("Build", 1, "main.xml"),
+    ],
+)
+def test_a_step_of_the_action_runs(step: str, code: int, said: str, tmp_path: Path, programs: dict[str, str]) -> None:
+    (tmp_path / "main.btq").write_text(WRONG)
+    action = read("action.yml")
+    (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
+    defaults = {f"${{{{ inputs.{name} }}}}": given["default"] for name, given in action["inputs"].items()}
+    values = {name: defaults[value] for name, value in body["env"].items()}
+    run = subprocess.run([*BASH, body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True)
+    assert run.returncode == code, run.stdout + run.stderr
+    assert said in run.stdout + run.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+@pytest.mark.parametrize("step", ["Check", "Format"])
+def test_the_action_is_content_with_this_repository(step: str, programs: dict[str, str]) -> None:
+    """The job of our own workflow."""
+    action = read("action.yml")
+    (ours,) = (each["with"] for each in read(".github/workflows/ci.yml")["jobs"]["action"]["steps"] if "with" in each)
+    assert ours["format"] == "true"
+    (body,) = (each for each in action["runs"]["steps"] if each.get("name") == step)
+    given = {name: ours.get(name, about["default"]) for name, about in action["inputs"].items()}
+    inputs = {f"${{{{ inputs.{name} }}}}": value for name, value in given.items()}
+    values = {name: inputs[value] for name, value in body["env"].items()}
+    run = subprocess.run([*BASH, body["run"]], cwd=ROOT, env={**programs, **values}, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the steps are for a POSIX shell")
+def test_the_action_writes_what_changed(tmp_path: Path, programs: dict[str, str]) -> None:
+    def git(*words: str) -> None:
+        person = ("-c", "user.name=x", "-c", "user.email=x@example.org", "-c", "commit.gpgsign=false")
+        subprocess.run(["git", *person, *words], cwd=tmp_path, check=True, capture_output=True)
+
+    git("init", "-q", "-b", "main")
+    for text in (CLEAN, CLEAN.replace("Dock", "Charge")):
+        (tmp_path / "main.btq").write_text(text)
+        git("add", "main.btq")
+        git("commit", "-q", "-m", "x")
+    (body,) = (each for each in read("action.yml")["runs"]["steps"] if each.get("id") == "diff")
+    files = {name: str(tmp_path / name) for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
+    values = {**files, "RUNNER_TEMP": str(tmp_path), "BTQ_PATHS": ".", "BTQ_DIFF_FROM": "HEAD~1"}
+    run = subprocess.run([*BASH, body["run"]], cwd=tmp_path, env={**programs, **values}, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    said = (tmp_path / "btq-diff.md").read_text(encoding="utf-8")
+    assert "Charge" in said
+    assert (tmp_path / "GITHUB_STEP_SUMMARY").read_text(encoding="utf-8") == said
+    assert (tmp_path / "GITHUB_OUTPUT").read_text() == f"file={tmp_path}/btq-diff.md\n"
+
+
+def test_every_job_tests_the_versions_that_are_promised() -> None:
+    matrix = read(".github/workflows/ci.yml")["jobs"]["python"]["strategy"]["matrix"]
+    assert matrix["python"] == ["3.10", "3.11", "3.12", "3.13", "3.14"]
+    assert matrix["system"] == ["ubuntu-latest", "macos-latest", "windows-latest"]

@@ -1,0 +1,92 @@
+"""Messages and documents are in plain English, without phrases that readers stumble over.
+
+The test reads the string literals of the modules (no docstrings, no identifiers), the pages of the rules, the page of
+the preview, the schemas, the texts of the editors' extensions, and the documents.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import btq_lang as btq
+from btq_lang.workspace import Workspace
+
+ROOT = Path(__file__).resolve().parents[2]
+AVOIDED = re.compile(
+    r"\b(?:is no (?!longer\b)|is none\b|speaks? of\b|behind\b|stands?\b|told\b|makes no\b|who asks\b|slip(?:s|ped)?\b|"
+    r"left (?:over|alone|as)\b|taken out\b|anew\b|knows? no\b|all there is\b|has it that\b|rests? on\b|brings?\b)"
+)
+TEXTS = (
+    "README.md",
+    "CHANGELOG.md",
+    "docs/*.md",
+    "btq_lang/rules/*.md",
+    "btq_lang/**/*.html",
+    "btq_lang/**/*.json",
+    "editors/*/README.md",
+    "editors/vscode/package.json",
+    "editors/vscode/src/*.ts",
+    "editors/vscode/walkthrough/*.md",
+    "editors/nvim/**/*.lua",
+    "editors/nvim/doc/*.txt",
+    "examples/*/README.md",
+)
+
+
+def literals(source: str) -> Iterator[tuple[int, str]]:
+    """The string literals of a module and their lines, also parts of f-strings; no docstrings and no identifiers."""
+    tree = ast.parse(source)
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docstrings = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, documented) and node.body and isinstance(node.body[0], ast.Expr)
+    }
+    for node in ast.walk(tree):
+        text = node.value if isinstance(node, ast.Constant) else None
+        if isinstance(text, str) and id(node) not in docstrings and not text.isidentifier():
+            yield node.lineno, text
+
+
+def texts(pattern: str) -> Iterator[tuple[str, int, str]]:
+    """Every text of the files that match, with its path and line."""
+    for path in sorted(ROOT.glob(pattern)):
+        text = path.read_text(encoding="utf-8")
+        lines = literals(text) if path.suffix == ".py" else enumerate(text.splitlines(), 1)
+        yield from ((path.relative_to(ROOT).as_posix(), line, words) for line, words in lines)
+
+
+@pytest.mark.parametrize("pattern", ["btq_lang/**/*.py", *TEXTS])
+def test_no_phrase_that_readers_stumble_over(pattern: str) -> None:
+    found = list(texts(pattern))
+    assert found != []
+    wrong = [
+        f"{path}:{line}: {words[max(0, at.start() - 60) : at.end() + 40]}"
+        for path, line, words in found
+        for at in AVOIDED.finditer(words)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize(
+    ("text", "messages"),
+    [
+        ("Timeout (msec = 30 sek)\n        A\n", ["unknown unit `sek`; did you mean `s`?"]),
+        ("Retry (num_attempts = a)\n        A\n", ["expected an integer for `num_attempts`, found `a`"]),
+        ("Rety (num_attempts = 3)\n        A\n", ["unknown node `Rety`; did you mean `Retry`?"]),
+        ("CoroAction\n", ["`CoroAction` is not built into BehaviorTree.CPP 4.6–4.10"]),
+        (
+            'A satisfies r\nQualityReq r "t"\n    leaves battery >= 3 N\nsignal battery : % from {b}\n',
+            ["cannot compare `battery` (a percentage) with `3 N` (a force)"],
+        ),
+        ('Script (code = "a := ")\n', ["missing right-hand side of `:=`"]),
+    ],
+)
+def test_messages_say_what_is_wrong_and_what_to_do(text: str, messages: list[str]) -> None:
+    workspace = Workspace.of({"main.btq": f"BehaviorTree Main\n    {text}"})
+    assert [found.message for found in btq.check(workspace, "main.btq")] == messages

@@ -1,0 +1,336 @@
+"""What is resolved, composed and found of requirements after an edit is what would be made anew."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import missions
+import pytest
+
+from btq_lang.checks import check, check_again
+from btq_lang.checks.answers import Answers
+from btq_lang.diagnostics import Place
+from btq_lang.requirements import Memory, Requirements, requirements
+from btq_lang.requirements.budgets import Budget, Budgets, Range, Success
+from btq_lang.requirements.model import SourceNode
+from btq_lang.requirements.nodes import Nodes
+from btq_lang.workspace import Workspace
+
+MAIN = """include "skills.btq"
+include "requirements.btq"
+Root Main
+BehaviorTree Main
+    -> Steps satisfies budget
+        satisfies QualityReq rq5 : time-behaviour
+            takes at most 40 s
+            on violation fail
+        ? tags risky
+            Pick (from = {shelf}) satisfies slow(limit = 0.2 m/s), quick
+            Retry (num_attempts = 3)
+                Place satisfies quick, often
+        SubTree Carry (to = "x", name = "Home")
+        Timeout (msec = 30 s)
+            -> Inner
+                Place
+                SubTree Help
+        MoveBase (name = "Last")
+BehaviorTree Help
+    satisfices Quality = performance (QualityReq rq6 takes at most 3 s in at least 90 % of activations)
+    ? Any
+        Inverter
+            MoveBase satisfies quick
+        Sleep (msec = 2 s)
+        Script (code = "done := true")
+QualityReq steps : reliability
+    every MoveBase takes at most 9 s
+    Steps takes at least 1 s
+    in at least 99 % of activations
+    goal 12 s
+QualityReq path : time-behaviour
+    Help/MoveBase takes at most 5 s
+    from Pick starts to Inner/Place succeeds takes at most 45 s
+    sum of Steps/Pick, Steps/Retry/Place takes at most 50 s
+apply slow to every MoveBase, every Pick under Steps except Last
+apply quick to every node tagged risky, Main/Home
+"""
+SKILLS = """Action Pick
+    input from : string
+    output found : string
+Action MoveBase
+    output speed : double
+Action Place
+quality gentleness : safety
+signal near_people : bool from {near}
+BehaviorTree Carry
+    input to : string
+    ->
+        MoveBase (speed = {speed})
+        SubTree Deeper satisfies quick
+BehaviorTree Deeper
+    ->
+        Place (at = {@battery_level})
+        MoveBase (name = "Turn")
+"""
+REQUIREMENTS = """signal battery : % from {battery_level} initially 100 %
+signal speed : m/s from {speed} fresh within 1 s
+signal people : person from {people}
+context crowded : people > 3 person or near_people
+context slowly : crowded and speed < 0.1 m/s
+QualityReq quick : time-behaviour
+    takes at most 6 s
+    on violation halt
+QualityReq slow(limit : m/s = 0.25 m/s) : safety
+    keeps speed <= limit
+    while crowded
+    on violation fail
+QualityReq often : reliability
+    tries at most 2 per Any
+QualityReq budget : time-behaviour "Never longer FailureIf battery < 3 %"
+    leaves battery >= 3 %
+    succeeds within 60 s
+QualityReq classic "FailureIf(takes at most 20 s)"
+"""
+FILES = {"/p/main.btq": MAIN, "/p/skills.btq": SKILLS, "/p/requirements.btq": REQUIREMENTS}
+GUARDS = {
+    "/p/main.btq": """include "skills.btq"
+include "requirements.btq"
+Root Main
+BehaviorTree Main
+    ->
+        Sense (speed = {speed})
+        Pick satisfies slow
+        SubTree Carry (to = "x")
+        || Beside
+            SubTree Watch (_autoremap = true)
+            Place satisfies slow, still
+apply still to every MoveBase
+BehaviorTree Watch
+    -> Inner
+        Sense (speed = {speed})
+        Sleep (msec = 3 s)
+""",
+    "/p/skills.btq": """include "requirements.btq"
+Condition Sense
+    output speed : double
+Action Pick
+Action Place
+Action MoveBase
+BehaviorTree Carry
+    input to : string
+    R->
+        Condition Quiet
+        MoveBase satisfies slow
+""",
+    "/p/requirements.btq": """signal speed : m/s from {speed} initially 0 m/s
+signal people : person from {people} initially 0 person
+QualityReq slow
+    keeps speed <= 1 m/s
+    on violation halt
+QualityReq still
+    leaves speed <= 0.1 m/s
+    takes at least 1 s
+    on violation fail
+""",
+}
+CLASSIC = {"/p/main.btq": missions.mission(60, 2, "classic")}
+SHORT = {"/p/main.btq": missions.mission(90, 3, "short")}
+EXAMPLE = {"/p/main.btq": (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")}
+WORDS = (
+    *("MoveBase", "Pick", "Place", "Steps", "Carry", "Help", "Deeper", "Main", "Any", "Home", "quick", "slow", "rq5"),
+    *(
+        "speed",
+        "battery",
+        "people",
+        "crowded",
+        "slowly",
+        "limit",
+        "every",
+        "satisfies",
+        "takes",
+        "6",
+        "40 s",
+        "0.2 m/s",
+    ),
+    *("Sense", "Watch", "R->", "->", "||", "halt", "(speed = {speed})", "{speed}", "still"),
+    *("x", "1", "9 s", "-1", "Retry", "Sleep", "Fallback", "SubTree Help", "at least", "fail", "risky", "apply"),
+)
+LINES = (
+    *("signal battery : % from {battery_level}", "signal extra : s from {speed}", "context crowded : people > 1"),
+    *("QualityReq quick : safety\n    takes at most 2 s", "apply quick to every Place", "apply slow to Help/MoveBase"),
+    *("BehaviorTree Deeper\n    Place satisfies quick", "BehaviorTree New\n    SubTree Main", "Action Place"),
+    *("    QualityReq", '"', "    Sleep (msec = 3 s) satisfies quick", "context a : b", "context b : a", "# a remark"),
+    *("QualityReq many\n    every Place takes at most 1 s", "Condition MoveBase", "        SubTree Carry"),
+)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "files",
+    [FILES, GUARDS, CLASSIC, SHORT, EXAMPLE],
+    ids=["includes", "guards", "classic", "short", "every form"],
+)
+def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
+    chance = random.Random(seed)
+    workspace = Workspace.of(files)
+    answers = {path: Answers() for path in files}
+    memories = {path: Memory() for path in files}
+    for step in range(40):
+        path = chance.choice(sorted(files))
+        text = edited(workspace.files[path].text, chance) if chance.random() > 0.15 else files[path]
+        workspace = workspace.with_file(path, text)
+        texts = {each: file.text for each, file in workspace.files.items()}
+        fresh = Workspace.of(texts)
+        for each in files:
+            now = list(said(workspace, requirements(workspace, each, memories[each]), memories[each]))
+            assert now == list(said(fresh, requirements(fresh, each))), (step, each, texts)
+            assert check_again(workspace, each, answers[each]).diagnostics == check(fresh, each), (step, each, texts)
+
+
+def edited(text: str, chance: random.Random) -> str:
+    """A text after somebody wrote a letter, a word, or a line, or moved or removed some."""
+    lines = text.split("\n")
+    at = chance.randrange(len(lines))
+    kind = chance.randrange(10)
+    if kind < 4:  # another word in the place of one
+        words = lines[at].split(" ")
+        words[chance.randrange(len(words))] = chance.choice(WORDS)
+        lines[at] = " ".join(words)
+    elif kind < 6:  # a letter
+        column = chance.randrange(len(lines[at]) + 1)
+        lines[at] = lines[at][:column] + chance.choice('ax1 (){}"#') + lines[at][column + chance.randrange(2) :]
+    elif kind == 6:
+        lines.insert(at, chance.choice(LINES))
+    elif kind == 7:
+        del lines[at : at + chance.choice((1, 1, 1, 4))]
+    else:  # a block stands in another place
+        tops = [number for number, line in enumerate(lines) if line[:1].strip()] or [0]
+        start = chance.choice(tops)
+        end = next((number for number in tops if number > start), len(lines))
+        moved = lines[start:end]
+        del lines[start:end]
+        at = chance.choice([number for number, line in enumerate(lines) if line[:1].strip()] or [0])
+        lines[at:at] = moved
+    return "\n".join(lines)
+
+
+def said(workspace: Workspace, found: Requirements, memory: Memory | None = None) -> Iterator[object]:
+    """All that requirements and budgets say, with places as they stand in the texts."""
+
+    def at(place: Place) -> tuple[str | None, int]:
+        assert place.path is not None, "these places have a path"
+        return place.path, workspace.files[place.path].start_of(place.anchor) + place.span.start
+
+    def named(node: SourceNode | None) -> object:
+        return (node.shown, node.tree, at(node.place)) if node is not None else None
+
+    yield [node.names for node in found.nodes.all]
+    yield [named(node) for node in found.nodes.all]
+    yield named(found.mission)
+    yield [(each.name, each.unit, each.initially, at(each.place)) for each in found.signals.values()]
+    yield [(name, condition is not None) for name, condition in found.contexts.items()]
+    for each in found.all.values():
+        yield each.name, at(each.place), each.quality, each.title, each.classic, each.action, each.odds is not None
+        yield [(claim.text, at(claim.place)) for claim in each.claims], [scope.text for scope in each.scopes]
+    for applied in found.applied:
+        claims = [(claim.text, claim.limit is not None) for claim in applied.requirement.claims]
+        arguments = [(each.name, each.value.text) for each in applied.arguments]
+        yield applied.requirement.name, claims, arguments, [*map(named, applied.nodes)], at(applied.place), applied.how
+    yield [(trace.requirement, named(trace.node)) for trace in found.traces]
+    yield found.attached
+    yield [(each.path, each.diagnostic.rule, each.diagnostic.message) for each in found.problems]
+    yield [[at(related.place) for related in each.diagnostic.related] for each in found.problems]
+    budgets = Budgets(found, memory)
+    for node in found.nodes.all:
+        yield shown(budgets.of(node), named), shown(budgets.composed(node), named), likely(budgets.success(node), named)
+        yield [(named(gap.node), gap.reason) for gap in budgets.gaps(node)]
+
+
+def shown(budget: Budget, named: Callable[[SourceNode], object]) -> object:
+    def one(each: Range | None) -> object:
+        return each and (each.low, each.high, [(named(term.node), term.times, term.seconds) for term in each.terms])
+
+    ranges = [one(each) for each in (budget.success, budget.failure, budget.skip)]
+    return ranges, budget.waits, budget.probability, budget.reason, budget.endless
+
+
+def likely(found: Success | None, named: Callable[[SourceNode], object]) -> object:
+    return found and (found.seconds, found.probability, [(named(node), share) for node, share in found.parts])
+
+
+def test_an_edit_in_one_tree_leaves_the_others() -> None:
+    workspace = Workspace.of(FILES)
+    memory = Memory()
+    before = requirements(workspace, "/p/main.btq", memory)
+    trees = held(before)
+    changed = workspace.with_file("/p/main.btq", MAIN.replace("Sleep (msec = 2 s)", "Sleep (msec = 3 s)"))
+    after = requirements(changed, "/p/main.btq", memory)
+    same = {tree for tree, applied in held(after).items() if all(map(is_one_of(trees[tree]), applied))}
+    assert same == {"Carry", "Deeper"}  # `path` speaks of nodes of both other trees
+    assert [after.all[name] is before.all[name] for name in ("quick", "slow", "steps", "path", "rq5", "rq6")] == [
+        *(True, True, True),  # the nodes of `every` are no part of a requirement, but those of paths are
+        *(False, True, False),
+    ]
+
+
+def is_one_of(objects: tuple[object, ...]) -> Callable[[object], bool]:
+    return lambda each: any(each is other for other in objects)
+
+
+def held(found: Requirements) -> dict[str | None, tuple[object, ...]]:
+    return {tree.name: found.in_tree(tree) for tree in found.nodes.trees}
+
+
+def test_a_budget_is_made_again_where_one_that_it_rests_on_is_another() -> None:
+    text = """BehaviorTree Main
+    -> Steps
+        SubTree Slow
+        SubTree Fast
+BehaviorTree Slow
+    Sleep (msec = 2 s)
+BehaviorTree Fast
+    Sleep (msec = 1 s)
+signal s : m
+"""
+    workspace = Workspace.of({"/a.btq": text})
+    memory = Memory()
+    kept = in_trees(workspace, memory)
+    workspace = workspace.with_file("/a.btq", text.replace("msec = 1 s", "msec = 1000"))
+    assert changed_since(kept, kept := in_trees(workspace, memory)) == {"Fast"}
+    workspace = workspace.with_file("/a.btq", text.replace("msec = 1 s", "msec = 1500"))
+    assert changed_since(kept, kept := in_trees(workspace, memory)) == {"Fast", "Main"}
+    workspace = workspace.with_file("/a.btq", text.replace("1 s", "1500").replace("SubTree Fast", "SubTree Main"))
+    assert changed_since(kept, in_trees(workspace, memory)) == {"Main"}
+
+
+def in_trees(workspace: Workspace, memory: Memory) -> dict[str | None, object]:
+    """What the budgets of each tree are taken from, after all of them were asked for."""
+    found = requirements(workspace, "/a.btq", memory)
+    budgets = Budgets(found, memory)
+    for node in found.nodes.all:
+        budgets.of(node)
+    return {tree.name: budgets.in_tree(tree) for tree in found.nodes.trees}
+
+
+def changed_since(before: dict[str | None, object], after: dict[str | None, object]) -> set[str | None]:
+    return {name for name, one in after.items() if one is not before[name]}
+
+
+def test_trees_are_in_order_however_they_call_each_other() -> None:
+    text = """BehaviorTree A
+    ->
+        SubTree B
+        SubTree C
+BehaviorTree B
+    SubTree C
+BehaviorTree C
+    ->
+        SubTree A
+        SubTree D
+BehaviorTree D
+    Sleep (msec = 1)
+"""
+    workspace = Workspace.of({"/a.btq": text})
+    nodes = Nodes(workspace, workspace.scope("/a.btq"))
+    assert [tree.name for tree in nodes.in_order] == ["D", "C", "B", "A"]

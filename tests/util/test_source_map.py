@@ -1,0 +1,42 @@
+"""From a text to the one it was made of, and back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btq_lang.commands.files import Files
+from btq_lang.places import Places
+from btq_lang.text import Span
+
+PIECES = ((0, 5, 10, 15), (6, 8, 20, 30), (8, 9, 40, 60), (9, 12, 50, 53))
+GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.xml"))
+
+
+@pytest.mark.parametrize(
+    ("offset", "made"),
+    [(9, None), (10, 0), (12, 2), (15, 5), (16, None), (20, 6), (25, 6), (45, 8), (51, 10), (53, 12), (60, 8)],
+)
+def test_back_to_the_text_that_was_made(offset: int, made: int | None) -> None:
+    """As far into a piece where both are as long, else to its start; of pieces inside each other the shortest."""
+    assert Places(PIECES, (), lambda pieces, _: pieces).made(offset) == made
+
+
+def test_nothing_was_made() -> None:
+    assert Places().made(0) is None
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_there_and_back(path: Path) -> None:
+    groups, problems = Files().groups([str(path)])
+    assert problems == ()
+    for group in groups:
+        for file in group.workspace.files.values():
+            if file.origin is not None:
+                places = file.origin.places
+                for start, end, first, last in places.pieces:
+                    if end - start == last - first > 0:
+                        made = places.made(first)
+                        assert made is not None
+                        assert places.origin(Span(made, made)).start == first
