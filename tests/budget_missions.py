@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from btq_lang.requirements import Requirements, requirements
+from btq_lang.requirements.resolve import requirements
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.workspace import Workspace
 
 # What the kinds of nodes with children have in common where trees are drawn.

@@ -9,8 +9,8 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import SourceNode, Value
+from btq_lang.requirements.resolved import Requirements
 
 SUCCESS, FAILURE, SKIPPED, RUNNING, IDLE = "success", "failure", "skip", "running", "idle"
 Report = Callable[[SourceNode, str, float], None]

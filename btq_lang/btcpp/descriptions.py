@@ -36,7 +36,7 @@ def said_elsewhere(source: Source) -> Mapping[int, tuple[str, ...]]:
     """What `apply` and claims with a subject of their own say of nodes: a line each, by `id(node)`."""
     if not any(_speaks_of_nodes(entry.item) for path in source.scope.paths for entry in _entries(source, path)):
         return {}
-    from btq_lang.requirements import requirements  # few missions need it, and it looks at all of them
+    from btq_lang.requirements.resolve import requirements  # few missions need it, and it looks at all of them
 
     found: dict[int, tuple[str, ...]] = {}
     for applied in requirements(source.workspace, source.path).applied:

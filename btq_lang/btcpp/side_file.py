@@ -18,9 +18,9 @@ from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
 from btq_lang.record import Record, fields_of
-from btq_lang.requirements import requirements
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
+from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax import Requirement as RequirementItem
 from btq_lang.syntax import Signal as SignalItem

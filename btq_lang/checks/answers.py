@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
     from btq_lang.findings import Told
     from btq_lang.project import Project
-    from btq_lang.requirements import Memory
+    from btq_lang.requirements.memory import Memory
 
     T = TypeVar("T")
 

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from btq_lang.checks.swallowing import WaysUp
     from btq_lang.checks.view import View
     from btq_lang.checks.writers import Entries
-    from btq_lang.requirements import Requirements
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.durations import Term
     from btq_lang.requirements.memory import Question
+    from btq_lang.requirements.resolved import Requirements
     from btq_lang.requirements.trees import TreeNodes
     from btq_lang.syntax import Port
 

@@ -14,7 +14,7 @@ from btq_lang.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.checks.writers import Entries
-    from btq_lang.requirements import Memory
+    from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.model import Signal
 
 _GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))

@@ -11,7 +11,7 @@ from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.model import SourceNode
 
 if TYPE_CHECKING:
-    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.resolved import Requirements
 
 Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
 # Where a failure ends, and the trees on the ways up: of whose callers that holds.

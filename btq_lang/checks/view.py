@@ -40,8 +40,9 @@ if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic
     from btq_lang.facts import Facts
     from btq_lang.file import Definition, File
-    from btq_lang.requirements import Memory, Requirements
     from btq_lang.requirements.budgets import Budgets
+    from btq_lang.requirements.memory import Memory
+    from btq_lang.requirements.resolved import Requirements
     from btq_lang.script import Script
 
     K = TypeVar("K")
@@ -361,7 +362,7 @@ class View:
     def _resolve(self) -> Requirements | None:
         if not self._has_clauses():
             return None
-        from btq_lang.requirements import requirements  # most files have no use for it, and it is large
+        from btq_lang.requirements.resolve import requirements  # most files have no use for it, and it is large
 
         return requirements(self._workspace, self.path, self.resolved)
 
@@ -371,7 +372,7 @@ class View:
         return self._once(View._remember)
 
     def _remember(self) -> Memory:
-        from btq_lang.requirements import Memory  # as above
+        from btq_lang.requirements.memory import Memory  # as above
 
         memory = self._answers.resolved if self._answers is not None else None
         if memory is None:

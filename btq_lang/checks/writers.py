@@ -16,8 +16,8 @@ from btq_lang.syntax import Pair, Port, Verbatim
 
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded
-    from btq_lang.requirements import Requirements
     from btq_lang.requirements.model import SourceNode
+    from btq_lang.requirements.resolved import Requirements
     from btq_lang.requirements.trees import TreeNodes
 
 

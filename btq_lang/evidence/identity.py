@@ -16,13 +16,13 @@ from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.record import Record, replace
-from btq_lang.requirements import requirements
+from btq_lang.requirements.resolve import requirements
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.document import Element
     from btq_lang.btcpp.instances import Instance
-    from btq_lang.requirements import Requirements
     from btq_lang.requirements.model import SourceNode, Target
+    from btq_lang.requirements.resolved import Requirements
     from btq_lang.workspace import Workspace
 
 

@@ -18,8 +18,8 @@ from btq_lang.mentions import Mention, What
 from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
 from btq_lang.record import Record
-from btq_lang.requirements import requirements
 from btq_lang.requirements.model import Span as Time
+from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import (
     Between,
     Claim,

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.graph import draw
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.placeholders import is_placeholder
-from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import Applied, Claim, SourceNode
+from btq_lang.requirements.resolve import requirements
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace import Workspace
 

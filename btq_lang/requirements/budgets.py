@@ -18,7 +18,7 @@ from btq_lang.requirements.memory import Memory, is_same
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
 
 if TYPE_CHECKING:
-    from btq_lang.requirements import Requirements
+    from btq_lang.requirements.resolved import Requirements
     from btq_lang.requirements.trees import TreeNodes
 
 __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]

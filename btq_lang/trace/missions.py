@@ -10,7 +10,7 @@ from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import check
 from btq_lang.loader import shown
 from btq_lang.record import Record
-from btq_lang.requirements import Requirements
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.rules import Severity
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect

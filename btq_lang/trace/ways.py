@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.graph.missions import said
-from btq_lang.requirements import Requirements
 from btq_lang.requirements.model import Applied, Requirement
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace.overview import Clause
 from btq_lang.workspace import Workspace
 

@@ -11,7 +11,7 @@ from mission_strategies import missions
 
 from btq_lang.btcpp.enforcement import how_held
 from btq_lang.checks import check
-from btq_lang.requirements import requirements
+from btq_lang.requirements.resolve import requirements
 from btq_lang.workspace import Workspace
 
 RULE = "not-enforced"

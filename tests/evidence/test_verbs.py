@@ -12,7 +12,7 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks import check
 from btq_lang.evidence.signals import Signals
 from btq_lang.parser import parse
-from btq_lang.requirements import requirements
+from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Claim
 from btq_lang.syntax import Requirement as RequirementItem
 from btq_lang.workspace import Workspace

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.requirements import Requirements
 from btq_lang.requirements.budgets import Budgets, Range
 from btq_lang.requirements.composition import _RULES
 from btq_lang.requirements.model import SourceNode
+from btq_lang.requirements.resolved import Requirements
 
 # ---- no run lies outside --------------------------------------------------------------------------------------------
 

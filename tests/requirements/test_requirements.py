@@ -6,7 +6,6 @@ import pytest
 from check_asserts import assert_clean, split_files
 from worked_mission import WORKED
 
-from btq_lang.requirements import Requirements, requirements
 from btq_lang.requirements.model import (
     Aggregate,
     All,
@@ -28,6 +27,8 @@ from btq_lang.requirements.model import (
     Total,
     Value,
 )
+from btq_lang.requirements.resolve import requirements
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.workspace import Workspace
 
 

@@ -12,10 +12,12 @@ import pytest
 from btq_lang.checks import check, check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.diagnostics import Place
-from btq_lang.requirements import Memory, Requirements, requirements
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success
+from btq_lang.requirements.memory import Memory
 from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.nodes import Nodes
+from btq_lang.requirements.resolve import requirements
+from btq_lang.requirements.resolved import Requirements
 from btq_lang.workspace import Workspace
 
 MAIN = """include "skills.btq"

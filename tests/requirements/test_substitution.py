@@ -25,8 +25,8 @@ from btq_lang.features.hover import hover
 from btq_lang.graph import draw
 from btq_lang.graph.missions import figures
 from btq_lang.graph.picture import picture
-from btq_lang.requirements import requirements
 from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.resolve import requirements
 from btq_lang.trace import write as write_overview
 from btq_lang.trace.collect import collect
 from btq_lang.workspace import Workspace
