@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from btq_lang.graph.missions import draw_tree
     from btq_lang.parser import Parsed, parse
     from btq_lang.syntax import Node, Requirement, Tree
-    from btq_lang.text import LineIndex, Span
     from btq_lang.trace.missions import TraceTable, trace_table
-    from btq_lang.version import __version__
+    from btq_lang.util.text import LineIndex, Span
+    from btq_lang.util.version import __version__
     from btq_lang.workspace import Workspace
 
 __all__ = [
@@ -68,16 +68,16 @@ _HOMES = {
     "Change": "diff.changes",
     "Diagnostic": "diagnostics",
     "Imported": "btcpp.importing",
-    "LineIndex": "text",
+    "LineIndex": "util.text",
     "Node": "syntax",
     "Parsed": "parser",
     "Requirement": "syntax",
-    "Span": "text",
+    "Span": "util.text",
     "TraceTable": "trace.missions",
     "Tree": "syntax",
     "Verification": "evidence.verifying",
     "Workspace": "workspace",
-    "__version__": "version",
+    "__version__": "util.version",
     "build": "building",
     "check": "checks",
     "diff_missions": "diff.comparison",

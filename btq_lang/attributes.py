@@ -10,7 +10,6 @@ from typing import Final
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.near import near
 from btq_lang.slips import CHILDREN, value_meant
 from btq_lang.syntax import (
     NodeClause,
@@ -23,7 +22,6 @@ from btq_lang.syntax import (
     Tags,
     Word,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
@@ -38,6 +36,8 @@ from btq_lang.tokens import (
     STRING,
     SYMBOL,
 )
+from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
 
 
 class AttributeParser(ClauseParser):

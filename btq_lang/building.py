@@ -16,9 +16,9 @@ from btq_lang.checks.includes import is_told_beside
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.file import File
 from btq_lang.project import SUPPORTED, is_engine
-from btq_lang.record import Record, replace
 from btq_lang.rules import Severity
-from btq_lang.text import Span
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

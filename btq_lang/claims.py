@@ -10,7 +10,6 @@ from typing import Final
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
 from btq_lang.diagnostics import Fix, replace_fix
-from btq_lang.near import near
 from btq_lang.scan import number_end
 from btq_lang.syntax import (
     Amount,
@@ -30,9 +29,10 @@ from btq_lang.syntax import (
     Word,
     quote,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.units import dimension_name, parse_unit
+from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
 
 VERBS: Final = frozenset(
     ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")

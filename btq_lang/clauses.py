@@ -11,7 +11,6 @@ from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, Cl
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.measured import measured
-from btq_lang.near import near
 from btq_lang.scan import is_unit, line_end, path_end, unit_run
 from btq_lang.slips import unknown_unit
 from btq_lang.syntax import (
@@ -33,8 +32,9 @@ from btq_lang.syntax import (
     quote,
     unquote,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
 
 EXPERIMENTS: Final = frozenset(("activations", "runs"))
 ACTIONS: Final = ("fail", "halt", "warn", "log")

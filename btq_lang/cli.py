@@ -45,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout, sys.stderr = sys.stdout or nobody, sys.stderr or nobody
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given in (["--version"], ["-V"]):
-        from btq_lang.version import __version__
+        from btq_lang.util.version import __version__
 
         print(f"btq {__version__}")
         return CLEAN

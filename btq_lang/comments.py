@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed
-from btq_lang.record import Record
-from btq_lang.text import LINE_END
+from btq_lang.util.record import Record
+from btq_lang.util.text import LINE_END
 
 if TYPE_CHECKING:
 

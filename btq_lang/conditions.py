@@ -20,8 +20,8 @@ from btq_lang.syntax import (
     Operand,
     Path,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.util.text import Span
 
 # Words that begin a clause, so that they end the condition before them.
 SUBJECT_HEADS: Final = frozenset(("mission", "every", "from", "sum"))

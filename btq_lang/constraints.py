@@ -13,10 +13,10 @@ from functools import cache, lru_cache
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.parser import parse
-from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Claim, Path, Requirement, Word
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 # How the keywords are spelt, FailuerIf by the original tool; folded.
 _KEYWORDS = ("successif", "failureif", "failuerif")

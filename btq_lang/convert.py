@@ -19,7 +19,7 @@ from lsprotocol import types
 from btq_lang.diagnostics import Diagnostic, Tag
 from btq_lang.protocol import Json, Plain
 from btq_lang.rules import RULES, Severity, page_path
-from btq_lang.text import Edit, Encoding, LineIndex, Position, Span
+from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span
 
 if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
     from btq_lang.features.actions import Action
@@ -162,7 +162,7 @@ class Converter:
 
     def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:
         """What is wrong with a project file, as JSON has a list of diagnostics."""
-        from btq_lang.toml_places import word_end  # few are wrong
+        from btq_lang.util.toml_places import word_end  # few are wrong
 
         lines = LineIndex(text)
         written: list[str] = []

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, Severity
 from btq_lang.rules import Tag as Tag
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
-    from btq_lang.text import Span
+    from btq_lang.util.text import Span
 
 
 class Place(Record):

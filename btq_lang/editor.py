@@ -28,7 +28,7 @@ from btq_lang.convert import Converter
 from btq_lang.findings import Findings
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
-from btq_lang.version import __version__
+from btq_lang.util.version import __version__
 
 if TYPE_CHECKING:
     from btq_lang.features import Colours

@@ -15,18 +15,18 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from btq_lang.facts import Facts, Names, Tally
 from btq_lang.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
-from btq_lang.record import Record
 from btq_lang.syntax import Entry, Include, Item
-from btq_lang.text import LineIndex, Span, changed
+from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex, Span, changed
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic, Place
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
     from btq_lang.name_kinds import Kind
-    from btq_lang.places import Places
     from btq_lang.project import Project
     from btq_lang.symbols import Summary, Symbol
+    from btq_lang.util.source_map import Places
 
     Kept = TypeVar("Kept", bound=Item)
 

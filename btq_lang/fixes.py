@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from btq_lang.diagnostics import Diagnostic, Fix
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from btq_lang.near import near
 from btq_lang.tokens import CATEGORIES
+from btq_lang.util.spelling import near
 
 ITEM_WORDS: Final = (
     *("BehaviorTree", "Root", "TreeNodesModel", "QualityReq", "include", "signal", "context", "apply"),

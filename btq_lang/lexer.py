@@ -60,7 +60,6 @@ from btq_lang.slips import (
     value_meant,
 )
 from btq_lang.syntax import quote as quoted
-from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import (
     BLANK,
     BRACED,
@@ -79,6 +78,7 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+from btq_lang.util.text import LINE_END, Span
 
 if TYPE_CHECKING:
     from mypy_extensions import i64

@@ -16,8 +16,8 @@ from typing import BinaryIO
 
 from btq_lang.file import SUFFIXES
 from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
-from btq_lang.record import Record, replace
-from btq_lang.text import LineIndex, Position
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import LineIndex, Position
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
@@ -303,7 +303,7 @@ def excluder(project: Project) -> Callable[[str], bool]:
     """Whether the project leaves a path out, or a folder that it is in; a folder's path ends with `/`."""
     if not project.exclude:
         return lambda path: False
-    from btq_lang.globs import glob_matcher  # few projects leave something out
+    from btq_lang.util.globs import glob_matcher  # few projects leave something out
 
     matcher = glob_matcher(project.exclude)
     root = absolute(project.root).rstrip("/") + "/"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from mypy_extensions import i64

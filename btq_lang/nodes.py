@@ -29,7 +29,6 @@ from btq_lang.syntax import (
     is_name,
     quote,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
@@ -46,6 +45,7 @@ from btq_lang.tokens import (
     SYMBOL,
     SYMBOLS,
 )
+from btq_lang.util.text import Span
 from btq_lang.words import unquote
 
 

@@ -14,10 +14,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Diagnostic, Fix, replace_fix, shifted
-from btq_lang.garbage import NotCollecting
 from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.nodes import NodeParser
-from btq_lang.record import replace
 from btq_lang.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
 from btq_lang.syntax import (
     Apply,
@@ -44,7 +42,6 @@ from btq_lang.syntax import (
     quote,
     unquote,
 )
-from btq_lang.text import Span, changed
 from btq_lang.tokens import (
     BRACED,
     CATEGORIES,
@@ -60,6 +57,9 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+from btq_lang.util.garbage import NotCollecting
+from btq_lang.util.record import replace
+from btq_lang.util.text import Span, changed
 
 if TYPE_CHECKING:
     from btq_lang.lexer import State

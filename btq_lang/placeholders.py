@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.nodes import PLACEHOLDERS
-from btq_lang.near import near
+from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
     from btq_lang.syntax import Node

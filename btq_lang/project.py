@@ -24,10 +24,10 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
-from btq_lang.near import did_you_mean, near
-from btq_lang.record import Record, replace
 from btq_lang.rules import RULES, UNREADABLE, Severity
-from btq_lang.text import LineIndex, Position
+from btq_lang.util.record import Record, replace
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import LineIndex, Position
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic
@@ -294,6 +294,6 @@ def _joined(folder: str, path: str) -> str:
 
 
 def _find(text: str, keys: tuple[str, ...], value: str | None = None) -> Position | None:
-    from btq_lang.toml_places import find_key  # only for a mistake
+    from btq_lang.util.toml_places import find_key  # only for a mistake
 
     return find_key(text, keys, value)

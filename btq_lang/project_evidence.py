@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from btq_lang.near import did_you_mean, near
-from btq_lang.record import Record
 from btq_lang.units import Unit, nearest_units, parse_unit
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     Complaint: TypeAlias = tuple[str, tuple[str, ...]]  # what is wrong, and the keys below `evidence` that lead to it

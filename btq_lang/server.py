@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from btq_lang.commands.options import add_server_options
 from btq_lang.editor import NOT_JSON, Refused, Server, Traced
 from btq_lang.handlers import register
-from btq_lang.version import __version__
+from btq_lang.util.version import __version__
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
 from btq_lang.findings import Findings
-from btq_lang.record import replace
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import LineIndex
+from btq_lang.util.record import replace
+from btq_lang.util.text import LineIndex
 
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks.answers import Answers

@@ -13,8 +13,8 @@ from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.measured import measured
 from btq_lang.scan import line_end, line_start, number_end
 from btq_lang.syntax import quote
-from btq_lang.text import Span
 from btq_lang.units import nearest_units
+from btq_lang.util.text import Span
 
 
 def close_string(text: str, start: int) -> Fix:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record, fields_of
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -34,9 +33,10 @@ from btq_lang.syntax import (
     shape,
 )
 from btq_lang.tokens import NAME
+from btq_lang.util.record import Record, fields_of
 
 if TYPE_CHECKING:
-    from btq_lang.text import Span
+    from btq_lang.util.text import Span
 
 Target: TypeAlias = Tree | Model | Requirement | Signal | Context | QualityDecl
 

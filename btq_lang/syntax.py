@@ -17,10 +17,10 @@ from btq_lang.node_clauses import Requirement as Requirement
 from btq_lang.node_clauses import Satisfices as Satisfices
 from btq_lang.node_clauses import Satisfies as Satisfies
 from btq_lang.node_clauses import Tags as Tags
-from btq_lang.record import Record, fields_of
 from btq_lang.scan import is_name as is_name
-from btq_lang.text import Span
 from btq_lang.tokens import QUANTITY, STRING
+from btq_lang.util.record import Record, fields_of
+from btq_lang.util.text import Span
 from btq_lang.words import Node as Node
 from btq_lang.words import Pair as Pair
 from btq_lang.words import TypeWord as TypeWord

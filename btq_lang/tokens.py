@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 # Words and values.
 NAME: Final = 0  # MoveBase, satisfies, BatteryLow?

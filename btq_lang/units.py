@@ -14,8 +14,8 @@ from functools import lru_cache
 from math import inf, pi
 from typing import Final
 
-from btq_lang.near import near
-from btq_lang.record import Record
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import near
 
 # Exponents over length, mass, time, current, temperature, angle, data, count, percent.
 Dimension = tuple[int, int, int, int, int, int, int, int, int]

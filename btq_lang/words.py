@@ -11,8 +11,8 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from btq_lang.text import Span
 from btq_lang.tokens import STRING
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from mypy_extensions import i64

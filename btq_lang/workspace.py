@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 from btq_lang.file import Definition, File, is_of_package
 from btq_lang.name_kinds import Kind
 from btq_lang.project import Project, include_candidates
-from btq_lang.record import Record
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Include, Root, Word
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.facts import Name, Names
     from btq_lang.file import Origin
-    from btq_lang.text import Span
+    from btq_lang.util.text import Span
 
 
 class Workspace:

@@ -16,7 +16,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic, Fix
 from btq_lang.project import Project
 from btq_lang.rules import RULES
-from btq_lang.text import Edit, LineIndex, apply_edits
+from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace import Workspace
 
 MAIN = "main.btq"

@@ -13,10 +13,10 @@ from itertools import islice
 
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
-from btq_lang.record import fields_of
 from btq_lang.rules import Severity
 from btq_lang.syntax import Requirement, Word, shape
 from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, QUANTITY, Token
+from btq_lang.util.record import fields_of
 
 # ---- what a file says -----------------------------------------------------------------------------------------------
 

@@ -23,7 +23,7 @@ from btq_lang.checks import check
 from btq_lang.features.colours import colours
 from btq_lang.features.completion import complete
 from btq_lang.features.outline import Outline, document_symbols
-from btq_lang.text import LineIndex, Position
+from btq_lang.util.text import LineIndex, Position
 from btq_lang.workspace import Workspace
 
 FILES = {

@@ -72,8 +72,8 @@ from btq_lang.syntax import (
     Window,
     Word,
 )
-from btq_lang.text import Edit, LineIndex, apply_edits
 from btq_lang.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
+from btq_lang.util.text import Edit, LineIndex, apply_edits
 
 MISSING = "MISSING"
 

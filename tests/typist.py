@@ -14,7 +14,7 @@ from btq_lang.features.on_type import on_type
 from btq_lang.features.rename import Refusal, rename
 from btq_lang.formatter import format_text
 from btq_lang.session import Session
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Element
-from btq_lang.text import LINE_END
+from btq_lang.util.text import LINE_END
 
 
 def elements(document: Document) -> list[object]:

@@ -11,8 +11,8 @@ from typing import Final
 
 from btq_lang.btcpp.document import Element
 from btq_lang.btcpp.wrappers import MARK, MOVED
-from btq_lang.record import Record
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 ADVICE: Final = "the next build restores it; change the requirement that it enforces instead"
 

@@ -27,12 +27,12 @@ from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.diagnostics import Place
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record, replace
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode, Span
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.requirements.spans import node_of
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from btq_lang.btcpp.document import Attribute, Comment, Content, Document, Eleme
 from btq_lang.btcpp.marks import DESCRIPTION_MARK, is_generated_mark, own_description
 from btq_lang.btcpp.version3 import Change
 from btq_lang.btcpp.wrappers import MARK, MOVED, holding_nodes, unwrapped
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 
 def may_be_generated(text: str) -> bool:

@@ -20,7 +20,6 @@ from btq_lang.btcpp.conditions import (
     value_script,
 )
 from btq_lang.btcpp.keys import legal
-from btq_lang.record import Record, replace
 from btq_lang.requirements.model import (
     Bounded,
     Claim,
@@ -37,6 +36,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.reading import signals_in
 from btq_lang.units import Unit
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.around import WrapperTag

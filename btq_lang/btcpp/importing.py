@@ -19,13 +19,13 @@ from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.garbage import NotCollecting
-from btq_lang.places import Places
-from btq_lang.record import Record
 from btq_lang.rules import RULES, Severity
 from btq_lang.syntax import is_name
-from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
+from btq_lang.util.garbage import NotCollecting
+from btq_lang.util.record import Record
+from btq_lang.util.source_map import Places
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     IncludedAs: TypeAlias = Callable[[str], str]

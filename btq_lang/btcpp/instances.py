@@ -14,7 +14,7 @@ from typing import Final
 
 from btq_lang.btcpp.document import Element, Raw
 from btq_lang.btcpp.reader import read
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class Instance(Record):

@@ -32,9 +32,9 @@ from btq_lang.btcpp.document import (
 )
 from btq_lang.btcpp.strict import not_well_formed
 from btq_lang.diagnostics import Diagnostic, Place, Related
-from btq_lang.garbage import NotCollecting
-from btq_lang.record import Record
-from btq_lang.text import LINE_END, Span
+from btq_lang.util.garbage import NotCollecting
+from btq_lang.util.record import Record
+from btq_lang.util.text import LINE_END, Span
 
 if TYPE_CHECKING:
     # Its name, its attributes (None: it closes an element), whether it opens none, how long it is, whether there may be

@@ -19,7 +19,6 @@ from btq_lang.file import is_btq
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import Record, replace
 from btq_lang.syntax import (
     Apply,
     Context,
@@ -36,8 +35,9 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
-from btq_lang.text import Edit, LineIndex, Span, apply_edits
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
 
 
 class Restored(Record):

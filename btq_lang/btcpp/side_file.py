@@ -17,7 +17,6 @@ from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.diagnostics import Place
-from btq_lang.record import Record, fields_of
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
@@ -25,6 +24,7 @@ from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satis
 from btq_lang.syntax import Requirement as RequirementItem
 from btq_lang.syntax import Signal as SignalItem
 from btq_lang.units import Unit
+from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace import Workspace
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"

@@ -17,9 +17,9 @@ from btq_lang.comments import NO_COMMENTS, Comments, comments
 from btq_lang.comments import Comment as SourceComment
 from btq_lang.file import File
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.syntax import Entry, Verbatim, Word
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Scope, Workspace
 
 if TYPE_CHECKING:

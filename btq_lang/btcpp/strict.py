@@ -10,7 +10,7 @@ import re
 from typing import Final
 
 from btq_lang.diagnostics import Diagnostic
-from btq_lang.text import LineIndex, Position, Span
+from btq_lang.util.text import LineIndex, Position, Span
 
 
 def not_well_formed(text: str, with_prefixes: bool = False) -> tuple[Diagnostic, ...] | None:

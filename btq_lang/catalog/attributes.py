@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, Literal
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class AttributeKind(Record):

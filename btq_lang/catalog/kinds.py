@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Final, Literal, TypeAlias
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 # The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
 VERSIONS: Final = ("4.6", "4.8", "4.10")

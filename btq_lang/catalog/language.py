@@ -10,7 +10,7 @@ import re
 from functools import cache
 from typing import Final
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class Phrase(Record):

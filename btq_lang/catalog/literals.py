@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import Final, Literal
 
 from btq_lang.catalog.kinds import DEFAULT_VERSION, RESULT, at_least
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class LiteralProblem(Record):

@@ -17,8 +17,8 @@ from typing import Final, Literal, TypeAlias
 
 from btq_lang.catalog.quality_model import AI, MODELS, NAMES, NO_EQUAL, ROBOTICS, SUCCESSORS
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
-from btq_lang.near import near
-from btq_lang.record import Record
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import near
 
 Edition: TypeAlias = "Literal['2011', '2023']"
 

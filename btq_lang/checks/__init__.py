@@ -43,7 +43,6 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.findings import Findings, Told
 from btq_lang.project import configured
-from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.scan import line_start
 from btq_lang.syntax import (
@@ -60,6 +59,7 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.checks.answers import Answers

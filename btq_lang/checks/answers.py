@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 
 from btq_lang.facts import Facts, Name
 from btq_lang.file import File
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

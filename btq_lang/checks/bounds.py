@@ -11,9 +11,9 @@ from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.name_kinds import Kind
 from btq_lang.quantities import parse_quantity
 from btq_lang.syntax import Amount, Claim, Entry, Mission, Odds, OnViolation, Requirement, Scope, Signal, Word, walk
-from btq_lang.text import Span
 from btq_lang.tokens import NUMBER, QUANTITY
 from btq_lang.units import Dimension, parse_unit
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

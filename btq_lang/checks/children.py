@@ -13,7 +13,7 @@ from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

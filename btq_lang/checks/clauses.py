@@ -21,7 +21,7 @@ from btq_lang.syntax import (
     Word,
     walk,
 )
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.diagnostics import Diagnostic, Place
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 from btq_lang.syntax import Model, Tree
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.judging import Judge

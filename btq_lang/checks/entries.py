@@ -15,9 +15,9 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.syntax import Model, Pair, Port, Signal, Tree
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -11,7 +11,7 @@ from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replac
 from btq_lang.file import is_btq
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

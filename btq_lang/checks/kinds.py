@@ -16,12 +16,12 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.near import did_you_mean, distance
 from btq_lang.rules import Severity
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
-from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES
+from btq_lang.util.spelling import did_you_mean, distance
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

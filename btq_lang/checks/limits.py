@@ -13,7 +13,7 @@ from btq_lang.requirements.model import Claim, Compare, Read, Requirement, Sourc
 from btq_lang.rules import Severity
 from btq_lang.syntax import Goal
 from btq_lang.syntax import Requirement as WrittenRequirement
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

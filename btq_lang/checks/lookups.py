@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btq_lang.custom_nodes import LikelyPort
     from btq_lang.facts import Facts
     from btq_lang.file import Origin
-    from btq_lang.text import Span
+    from btq_lang.util.text import Span
     from btq_lang.workspace import Workspace
 
 # ---- a name: what these say depends on nothing but the items that define it ----

@@ -18,9 +18,9 @@ from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.entry_types import declared_type, is_text
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Pair, Tree
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -11,10 +11,10 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.record import replace
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Model, Models, Tree, Word, is_name
-from btq_lang.text import Span
+from btq_lang.util.record import replace
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

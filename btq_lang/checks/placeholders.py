@@ -13,11 +13,11 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
 from btq_lang.name_kinds import Kind
-from btq_lang.near import near
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
-from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -15,11 +15,11 @@ from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.near import did_you_mean, distance, near
-from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean, distance, near
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

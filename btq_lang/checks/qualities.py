@@ -9,11 +9,11 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
 from btq_lang.name_kinds import Kind
-from btq_lang.near import did_you_mean
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Qualities, Requirement
-from btq_lang.text import Span
+from btq_lang.util.spelling import did_you_mean
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks.clauses import with_blanks
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.record import Record
 from btq_lang.syntax import (
     Apply,
     Entry,
@@ -21,7 +20,8 @@ from btq_lang.syntax import (
     Word,
     shape,
 )
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -14,8 +14,8 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import ask_of_called
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.syntax import Node, Tree
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

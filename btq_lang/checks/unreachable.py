@@ -12,7 +12,7 @@ from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag
 from btq_lang.syntax import Entry, Node, Verbatim
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import lookups
 from btq_lang.diagnostics import Diagnostic, Tag
 from btq_lang.name_kinds import Kind
-from btq_lang.near import near
 from btq_lang.syntax import Context, Entry, Signal
+from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

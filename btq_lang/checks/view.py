@@ -17,7 +17,6 @@ from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
 from btq_lang.name_kinds import Kind
-from btq_lang.near import near
 from btq_lang.symbols import Summary, Use
 from btq_lang.syntax import (
     Apply,
@@ -30,6 +29,7 @@ from btq_lang.syntax import (
     Tree,
     is_name,
 )
+from btq_lang.util.spelling import near
 from btq_lang.workspace import Scope, Workspace
 
 if TYPE_CHECKING:

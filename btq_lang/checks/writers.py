@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.record import Record
 from btq_lang.syntax import Pair, Port, Verbatim
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded

@@ -11,10 +11,10 @@ from btq_lang.commands.options import CheckOptions, add_server_options
 from btq_lang.commands.verdict_formats import FORMATS as VERDICT_FORMATS
 from btq_lang.graph import DIRECTIONS
 from btq_lang.graph import FORMATS as GRAPH_FORMATS
-from btq_lang.near import near
 from btq_lang.render import FORMATS
 from btq_lang.trace import FORMATS as TRACE_FORMATS
-from btq_lang.version import __version__
+from btq_lang.util.spelling import near
+from btq_lang.util.version import __version__
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction

@@ -19,10 +19,10 @@ from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_pr
 from btq_lang.commands.left_over import left_over
 from btq_lang.diagnostics import Place
 from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
-from btq_lang.record import Record, replace
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
-from btq_lang.text import Span
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span
 
 
 class Target(Record):

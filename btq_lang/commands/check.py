@@ -12,10 +12,10 @@ from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
-from btq_lang.record import replace
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.rules import UNREADABLE, Severity
+from btq_lang.util.record import replace
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

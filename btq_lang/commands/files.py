@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
-from btq_lang.record import Record, replace
+from btq_lang.util.record import Record, replace
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from btq_lang.commands.files import Files, usage_problem
 from btq_lang.graph.picture import picture, places
 from btq_lang.loader import absolute, shown, stamp
 from btq_lang.preview.server import Preview
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 from btq_lang.watch import watch
 from btq_lang.workspace import Workspace
 

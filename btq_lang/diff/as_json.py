@@ -24,7 +24,7 @@ from collections.abc import Iterable, Iterator
 from btq_lang.diff import Change, Place
 from btq_lang.diff.comparison import Comparison, Side, all_changes
 from btq_lang.diff.wording import SIGNS
-from btq_lang.version import __version__
+from btq_lang.util.version import __version__
 
 
 def render(comparisons: Iterable[Comparison]) -> Iterator[str]:

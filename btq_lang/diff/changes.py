@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.diff.said import Place, Values
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 # The order in which changes are told: what the mission is and must be first, then how it does that.
 THINGS: Final = (

@@ -9,8 +9,8 @@ from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.undeclared import made_models
 from btq_lang.diff import Change, Place, compare
 from btq_lang.diff.changes import GUARD, Detail
-from btq_lang.record import Record, replace
-from btq_lang.text import Position
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Position
 from btq_lang.workspace import Workspace
 
 

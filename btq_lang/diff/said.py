@@ -18,7 +18,6 @@ from btq_lang.file import File
 from btq_lang.lexer import tokens
 from btq_lang.placeholders import is_placeholder
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import Record
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Apply,
@@ -56,9 +55,10 @@ from btq_lang.syntax import (
     shape,
     walk,
 )
-from btq_lang.text import Span
 from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.units import convert, parse_unit, to_si
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

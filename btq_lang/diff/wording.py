@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from btq_lang.diff.changes import Change, Detail
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 SIGNS: Final = {"added": "+", "removed": "-", "moved": ">", "changed": "~", "renamed": "~"}
 TITLES: Final = {

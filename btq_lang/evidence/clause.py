@@ -19,8 +19,8 @@ from btq_lang.evidence.tally import Tally
 from btq_lang.evidence.verbs import Judgement, judges_of
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, ClauseVerdict
 from btq_lang.evidence.wording import duration
-from btq_lang.record import Record, replace
 from btq_lang.requirements.model import Mission, Running, Span, Target, Total, Value
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.guards import Guard, Refusal

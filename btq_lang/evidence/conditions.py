@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.evidence.signals import Unknown
-from btq_lang.record import Record, replace
 from btq_lang.requirements.model import (
     Aggregate,
     All,
@@ -31,6 +30,7 @@ from btq_lang.requirements.model import (
     Value,
 )
 from btq_lang.units import parse_unit
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Moment, SampleValue

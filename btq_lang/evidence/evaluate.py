@@ -23,7 +23,7 @@ from btq_lang.evidence.tally import Run
 from btq_lang.evidence.ticks import timed
 from btq_lang.evidence.timeline import Timelines
 from btq_lang.evidence.verdicts import VIOLATED, ClauseVerdict, MissionVerdicts, RequirementVerdict, Source, worst_of
-from btq_lang.record import replace
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate, Joined

@@ -16,7 +16,7 @@ from btq_lang.evidence.observed import signals_in
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verdicts import Link
 from btq_lang.evidence.wording import duration, quantity
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import ROOT
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation, LoggedTree

@@ -15,8 +15,8 @@ from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.evidence.model import LoggedTree
-from btq_lang.record import Record, replace
 from btq_lang.requirements.resolve import requirements
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.document import Element

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.evidence.conditions import bound_at
 from btq_lang.evidence.signals import Unknown
 from btq_lang.evidence.verbs import Measure
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.conditions import Bound

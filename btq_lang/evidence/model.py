@@ -11,7 +11,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.units import Unit

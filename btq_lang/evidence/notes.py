@@ -10,9 +10,9 @@ from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
 from btq_lang.loader import shown
 from btq_lang.name_kinds import Kind
-from btq_lang.near import did_you_mean, near
 from btq_lang.rules import Severity
 from btq_lang.syntax import Signal
+from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate

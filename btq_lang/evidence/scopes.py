@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
-from btq_lang.record import replace
 from btq_lang.requirements.model import Any, Not
+from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.observed import Observed

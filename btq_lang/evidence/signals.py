@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series
-from btq_lang.record import Record
 from btq_lang.requirements.model import Value
 from btq_lang.units import to_si
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue

@@ -11,7 +11,7 @@ from btq_lang.evidence.distribution import Distribution
 from btq_lang.evidence.odds import lower_limit, runs_to_decide, upper_limit
 from btq_lang.evidence.verdicts import NEVER, SATISFIED, UNDECIDED, UNKNOWN, VIOLATED, Violation, Worst
 from btq_lang.evidence.wording import measured
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.verbs import Judgement, Measure

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Outcome

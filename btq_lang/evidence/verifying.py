@@ -24,7 +24,7 @@ from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import side_file_at
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.loader import IS_SPECIAL, absolute, collect, is_special, shown
-from btq_lang.record import Record, replace
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series

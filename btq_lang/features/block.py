@@ -9,10 +9,10 @@ import re
 from collections.abc import Iterator
 
 from btq_lang.file import File
-from btq_lang.record import Record
 from btq_lang.syntax import Entry, Node, Tree
-from btq_lang.text import LINE_END, Edit, Span
 from btq_lang.tokens import COMMENT, STRING
+from btq_lang.util.record import Record
+from btq_lang.util.text import LINE_END, Edit, Span
 
 STEP = "    "
 

@@ -25,10 +25,10 @@ from btq_lang.features.snippets import item_snippets, model_snippets, node_snipp
 from btq_lang.file import File
 from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record, replace
 from btq_lang.syntax import is_name
-from btq_lang.text import Span
 from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING, Token
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.features.proposals import Proposal
-from btq_lang.record import replace
+from btq_lang.util.record import replace
 
 
 def listed(proposals: Sequence[Proposal], typed: str, asked: bool) -> tuple[Proposal, ...]:

@@ -25,8 +25,8 @@ from btq_lang.name_kinds import Kind
 from btq_lang.quantities import parse_quantity
 from btq_lang.rules import RULES, page
 from btq_lang.syntax import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
-from btq_lang.text import Span
 from btq_lang.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 _MOST_USES = 12

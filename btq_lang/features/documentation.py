@@ -9,7 +9,7 @@ from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_ma
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.name_kinds import Kind
-from btq_lang.text import Edit
+from btq_lang.util.text import Edit
 from btq_lang.workspace import Workspace
 
 

@@ -12,10 +12,10 @@ from btq_lang.features.ports import ports_of
 from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Claim, Entry, Requirement, Root
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 _COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from btq_lang.project import include_candidates
 from btq_lang.syntax import Include, quote
-from btq_lang.text import Edit
+from btq_lang.util.text import Edit
 from btq_lang.workspace import Workspace
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from btq_lang.features.meaning import Found, at, definition, everywhere, subject
 from btq_lang.mentions import What
-from btq_lang.record import Record
 from btq_lang.syntax import Node
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

@@ -12,8 +12,8 @@ from btq_lang.file import File
 from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model
-from btq_lang.text import Edit, Span
 from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
+from btq_lang.util.text import Edit, Span
 from btq_lang.workspace import Workspace
 
 

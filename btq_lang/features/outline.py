@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.nodes import lookup
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Apply,
@@ -26,7 +25,8 @@ from btq_lang.syntax import (
     Tree,
     Word,
 )
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

@@ -12,10 +12,8 @@ from collections.abc import Sequence
 from btq_lang.features.clause_words import opens_condition
 from btq_lang.file import File
 from btq_lang.lexer import tokens as tokens_of
-from btq_lang.record import Record
 from btq_lang.scan import line_start
 from btq_lang.syntax import Item, Node, Tree, unquote
-from btq_lang.text import Span
 from btq_lang.tokens import (
     BLANK,
     CATEGORIES,
@@ -33,6 +31,8 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

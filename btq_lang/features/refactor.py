@@ -17,7 +17,6 @@ from btq_lang.file import File
 from btq_lang.mentions import Mention, What
 from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
-from btq_lang.record import Record
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import (
@@ -36,8 +35,9 @@ from btq_lang.syntax import (
     is_name,
     quote,
 )
-from btq_lang.text import Edit, Position, Span
 from btq_lang.tokens import BRACED, NODE_CLAUSES
+from btq_lang.util.record import Record
+from btq_lang.util.text import Edit, Position, Span
 from btq_lang.workspace import Workspace
 
 

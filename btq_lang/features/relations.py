@@ -7,7 +7,7 @@ from btq_lang.features.navigation import Target, goto_definition
 from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.name_kinds import Kind
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

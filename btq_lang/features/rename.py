@@ -16,9 +16,9 @@ from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, defi
 from btq_lang.file import is_btq
 from btq_lang.mentions import Mention, What
 from btq_lang.name_kinds import Kind
-from btq_lang.record import Record
 from btq_lang.syntax import is_name, quote
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.util.record import Record
+from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 
 

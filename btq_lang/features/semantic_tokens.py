@@ -10,10 +10,10 @@ from btq_lang.features.meaning import edition
 from btq_lang.features.stretches import Known, Stretch, encoded
 from btq_lang.name_kinds import Kind
 from btq_lang.parser import Parsed
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.text import Encoding
+    from btq_lang.util.text import Encoding
     from btq_lang.workspace import Workspace
 
 

@@ -12,8 +12,8 @@ from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import Refactoring
 from btq_lang.file import File
 from btq_lang.syntax import Entry, Node, Pair, Satisfices, Tree, is_name, quote
-from btq_lang.text import Edit, Span, apply_edits
 from btq_lang.tokens import CLOSE, NODE_CLAUSES, OPEN
+from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 
 _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]

@@ -40,9 +40,9 @@ from btq_lang.formatter.layout import FormatOptions, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks, marks_of
 from btq_lang.parser import Parsed, parse
-from btq_lang.record import Record, replace
 from btq_lang.rules import Severity
-from btq_lang.text import LINE_END, Edit, Span, apply_edits
+from btq_lang.util.record import Record, replace
+from btq_lang.util.text import LINE_END, Edit, Span, apply_edits
 
 __all__ = ["DEFAULTS", "FormatOptions", "Formatted", "format_range", "format_text"]
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.record import Record
-from btq_lang.text import LineIndex
+from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex
 
 
 class Gap(Record):

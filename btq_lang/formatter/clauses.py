@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from btq_lang.formatter.layout import FormatOptions, fits
 from btq_lang.formatter.lines import Line
 from btq_lang.formatter.marks import Clauses, Marks
-from btq_lang.record import Record
-from btq_lang.text import Span
 from btq_lang.tokens import NAME
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 
 class Section(Record):

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from btq_lang.comments import block_of
-from btq_lang.text import LINE_END
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
+from btq_lang.util.text import LINE_END
 
 
 class Piece:

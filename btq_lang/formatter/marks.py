@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.parser import Parsed
-from btq_lang.record import Record, fields_of
 from btq_lang.syntax import (
     Amount,
     Argument,
@@ -45,8 +44,9 @@ from btq_lang.syntax import (
     Window,
     Word,
 )
-from btq_lang.text import LINE_END, Span
 from btq_lang.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
+from btq_lang.util.record import Record, fields_of
+from btq_lang.util.text import LINE_END, Span
 
 
 class Clauses(Record):

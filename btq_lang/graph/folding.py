@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container
 
 from btq_lang.graph.figure import Box, Figure, Note
-from btq_lang.record import replace
+from btq_lang.util.record import replace
 
 
 def foldable(figure: Figure, folded: Container[str] = ()) -> Figure:

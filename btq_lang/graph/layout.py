@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class Size(Record):

@@ -11,8 +11,8 @@ from typing import Final
 from btq_lang.graph import draw
 from btq_lang.graph.folding import foldable, with_folded_notes
 from btq_lang.graph.missions import figures, keyed
-from btq_lang.record import Record
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

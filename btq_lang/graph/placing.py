@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 from btq_lang.graph.figure import Box, Figure, Note
 from btq_lang.graph.layout import Size, layout
 from btq_lang.graph.widths import shortened, width, wrapped
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 TITLE: Final = 13  # sizes of letters
 SMALL: Final = 11

@@ -10,7 +10,7 @@ from btq_lang import features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
 from btq_lang.handlers.commands import USES
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.workspace import Workspace

@@ -9,7 +9,7 @@ from lsprotocol import types
 
 from btq_lang import features
 from btq_lang.editor import Refused, Server
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.workspace import Workspace

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
-from btq_lang.record import Record, replace
+from btq_lang.util.record import Record, replace
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "junit")
 

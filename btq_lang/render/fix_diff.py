@@ -13,7 +13,7 @@ from btq_lang.render import Finding, Report
 from btq_lang.render.cells import cut, printable
 from btq_lang.render.frame import Row
 from btq_lang.render.location import clamped, line_index, text_of
-from btq_lang.text import Edit, LineIndex, Position, apply_edits
+from btq_lang.util.text import Edit, LineIndex, Position, apply_edits
 
 _MOST = 12
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import lru_cache
 
-from btq_lang.record import Record
 from btq_lang.render.cells import cut, laid_out
 from btq_lang.render.location import clamped, line_index
-from btq_lang.text import LineIndex, Position, Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex, Position, Span
 
 _CONTEXT = 1  # lines shown above and below: above stands the parent or the opener
 _HEAD, _TAIL = 4, 2  # lines of a long span that are shown at its start and its end

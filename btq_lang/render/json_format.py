@@ -29,7 +29,7 @@ from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.location import location
 from btq_lang.render.summary import count, is_fixable
 from btq_lang.rules import Severity
-from btq_lang.version import __version__
+from btq_lang.util.version import __version__
 
 
 def render(report: Report) -> Iterator[str]:

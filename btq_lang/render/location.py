@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from btq_lang.record import Record
-from btq_lang.text import LineIndex, Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import LineIndex, Span
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Place

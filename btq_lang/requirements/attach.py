@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.diagnostics import Diagnostic, Related, replace_fix
-from btq_lang.near import did_you_mean, near
-from btq_lang.record import Record, fields_of, replace
 from btq_lang.requirements import model
 from btq_lang.requirements.memory import is_same
 from btq_lang.requirements.model import (
@@ -37,7 +35,9 @@ from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax import Argument as WrittenArgument
 from btq_lang.syntax import Requirement as WrittenRequirement
-from btq_lang.text import Span as TextSpan
+from btq_lang.util.record import Record, fields_of, replace
+from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.util.text import Span as TextSpan
 
 if TYPE_CHECKING:
     from btq_lang.requirements.reader import Reader

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from math import fsum, inf
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.record import Record, replace
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.memory import Memory, is_same
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.requirements.resolved import Requirements

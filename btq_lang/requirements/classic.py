@@ -9,13 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
-from btq_lang.record import replace
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax import Claim as WrittenClaim
 from btq_lang.syntax import Word
-from btq_lang.text import Span
+from btq_lang.util.record import replace
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Relation

@@ -10,7 +10,6 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.record import replace
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Bounded,
@@ -45,8 +44,9 @@ from btq_lang.syntax import Scope as WrittenScope
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.syntax import Subject as WrittenSubject
 from btq_lang.syntax import Window as WrittenWindow
-from btq_lang.text import Span as TextSpan
 from btq_lang.units import Dimension, Unit, a_dimension, parse_unit
+from btq_lang.util.record import replace
+from btq_lang.util.text import Span as TextSpan
 
 if TYPE_CHECKING:
     from btq_lang.file import Definition

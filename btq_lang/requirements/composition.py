@@ -12,7 +12,6 @@ from math import fsum, inf
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import Record, replace
 from btq_lang.requirements.durations import (
     ANY,
     ZERO,
@@ -27,6 +26,7 @@ from btq_lang.requirements.durations import (
 )
 from btq_lang.tokens import QUANTITY
 from btq_lang.units import to_si
+from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import SourceNode

@@ -10,8 +10,8 @@ from collections.abc import Iterable
 from math import inf
 from typing import Final
 
-from btq_lang.record import Record, replace
 from btq_lang.requirements.model import SourceNode
+from btq_lang.util.record import Record, replace
 
 
 class Term(Record):

@@ -11,9 +11,9 @@ from itertools import compress, count
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from btq_lang.diagnostics import Place
-from btq_lang.record import fields_of
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
-from btq_lang.text import Span
+from btq_lang.util.record import fields_of
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.requirements.attach import Held, Uses

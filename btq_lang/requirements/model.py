@@ -9,13 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.diagnostics import Place
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.syntax import Item, Node, Tree
-    from btq_lang.text import Span as TextSpan
     from btq_lang.units import Dimension, Unit
+    from btq_lang.util.text import Span as TextSpan
 
     Verb: TypeAlias = Literal[
         "takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows"

@@ -10,9 +10,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.diagnostics import Fix, replace_fix
-from btq_lang.near import did_you_mean
 from btq_lang.quantities import parse_quantity
-from btq_lang.record import Record
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Aggregate,
@@ -52,9 +50,11 @@ from btq_lang.syntax import Bounded as WrittenBounded
 from btq_lang.syntax import Condition as WrittenCondition
 from btq_lang.syntax import Not as WrittenNot
 from btq_lang.syntax import Table as WrittenTable
-from btq_lang.text import Span
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
 from btq_lang.units import Dimension, Unit, a_dimension, parse_unit, to_si
+from btq_lang.util.record import Record
+from btq_lang.util.spelling import did_you_mean
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Sort

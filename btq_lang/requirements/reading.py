@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.record import fields_of
 from btq_lang.requirements.model import Signal, SourceNode
+from btq_lang.util.record import fields_of
 
 
 def signals_in(part: object) -> Iterator[Signal]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os.path
 from enum import Enum
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 
 class Severity(Enum):

@@ -13,7 +13,7 @@ from btq_lang.rules import Severity
 from btq_lang.script import mistakes
 from btq_lang.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
 from btq_lang.script.versions import version_problems
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 ALL_VERSIONS: Final = ("4.6", "4.8", "4.10")
 

@@ -31,7 +31,7 @@ from btq_lang.script.tree import (
     ungrouped,
     walk,
 )
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.script import mistakes
 from btq_lang.script.tree import ASSIGNMENT, RANK
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     import re

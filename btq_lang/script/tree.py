@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.record import Record
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics import Diagnostic

@@ -14,7 +14,6 @@ from itertools import combinations, pairwise, zip_longest
 from typing import Final, TypeGuard
 
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
-from btq_lang.record import Record
 from btq_lang.rules import Severity
 from btq_lang.script.tree import (
     RANK,
@@ -31,7 +30,8 @@ from btq_lang.script.tree import (
     Unary,
     children,
 )
-from btq_lang.text import Span
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
 
 
 def version_problems(script: Script, versions: Iterable[str]) -> list[Diagnostic]:

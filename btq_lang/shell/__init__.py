@@ -10,7 +10,7 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 SHELLS = ("bash", "zsh", "fish", "powershell")
 

@@ -34,7 +34,7 @@ import json
 from typing import TypeAlias
 
 from btq_lang.trace.overview import At, Overview, QualityRow, RequirementRow
-from btq_lang.version import __version__
+from btq_lang.util.version import __version__
 
 Json: TypeAlias = "bool | int | str | list[Json] | dict[str, Json] | None"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.graph.figure import Figure
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     # How a clause is held: by the tree that `btq build` makes, by tools that read logs, or by people.

@@ -17,7 +17,7 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.reader import read
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
-from btq_lang.text import LineIndex, Span
+from btq_lang.util.text import LineIndex, Span
 from btq_lang.workspace import Workspace
 
 

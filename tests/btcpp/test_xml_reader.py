@@ -13,7 +13,7 @@ from xml_elements import elements
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
-from btq_lang.text import LineIndex
+from btq_lang.util.text import LineIndex
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
 

@@ -12,7 +12,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.project import Project
 from btq_lang.rules import Severity
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 

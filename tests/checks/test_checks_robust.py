@@ -16,7 +16,7 @@ from btq_lang.checks import check
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.lexer import tokens
 from btq_lang.project import Project
-from btq_lang.record import replace
+from btq_lang.util.record import replace
 from btq_lang.workspace import Workspace
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -8,7 +8,7 @@ import pytest
 
 from btq_lang.checks import check
 from btq_lang.name_kinds import Kind
-from btq_lang.text import LineIndex
+from btq_lang.util.text import LineIndex
 from btq_lang.workspace import Workspace
 
 PATH = "/original/paper_example.qualitybtcpp"

@@ -11,9 +11,9 @@ from literal_log import both, micros
 from literal_runs import Activation
 from literal_verbs import OPEN, OUT, Judged, OfActivations, counted, judged
 
-from btq_lang import record
 from btq_lang.evidence.model import ROOT
 from btq_lang.requirements.model import Value
+from btq_lang.util import record
 
 if TYPE_CHECKING:
     from literal_runs import Moment

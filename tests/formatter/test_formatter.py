@@ -9,7 +9,7 @@ from layouts import places, said
 from syntax_asserts import written
 
 from btq_lang.formatter import FormatOptions, Formatted, format_range, format_text
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.util.text import Edit, Span, apply_edits
 
 DEFAULTS = FormatOptions()
 

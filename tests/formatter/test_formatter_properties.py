@@ -15,8 +15,8 @@ from missions import mission
 from btq_lang.formatter import FormatOptions, format_range, format_text
 from btq_lang.lexer import tokens
 from btq_lang.parser import parse
-from btq_lang.text import apply_edits
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT
+from btq_lang.util.text import apply_edits
 
 ROOT = Path(__file__).resolve().parents[2]
 EVERY_FORM = (ROOT / "tests" / "every_form.btq").read_text("utf-8")

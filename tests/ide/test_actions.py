@@ -18,7 +18,7 @@ from rule_pages import blocks
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.features.actions import code_actions
 from btq_lang.rules import Severity
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 EXAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))

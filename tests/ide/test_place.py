@@ -9,8 +9,8 @@ import pytest
 
 from btq_lang.features import complete, place
 from btq_lang.file import File
-from btq_lang.text import Span
 from btq_lang.tokens import Token
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

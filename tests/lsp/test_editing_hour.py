@@ -26,7 +26,7 @@ from btq_lang.features.rename import prepare_rename
 from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.session import Session
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 HERE = Path(__file__).parent
 HOUR = (HERE.parent / "recordings" / "an_hour.keys").read_text(encoding="utf-8")

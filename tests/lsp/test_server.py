@@ -20,7 +20,7 @@ from btq_lang.convert import Converter
 from btq_lang.diagnostics import Diagnostic, Place, Related
 from btq_lang.editor import Server
 from btq_lang.findings import Findings
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"

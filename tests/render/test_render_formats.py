@@ -11,7 +11,7 @@ from btq_lang import __version__
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.render import Finding, Report, Trouble, render, sarif
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 TEXT = "BehaviorTree main\n    🤖 Rety\n"
 RETY = Span(24, 28)

@@ -7,7 +7,7 @@ import pytest
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.rules import Severity
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 MISSION = """\
 BehaviorTree mainTree

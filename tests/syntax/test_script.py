@@ -37,7 +37,7 @@ from btq_lang.script import (
     variables,
 )
 from btq_lang.script.tokens import Tokens
-from btq_lang.text import Edit, Span, apply_edits
+from btq_lang.util.text import Edit, Span, apply_edits
 
 # ---- what a script means: the same in every version, and without a problem in any ----
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.globs import glob_matcher
+from btq_lang.util.globs import glob_matcher
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ import pickle
 
 import pytest
 
-from btq_lang.record import Record, replace
+from btq_lang.util.record import Record, replace
 
 
 class Point(Record):

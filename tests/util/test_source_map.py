@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from btq_lang.commands.files import Files
-from btq_lang.places import Places
-from btq_lang.text import Span
+from btq_lang.util.source_map import Places
+from btq_lang.util.text import Span
 
 PIECES = ((0, 5, 10, 15), (6, 8, 20, 30), (8, 9, 40, 60), (9, 12, 50, 53))
 GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.xml"))

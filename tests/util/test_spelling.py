@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.near import distance, near
+from btq_lang.util.spelling import distance, near
 
 WORDS = st.text(alphabet="abC-", max_size=8)
 

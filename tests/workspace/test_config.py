@@ -11,7 +11,7 @@ from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.project import Project, configured, has_btq_table, include_candidates, parse_project, unknown_rule
 from btq_lang.rules import RULES, Severity
-from btq_lang.text import LineIndex, Span
+from btq_lang.util.text import LineIndex, Span
 
 WHOLE = """\
 engine = "4.8"

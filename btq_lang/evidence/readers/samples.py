@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.evidence.model import Series, is_sample
 from btq_lang.evidence.readers import parquet
-from btq_lang.near import did_you_mean, near
+from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue

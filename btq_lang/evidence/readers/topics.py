@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 from btq_lang.evidence.model import Series, is_sample
 from btq_lang.evidence.readers.samples import scaled
 from btq_lang.evidence.readers.tree import NotALog
-from btq_lang.near import did_you_mean, near
+from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from numpy import int64

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.record import Record
 from btq_lang.requirements.model import Span, Total
+from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Activation

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import accumulate
 from typing import Literal, NamedTuple, TypeAlias
 
-from btq_lang.record import Record
+from btq_lang.util.record import Record
 
 Encoding: TypeAlias = "Literal['code-points', 'utf-8', 'utf-16']"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btq_lang.text import LineIndex, Position
+from btq_lang.util.text import LineIndex, Position
 
 _LONG_STRING = re.compile(r""""{3}.*?"{3}|'{3}.*?'{3}""", re.DOTALL)
 _KEY_LINE = re.compile(r"""^[ \t]*(?:\[{1,2}([^\[\]\n]+)\]|([\w.\-"' \t]+?)[ \t]*=)""", re.MULTILINE)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from btq_lang.text import Span
+from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     # Start and end in the text that was made, start and end in the one it was made of.
