@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
 from btq_lang.diagnostics import Fix, replace_fix
@@ -30,7 +31,6 @@ from btq_lang.syntax import (
     quote,
 )
 from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
-from btq_lang.units import dimension_name, parse_unit
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

@@ -11,9 +11,9 @@ from weakref import WeakKeyDictionary
 
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.literals import check_literal
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
-from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Node, Tree, Word
 from btq_lang.tokens import QUANTITY

@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model, Node, Pair, Port, Tree
 from btq_lang.util.record import Record
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.name_kinds import Kind
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.symbols import Summary, Symbol, asked_for, summarize
 from btq_lang.syntax import Item, Model, Signal, Tree
 

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from btq_lang.units import Unit, nearest_units, parse_unit
+from btq_lang.catalog.units import Unit, nearest_units, parse_unit
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from btq_lang.units import Unit, parse_unit
+from btq_lang.catalog.units import Unit, parse_unit
 
 _QUANTITY = re.compile(r"(-?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)[ \t]*(\S+)")
 

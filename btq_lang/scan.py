@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.units import SYMBOLS as UNITS
+from btq_lang.catalog.units import parse_unit
 from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
-from btq_lang.units import SYMBOLS as UNITS
-from btq_lang.units import parse_unit
 
 if TYPE_CHECKING:
     from mypy_extensions import i64

@@ -9,11 +9,11 @@ import re
 from functools import lru_cache
 from typing import Final
 
+from btq_lang.catalog.measured import measured
+from btq_lang.catalog.units import nearest_units
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.measured import measured
 from btq_lang.scan import line_end, line_start, number_end
 from btq_lang.syntax import quote
-from btq_lang.units import nearest_units
 from btq_lang.util.text import Span
 
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.name_kinds import Kind
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax import (
     Apply,
     Context,

@@ -15,8 +15,8 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.file import Definition, File, is_of_package
-from btq_lang.name_kinds import Kind
 from btq_lang.project import Project, include_candidates
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Include, Root, Word

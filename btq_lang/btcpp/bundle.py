@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.btcpp.document import Content, Document, Element
 from btq_lang.btcpp.export import Export, export
 from btq_lang.btcpp.source import Remark
-from btq_lang.name_kinds import Kind
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.workspace import Workspace
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from math import inf
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.units import Unit, from_si
 from btq_lang.requirements.model import (
     Aggregate,
     All,
@@ -35,7 +36,6 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
-from btq_lang.units import Unit, from_si
 
 if TYPE_CHECKING:
     # The variable that a value table is read into, when the node starts; it has the value in this unit, None: in SI.

@@ -17,8 +17,8 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.entry_types import declared_type, is_number, is_text, meetings
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Tree
 from btq_lang.workspace import Scope
 

@@ -12,9 +12,9 @@ from typing import Final
 from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
 from btq_lang.btcpp.source import Source
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.file import File
 from btq_lang.lexer import tokens
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Apply, Claim, Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
 from btq_lang.tokens import COMMENT
 

@@ -20,6 +20,7 @@ from btq_lang.btcpp.conditions import (
     value_script,
 )
 from btq_lang.btcpp.keys import legal
+from btq_lang.catalog.units import Unit
 from btq_lang.requirements.model import (
     Bounded,
     Claim,
@@ -35,7 +36,6 @@ from btq_lang.requirements.model import (
     Value,
 )
 from btq_lang.requirements.reading import signals_in
-from btq_lang.units import Unit
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from btq_lang.btcpp.document import Document, Element
 from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
+from btq_lang.catalog.units import Unit
 from btq_lang.diagnostics import Place
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
@@ -23,7 +24,6 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
 from btq_lang.syntax import Requirement as RequirementItem
 from btq_lang.syntax import Signal as SignalItem
-from btq_lang.units import Unit
 from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace import Workspace
 

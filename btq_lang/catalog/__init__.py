@@ -7,5 +7,5 @@ literals    what the engine reads from a literal
 qualities   look-up of quality names; `quality_model` and `quality_words` hold the rows
 
 One invariant: tables and look-ups only.  Nothing here knows a file, a tree or a diagnostic; units are in
-`btq_lang.units`, for the lexer needs them.
+`btq_lang.catalog.units`, for the lexer needs them.
 """

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, KeysView, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
-from btq_lang.name_kinds import Kind
 from btq_lang.symbols import Use
 
 if TYPE_CHECKING:

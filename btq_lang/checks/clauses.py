@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import (
     Clause,
     Confidence,

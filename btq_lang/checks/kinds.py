@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
@@ -15,7 +16,6 @@ from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape

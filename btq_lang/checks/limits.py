@@ -16,8 +16,8 @@ from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Dimension
     from btq_lang.checks.view import View
-    from btq_lang.units import Dimension
 
 _OF_TIME = frozenset(("takes", "succeeds"))
 

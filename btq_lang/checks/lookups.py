@@ -11,10 +11,10 @@ import posixpath
 from math import inf
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
-from btq_lang.name_kinds import Kind
 from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 

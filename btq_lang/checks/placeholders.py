@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
-from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES

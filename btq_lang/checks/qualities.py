@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
 from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
-from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Qualities, Requirement

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.blocks import OF_ITS_OWN
 from btq_lang.catalog.kinds import at_least
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.name_kinds import Kind
 from btq_lang.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Model, Node, Tree

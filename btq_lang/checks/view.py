@@ -10,13 +10,13 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from btq_lang.attributes import meant_clause
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics import Place, Related
-from btq_lang.name_kinds import Kind
 from btq_lang.symbols import Summary, Use
 from btq_lang.syntax import (
     Apply,

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 
-from btq_lang.units import Dimension, parse_unit
+from btq_lang.catalog.units import Dimension, parse_unit
 
 
 def as_clause(sentence: str, *, violates: bool, signals: Mapping[str, Dimension]) -> str | None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, xml_tag
 from btq_lang.catalog.qualities import EDITIONS, find
+from btq_lang.catalog.units import convert, parse_unit, to_si
 from btq_lang.file import File
 from btq_lang.lexer import tokens
 from btq_lang.placeholders import is_placeholder
@@ -56,7 +57,6 @@ from btq_lang.syntax import (
     walk,
 )
 from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
-from btq_lang.units import convert, parse_unit, to_si
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

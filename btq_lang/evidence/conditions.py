@@ -10,6 +10,7 @@ import operator
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.units import parse_unit
 from btq_lang.evidence.signals import Unknown
 from btq_lang.requirements.model import (
     Aggregate,
@@ -29,14 +30,13 @@ from btq_lang.requirements.model import (
     Text,
     Value,
 )
-from btq_lang.units import parse_unit
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Moment, SampleValue
     from btq_lang.evidence.observed import Observed
     from btq_lang.requirements.model import Bounded, Condition, Number
-    from btq_lang.units import Unit
 
     Truth: TypeAlias = bool | Unknown
 

@@ -19,11 +19,11 @@ from btq_lang.evidence.wording import duration, quantity
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Activation, LoggedTree, Outcome
     from btq_lang.evidence.signals import Signals
     from btq_lang.evidence.verbs import Judgement
     from btq_lang.requirements.model import Claim, Condition, Signal
-    from btq_lang.units import Unit
 
     Sums: TypeAlias = dict[int, list[int]]  # by uid: activations, those that failed, µs
 

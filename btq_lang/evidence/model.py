@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.units import Unit
+    from btq_lang.catalog.units import Unit
 
     Transition: TypeAlias = tuple[int, int, int]  # time, uid, new status
     SampleValue: TypeAlias = float | bool | str

@@ -6,9 +6,9 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.units import a_dimension
 from btq_lang.evidence.readers.samples import NoSamples, read_sources
 from btq_lang.loader import shown
-from btq_lang.units import a_dimension
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Outcome
     from btq_lang.requirements.model import SourceNode
-    from btq_lang.units import Unit
 
     Verdict: TypeAlias = Literal["violated", "unknown", "undecided", "satisfied", "never exercised"]
 

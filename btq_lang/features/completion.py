@@ -11,6 +11,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.features import proposals as offer
@@ -24,7 +25,6 @@ from btq_lang.features.proposals import Proposal
 from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
 from btq_lang.file import File
 from btq_lang.mentions import What
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import is_name
 from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.features import describe
 from btq_lang.features.held import missions_of
 from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
@@ -11,7 +12,6 @@ from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
 from btq_lang.file import Definition
 from btq_lang.mentions import What
-from btq_lang.name_kinds import Kind
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record

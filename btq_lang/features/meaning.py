@@ -10,11 +10,11 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from functools import lru_cache
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What, called
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.tokens import COMMENT, NAME
 from btq_lang.util.record import Record

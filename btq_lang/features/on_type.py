@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect_left
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.features.block import deeper
 from btq_lang.features.meaning import at, everywhere, subject
 from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
 from btq_lang.file import File
 from btq_lang.mentions import What
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import Model
 from btq_lang.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.util.text import Edit, Span

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.name_kinds import Kind
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Apply,

@@ -9,11 +9,13 @@ from functools import lru_cache
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import beginning
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, NodeKind, available, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
+from btq_lang.catalog.units import dimension_name, parse_unit, symbols
 from btq_lang.features.meaning import Found, edition, is_main, match_of, subject
 from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
@@ -21,12 +23,10 @@ from btq_lang.features.place import LineNode, Place, word_text
 from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
-from btq_lang.name_kinds import Kind
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.rules import RULES
 from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES
-from btq_lang.units import dimension_name, parse_unit, symbols
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace import Workspace
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.checks.lookups import taken_names
@@ -15,7 +16,6 @@ from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
 from btq_lang.file import File
 from btq_lang.mentions import Mention, What
-from btq_lang.name_kinds import Kind
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements

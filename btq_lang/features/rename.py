@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, is_port_name, model_name_problem
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
 from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
 from btq_lang.file import is_btq
 from btq_lang.mentions import Mention, What
-from btq_lang.name_kinds import Kind
 from btq_lang.syntax import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits

@@ -6,9 +6,9 @@ import json
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.features.meaning import edition
 from btq_lang.features.stretches import Known, Stretch, encoded
-from btq_lang.name_kinds import Kind
 from btq_lang.parser import Parsed
 from btq_lang.util.text import Span
 

@@ -11,12 +11,12 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.checks.lookups import is_read
 from btq_lang.diagnostics import Diagnostic
 from btq_lang.features.refactor import names_of_nodes
 from btq_lang.file import File
-from btq_lang.name_kinds import Kind
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax import Context, Entry, Include, Model, Models, Root, Signal, Tree, shape
 from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE

@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Bounded,
@@ -44,7 +45,6 @@ from btq_lang.syntax import Scope as WrittenScope
 from btq_lang.syntax import Signal as WrittenSignal
 from btq_lang.syntax import Subject as WrittenSubject
 from btq_lang.syntax import Window as WrittenWindow
-from btq_lang.units import Dimension, Unit, a_dimension, parse_unit
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 

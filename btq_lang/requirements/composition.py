@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from math import fsum, inf
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.units import to_si
 from btq_lang.quantities import parse_quantity
 from btq_lang.requirements.durations import (
     ANY,
@@ -25,7 +26,6 @@ from btq_lang.requirements.durations import (
     without_end,
 )
 from btq_lang.tokens import QUANTITY
-from btq_lang.units import to_si
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import chain, compress
 from typing import TYPE_CHECKING
 
-from btq_lang.name_kinds import Kind
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Symbol

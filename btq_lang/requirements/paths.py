@@ -10,8 +10,8 @@ from collections.abc import Callable, Hashable, Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.name_kinds import Kind
 from btq_lang.requirements.memory import Asker
 from btq_lang.syntax import Apply, Entry, Item, Path, Tree, Word, is_name, quote
 from btq_lang.util.record import Record

@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
+from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit, to_si
 from btq_lang.diagnostics import Fix, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.requirements.model import (
@@ -51,7 +52,6 @@ from btq_lang.syntax import Condition as WrittenCondition
 from btq_lang.syntax import Not as WrittenNot
 from btq_lang.syntax import Table as WrittenTable
 from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
-from btq_lang.units import Dimension, Unit, a_dimension, parse_unit, to_si
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from btq_lang.name_kinds import Kind
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.attach import Held, Uses, held_by, uses_in
 from btq_lang.requirements.clauses import read_signal, resolve
 from btq_lang.requirements.memory import Memory, Table

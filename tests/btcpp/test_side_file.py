@@ -18,8 +18,8 @@ from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.restoring import Lost, restored
 from btq_lang.btcpp.side_file import Built, is_side_file, side_file, side_path
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.cli import main
-from btq_lang.name_kinds import Kind
 from btq_lang.workspace import Workspace
 
 Capsys = pytest.CaptureFixture[str]

@@ -24,8 +24,8 @@ from btq_lang.catalog.nodes import (
     spellings,
     xml_tag,
 )
+from btq_lang.catalog.units import parse_unit
 from btq_lang.tokens import SYMBOLS
-from btq_lang.units import parse_unit
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btq_lang.units import (
+from btq_lang.catalog.units import (
     BASES,
     SYMBOLS,
     Unit,

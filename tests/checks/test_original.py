@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
-from btq_lang.name_kinds import Kind
 from btq_lang.util.text import LineIndex
 from btq_lang.workspace import Workspace
 

@@ -18,12 +18,12 @@ from literal import ClauseResult, Literal
 from literal_verbs import OPEN
 from random_runs import Case, case
 
+from btq_lang.catalog.units import to_si
 from btq_lang.evidence.evaluate import MissionEvaluation
 from btq_lang.evidence.model import Session
 from btq_lang.evidence.odds import lower_limit, upper_limit
 from btq_lang.evidence.verdicts import ClauseVerdict
 from btq_lang.requirements.model import Applied, Claim, Requirement, Span, Target, Total
-from btq_lang.units import to_si
 
 WORST_FIRST = ("violated", "unknown", "undecided", "satisfied", "never exercised")
 

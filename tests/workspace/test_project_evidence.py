@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from test_config import problems
 
+from btq_lang.catalog.units import parse_unit
 from btq_lang.project import parse_project
 from btq_lang.project_evidence import Evidence, SignalSource
-from btq_lang.units import parse_unit
 
 WHOLE = """\
 [evidence]

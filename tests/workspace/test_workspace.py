@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.file import File
-from btq_lang.name_kinds import Kind
 from btq_lang.project import Project
 from btq_lang.workspace import Workspace
 

@@ -16,11 +16,11 @@ from btq_lang.requirements.model import Span, Total
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
+    from btq_lang.catalog.units import Unit
     from btq_lang.evidence.model import Activation
     from btq_lang.evidence.observed import Observed
     from btq_lang.evidence.over_run import OverRun
     from btq_lang.requirements.model import Claim, Subject
-    from btq_lang.units import Unit
 
     Judge: TypeAlias = Callable[[Claim, Activation, Observed], "Judgement | None"]
     RunJudge: TypeAlias = Callable[[Claim, OverRun], Iterator["Judgement | None"]]
