@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.opening import open_workspace
     from btq_lang.building import Built, build
     from btq_lang.checks import check
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.diff.changes import Change
     from btq_lang.diff.comparison import diff_missions
     from btq_lang.evidence.verifying import Verification, verify_logs
@@ -66,7 +66,7 @@ __all__ = [
 _HOMES = {
     "Built": "building",
     "Change": "diff.changes",
-    "Diagnostic": "diagnostics",
+    "Diagnostic": "diagnostics.model",
     "Imported": "btcpp.importing",
     "LineIndex": "util.text",
     "Node": "syntax",

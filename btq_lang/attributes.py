@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.slips import CHILDREN, value_meant
 from btq_lang.syntax import (
     NodeClause,

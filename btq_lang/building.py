@@ -13,10 +13,10 @@ from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.file import File
 from btq_lang.project import SUPPORTED, is_engine
-from btq_lang.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

@@ -10,7 +10,7 @@ from typing import Final
 from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
-from btq_lang.diagnostics import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix
 from btq_lang.scan import number_end
 from btq_lang.syntax import (
     Amount,

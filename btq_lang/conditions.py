@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.cursor import Cursor
-from btq_lang.diagnostics import replace_fix
+from btq_lang.diagnostics.model import replace_fix
 from btq_lang.syntax import (
     Binary,
     Call,

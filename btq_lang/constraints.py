@@ -12,8 +12,8 @@ from functools import cache, lru_cache
 
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.parser import parse
-from btq_lang.rules import Severity
 from btq_lang.syntax import Claim, Path, Requirement, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span

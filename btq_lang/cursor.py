@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections.abc import Iterable
 from typing import Final
 
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer
 from btq_lang.scan import line_end, line_start, number_end, unit_run
 from btq_lang.slips import close_string, unknown_unit

@@ -21,7 +21,7 @@ from btq_lang.util.text import LineIndex, Span, changed
 
 if TYPE_CHECKING:
     from btq_lang.catalog.name_kinds import Kind
-    from btq_lang.diagnostics import Diagnostic, Place
+    from btq_lang.diagnostics.model import Diagnostic, Place
     from btq_lang.facts import Name
     from btq_lang.mentions import Mention
     from btq_lang.project import Project

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 
 if TYPE_CHECKING:
     from btq_lang.workspace import Workspace

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 

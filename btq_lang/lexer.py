@@ -15,7 +15,7 @@ import re
 from bisect import bisect_left
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.scan import (
     APOSTROPHE,
     CAPITAL_A,

@@ -13,7 +13,7 @@ from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES, shown
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.scan import line_end, line_start
 from btq_lang.slips import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax import (

@@ -24,13 +24,13 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from btq_lang.catalog.kinds import VERSIONS, at_least
-from btq_lang.rules import RULES, UNREADABLE, Severity
+from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import LineIndex, Position
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.project_evidence import Evidence
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"

@@ -12,15 +12,15 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
+from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.findings import Findings
-from btq_lang.rules import RULES, Severity
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
 
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks.answers import Answers
     from btq_lang.commands.files import Files
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.facts import Name
     from btq_lang.loader import LoadProblem
     from btq_lang.workspace import Workspace

@@ -28,7 +28,7 @@ from btq_lang.words import Word as Word
 from btq_lang.words import unquote as unquote
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
 
 # ---- Qualities and requirements on nodes ----------------------------------------------------------------------------
 

@@ -13,9 +13,9 @@ from textwrap import dedent
 
 from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.diagnostics.model import Diagnostic, Fix
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.project import Project
-from btq_lang.rules import RULES
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 from btq_lang.workspace import Workspace
 

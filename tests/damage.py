@@ -36,12 +36,12 @@ from btq_lang.btcpp.importing import import_xml  # noqa: E402
 from btq_lang.btcpp.restoring import restored  # noqa: E402
 from btq_lang.btcpp.side_file import Built, side_file  # noqa: E402
 from btq_lang.checks import check  # noqa: E402
+from btq_lang.diagnostics.rules import Severity  # noqa: E402
 from btq_lang.diff import compare  # noqa: E402
 from btq_lang.formatter import format_text  # noqa: E402
 from btq_lang.graph.picture import picture  # noqa: E402
 from btq_lang.lexer import tokens  # noqa: E402
 from btq_lang.parser import parse  # noqa: E402
-from btq_lang.rules import Severity  # noqa: E402
 from btq_lang.trace import write as write_overview  # noqa: E402
 from btq_lang.trace.collect import collect  # noqa: E402
 from btq_lang.workspace import Workspace  # noqa: E402
@@ -111,7 +111,7 @@ def _sources() -> tuple[tuple[tuple[str, ...], ...], ...]:
     """The missions of each origin, each as the texts of its items."""
     examples = [path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp")]
     golden = (ROOT / "tests" / "btcpp" / "golden").glob("*.btq")
-    pages = (ROOT / "btq_lang" / "rules").glob("*.md")
+    pages = (ROOT / "btq_lang" / "diagnostics" / "rules").glob("*.md")
     blocks = (block for page in sorted(pages) for block in BLOCK.findall(page.read_text("utf-8")))
     every_form = [(ROOT / "tests" / "every_form.btq").read_text("utf-8")]
     groups: tuple[Iterable[str], ...] = (

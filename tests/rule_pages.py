@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from btq_lang import rules
-from btq_lang.rules import RULES
+from btq_lang.diagnostics import rules
+from btq_lang.diagnostics.rules import RULES
 
 PAGES = Path(rules.__file__).parent
 

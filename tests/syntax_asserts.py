@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from functools import singledispatch
 from textwrap import dedent, indent
 
-from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.diagnostics.model import Diagnostic, Fix
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.parser import Parsed, parse
-from btq_lang.rules import RULES
 from btq_lang.syntax import (
     Amount,
     Apply,

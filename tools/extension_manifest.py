@@ -9,7 +9,7 @@ import json
 import re
 from pathlib import Path
 
-from btq_lang.rules import RULES, Severity
+from btq_lang.diagnostics.rules import RULES, Severity
 
 FILE = Path(__file__).resolve().parents[1] / "editors" / "vscode" / "package.json"
 _RULES = re.compile(r'(?s)("btq\.rules": \{.*?"default": \{\},\n)(.*?)(          "scope")')

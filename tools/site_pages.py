@@ -23,7 +23,7 @@ from btq_lang.catalog.kinds import NodeKind, PortKind  # noqa: E402
 from btq_lang.catalog.language import PHRASES, Phrase  # noqa: E402
 from btq_lang.catalog.nodes import BUILTINS, spellings  # noqa: E402
 from btq_lang.catalog.qualities import EDITIONS, Quality, get, parts, qualities  # noqa: E402
-from btq_lang.rules import RULES, Rule, page  # noqa: E402
+from btq_lang.diagnostics.rules import RULES, Rule, page  # noqa: E402
 
 if TYPE_CHECKING:
     from mkdocs.structure.files import Files

@@ -26,7 +26,7 @@ from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.marks import GUARDS_NOTE
 from btq_lang.btcpp.wrappers import wrapped
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Claim, Requirement, SourceNode, Span
 from btq_lang.requirements.resolve import requirements

@@ -18,8 +18,8 @@ from btq_lang.btcpp.generated import may_be_generated, without_generated
 from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
-from btq_lang.diagnostics import Diagnostic
-from btq_lang.rules import RULES, Severity
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.syntax import is_name
 from btq_lang.tokens import CATEGORIES
 from btq_lang.util.garbage import NotCollecting

@@ -31,7 +31,7 @@ from btq_lang.btcpp.document import (
     unescape,
 )
 from btq_lang.btcpp.strict import not_well_formed
-from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span

@@ -17,7 +17,7 @@ from btq_lang.btcpp.enforcement import Held
 from btq_lang.btcpp.instances import Instance, instances
 from btq_lang.btcpp.wrappers import MARK
 from btq_lang.catalog.units import Unit
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements

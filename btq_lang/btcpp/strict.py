@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.util.text import LineIndex, Position, Span
 
 

@@ -40,10 +40,10 @@ from btq_lang.checks import (
     unused,
 )
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.findings import Findings, Told
 from btq_lang.project import configured
-from btq_lang.rules import Severity
 from btq_lang.scan import line_start
 from btq_lang.syntax import (
     Apply,

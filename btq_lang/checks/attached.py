@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Satisfices, Satisfies, Tree
 from btq_lang.util.text import Span

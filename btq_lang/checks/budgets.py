@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
-from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_seconds
 from btq_lang.requirements.durations import Term, together
 

@@ -10,8 +10,8 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.kinds import CHILDREN, declared_category, model_related
 from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import Entry, Node, Word
 from btq_lang.util.text import Span
 

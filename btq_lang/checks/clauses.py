@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics import Diagnostic, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
 from btq_lang.syntax import (
     Clause,
     Confidence,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.diagnostics import Diagnostic, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.tokens import QUANTITY
 

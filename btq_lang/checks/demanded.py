@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics import Diagnostic, Place
+from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
 from btq_lang.syntax import Model, Tree

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded, Found, Guard
     from btq_lang.checks.view import View
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.trees import TreeNodes

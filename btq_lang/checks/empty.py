@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.diagnostics import Diagnostic
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import (
     Because,

@@ -7,9 +7,9 @@ from collections.abc import Container, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import lookups
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.file import is_btq
-from btq_lang.rules import Severity
 from btq_lang.syntax import Entry, Include, quote
 from btq_lang.util.text import Span
 

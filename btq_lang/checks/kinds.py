@@ -15,8 +15,8 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Symbol
 from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES

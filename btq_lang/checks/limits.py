@@ -7,10 +7,10 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
-from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
-from btq_lang.rules import Severity
 from btq_lang.syntax import Goal
 from btq_lang.syntax import Requirement as WrittenRequirement
 from btq_lang.util.text import Span

@@ -15,7 +15,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
-from btq_lang.rules import UNREADABLE, Severity
+from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
 
 if TYPE_CHECKING:

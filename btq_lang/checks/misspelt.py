@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.entries import Mention, blackboards
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax import Entry, Tree, Verbatim
 from btq_lang.util.spelling import distance
 

@@ -7,7 +7,7 @@ from math import ceil, inf, log
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest
-from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, SourceNode
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

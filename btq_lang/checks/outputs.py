@@ -10,8 +10,8 @@ from btq_lang.catalog.literals import check_literal, is_pointer
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, subtree_ports
-from btq_lang.diagnostics import Diagnostic, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import Entry, Pair, Port, Word, is_name
 
 if TYPE_CHECKING:

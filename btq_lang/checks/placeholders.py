@@ -12,7 +12,7 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES

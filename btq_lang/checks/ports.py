@@ -14,8 +14,8 @@ from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, distance, near

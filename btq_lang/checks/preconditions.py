@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import RUNNING
-from btq_lang.diagnostics import Diagnostic
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.checks.strings import in_source
-from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax import Entry, Requirement, Signal, Word
 from btq_lang.util.text import Span
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, fold, successors
 from btq_lang.checks.kinds import written
-from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Qualities, Requirement
 from btq_lang.util.spelling import did_you_mean

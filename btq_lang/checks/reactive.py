@@ -15,8 +15,8 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
-from btq_lang.diagnostics import Diagnostic, Place, Related, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax import Entry, Node, Word, quote
 
 if TYPE_CHECKING:

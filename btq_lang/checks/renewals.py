@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.demanded import Demanded, Found
 from btq_lang.checks.writers import isolated, key_of
-from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.reading import signals_in
 from btq_lang.syntax import Verbatim
 

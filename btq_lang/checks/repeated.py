@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.clauses import with_blanks
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.syntax import (
     Apply,
     Entry,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
-from btq_lang.diagnostics import Diagnostic, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.symbols import Symbol, same_requirement
 from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
 from btq_lang.util.spelling import did_you_mean

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.checks.strings import moved
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import replace
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.syntax import Entry, Pair, Word
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced
-from btq_lang.diagnostics import Diagnostic, Related
+from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.model import SourceNode
 

@@ -12,8 +12,8 @@ from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Use
 from btq_lang.syntax import Entry, Model, Node, Tree
 from btq_lang.util.spelling import did_you_mean

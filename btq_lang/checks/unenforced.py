@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, told_at
-from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.model import Target
-from btq_lang.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.requirements.attach import Held

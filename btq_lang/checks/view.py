@@ -16,7 +16,7 @@ from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
-from btq_lang.diagnostics import Place, Related
+from btq_lang.diagnostics.model import Place, Related
 from btq_lang.symbols import Summary, Use
 from btq_lang.syntax import (
     Apply,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.entries import Mention
     from btq_lang.checks.ports import KnownPorts
     from btq_lang.constraints import Constraint
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.facts import Facts
     from btq_lang.file import Definition, File
     from btq_lang.requirements.budgets import Budgets

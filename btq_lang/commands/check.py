@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
+from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.project import Project, unknown_rule
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
-from btq_lang.rules import UNREADABLE, Severity
 from btq_lang.util.record import replace
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.commands.options import CheckOptions
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
 
 _ORDER = tuple(Severity)
 _FAILS = (Severity.ERROR, Severity.WARNING)

@@ -6,7 +6,7 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.arguments import build_parser
-from btq_lang.rules import RULES
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.shell import completion_script
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
 from btq_lang.loader import shown
-from btq_lang.rules import Severity
 from btq_lang.syntax import Signal
 from btq_lang.util.spelling import did_you_mean, near
 

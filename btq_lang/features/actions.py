@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic, Fix
+from btq_lang.diagnostics.model import Diagnostic, Fix
+from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
 from btq_lang.features.unused import UNUSED, needless_includes, removal, without
 from btq_lang.fixes import fixed
-from btq_lang.rules import UNREADABLE
 from btq_lang.scan import string_end
 from btq_lang.tokens import COMMENT, STRING
 from btq_lang.util.record import Record

@@ -9,6 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
+from btq_lang.diagnostics.rules import RULES, page
 from btq_lang.features.meaning import (
     ROOT_BLACKBOARD,
     Found,
@@ -24,7 +25,6 @@ from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.quantities import parse_quantity
-from btq_lang.rules import RULES, page
 from btq_lang.syntax import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

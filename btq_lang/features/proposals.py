@@ -16,6 +16,7 @@ from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.catalog.units import dimension_name, parse_unit, symbols
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.features.meaning import Found, edition, is_main, match_of, subject
 from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
@@ -24,7 +25,6 @@ from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, por
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
 from btq_lang.requirements.nodes import Nodes
-from btq_lang.rules import RULES
 from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.tokens import CATEGORIES
 from btq_lang.util.record import Record, replace

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.features.block import node_at
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import Refactoring

@@ -14,7 +14,7 @@ from functools import lru_cache
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.checks.lookups import is_read
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.features.refactor import names_of_nodes
 from btq_lang.file import File
 from btq_lang.requirements.resolve import requirements

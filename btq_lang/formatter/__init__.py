@@ -33,14 +33,14 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter.alignment import Gap, paddings
 from btq_lang.formatter.clauses import sections
 from btq_lang.formatter.layout import FormatOptions, laid_out
 from btq_lang.formatter.lines import Line, Remark, logical_lines
 from btq_lang.formatter.marks import Marks, marks_of
 from btq_lang.parser import Parsed, parse
-from btq_lang.rules import Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LINE_END, Edit, Span, apply_edits
 

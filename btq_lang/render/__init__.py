@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.util.record import Record, replace
 
 FORMATS = ("full", "concise", "json", "sarif", "github", "junit")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
-from btq_lang.diagnostics import Fix
+from btq_lang.diagnostics.model import Fix
 from btq_lang.render import Finding, Report
 from btq_lang.render.cells import cut, printable
 from btq_lang.render.frame import Row

@@ -12,7 +12,7 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics import Place
+    from btq_lang.diagnostics.model import Place
     from btq_lang.render import Finding, Report
 
 

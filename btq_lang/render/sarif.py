@@ -12,10 +12,10 @@ import json
 from collections.abc import Callable, Iterator
 from urllib.parse import quote
 
-from btq_lang.diagnostics import Fix, Place
+from btq_lang.diagnostics.model import Fix, Place
+from btq_lang.diagnostics.rules import RULES, Severity, page
 from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.location import location
-from btq_lang.rules import RULES, Severity, page
 from btq_lang.util.version import __version__
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.render import Finding, Report

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.diagnostics import Diagnostic, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements import model
 from btq_lang.requirements.memory import is_same
 from btq_lang.requirements.model import (
@@ -30,7 +31,6 @@ from btq_lang.requirements.model import (
     Use,
 )
 from btq_lang.requirements.paths import Problem
-from btq_lang.rules import Severity
 from btq_lang.symbols import requirements_at
 from btq_lang.syntax import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax import Argument as WrittenArgument

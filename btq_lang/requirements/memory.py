@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import compress, count
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.model import Applied, Argument, Target, Use, Value
 from btq_lang.util.record import fields_of
 from btq_lang.util.text import Span

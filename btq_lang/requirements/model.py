@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

@@ -11,17 +11,17 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.diagnostics import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.requirements.memory import Asker
 from btq_lang.syntax import Apply, Entry, Item, Path, Tree, Word, is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
+    from btq_lang.diagnostics.rules import Severity
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
     from btq_lang.requirements.nodes import Nodes
-    from btq_lang.rules import Severity
     from btq_lang.util.text import Span
     from btq_lang.workspace import Scope, Workspace
 

@@ -10,7 +10,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit, to_si
-from btq_lang.diagnostics import Fix, replace_fix
+from btq_lang.diagnostics.model import Fix, replace_fix
 from btq_lang.quantities import parse_quantity
 from btq_lang.requirements.model import (
     NO_DIMENSION,

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics import Diagnostic, Fix, replace_fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.script import mistakes
 from btq_lang.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
 from btq_lang.script.versions import version_problems

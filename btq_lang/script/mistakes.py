@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.util.text import Span
 
 # Spellings of other languages, of XML and of typeset text, and what they mean here.

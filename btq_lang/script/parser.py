@@ -34,7 +34,7 @@ from btq_lang.script.tree import (
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
 
 # Operators within each other, needless brackets counted too.  The engine has no limit and a stack; the engines up to
 # 4.8 refuse more than 256 operators, and nobody reads a tenth of them.

@@ -17,7 +17,7 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     import re
 
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
 
 # A token's kind is one of these; an operator's is the operator itself, or what a misspelt one means.
 NAME: Final = "name"

@@ -13,7 +13,7 @@ from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.diagnostics import Diagnostic
+    from btq_lang.diagnostics.model import Diagnostic
 
 
 class Script(Record):

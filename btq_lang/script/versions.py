@@ -13,8 +13,8 @@ from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
 from typing import Final, TypeGuard
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.script.tree import (
     RANK,
     Assign,

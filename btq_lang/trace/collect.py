@@ -11,7 +11,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.qualities import get, qualities
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
 from btq_lang.placeholders import is_placeholder

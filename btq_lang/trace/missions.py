@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.loader import shown
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.rules import Severity
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Clause, Overview

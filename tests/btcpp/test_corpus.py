@@ -14,10 +14,10 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.reader import read
 from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.workspace import Workspace
 
 # What does not come back, and why.

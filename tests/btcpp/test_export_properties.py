@@ -13,8 +13,8 @@ from missions import mission
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.syntax import Tree
 from btq_lang.workspace import Workspace
 

@@ -10,7 +10,7 @@ from check_asserts import assert_clean, assert_problems, workspace_of
 from btq_lang.btcpp.export import export
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.file import File
 from btq_lang.project import Project
 from btq_lang.workspace import Workspace

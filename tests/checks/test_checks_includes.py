@@ -9,9 +9,9 @@ from check_asserts import assert_clean, assert_fix, assert_problems, split_files
 
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 

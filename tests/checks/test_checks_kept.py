@@ -15,7 +15,7 @@ from btq_lang.checks import CHECKS, Check, check, check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.checks.demanded import Demanded
 from btq_lang.checks.view import View
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.syntax import Entry, Include, Tree
 from btq_lang.workspace import Workspace

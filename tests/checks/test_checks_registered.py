@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from check_asserts import split_files
 
-from btq_lang import rules
 from btq_lang.checks import CHECKS, checks_of
 from btq_lang.checks.view import View
+from btq_lang.diagnostics import rules
 from btq_lang.syntax import Entry, Model
 from btq_lang.workspace import Workspace
 

@@ -11,7 +11,7 @@ import pytest
 from check_asserts import MARKER, assert_marked
 from rule_pages import BLOCK, PAGES, blocks
 
-from btq_lang.rules import RULES, page
+from btq_lang.diagnostics.rules import RULES, page
 
 
 def test_there_is_a_page_for_every_rule_and_a_rule_for_every_page() -> None:

@@ -21,9 +21,9 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
 from btq_lang.checks import check
 from btq_lang.cli import main
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.placeholders import is_placeholder
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.syntax import Node as Written
 from btq_lang.syntax import Tree
 from btq_lang.workspace import Workspace

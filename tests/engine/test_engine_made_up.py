@@ -14,8 +14,8 @@ from mission_strategies import START, made_up, missions, odd_missions
 from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.cli import main
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.workspace import Workspace
 
 # What only the tick shows and the mission has brought about itself: a port reads an entry that nobody has written, the

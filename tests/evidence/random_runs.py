@@ -17,6 +17,7 @@ from check_asserts import workspace_of
 from random_guards import Guarded
 
 from btq_lang.btcpp.wrappers import MARK
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.identity import Candidate, Joined, join
 from btq_lang.evidence.model import (
     FAILURE,
@@ -28,7 +29,6 @@ from btq_lang.evidence.model import (
     Series,
 )
 from btq_lang.requirements.model import SourceNode
-from btq_lang.rules import Severity
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue, Transition

@@ -15,7 +15,7 @@ import pytest
 from check_asserts import MAIN, after, show
 
 from btq_lang.checks import check
-from btq_lang.diagnostics import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace import Workspace
 
 Case = tuple[str, str, str | None]  # a mission, its diagnostic with the notes, and the mission after the fix

@@ -18,6 +18,7 @@ from check_asserts import COMMENT_WITH_MARKERS, split_files, workspace_of
 
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.features.actions import Action, code_actions
 from btq_lang.features.calls import called, callers, prepare_calls
 from btq_lang.features.colours import colours, difference
@@ -41,7 +42,6 @@ from btq_lang.features.structure import document_links, folding_ranges, selectio
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
 from btq_lang.project import Project
-from btq_lang.rules import Severity
 from btq_lang.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
 from btq_lang.workspace import Workspace

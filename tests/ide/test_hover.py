@@ -348,7 +348,7 @@ def test_hover(text: str, markdown: str | None) -> None:
 
 
 def test_a_rule() -> None:
-    from btq_lang.rules import page
+    from btq_lang.diagnostics.rules import page
 
     check_hover("# btq: ignore[<hover>unused$0-tree</hover>]\nBehaviorTree Main\n    Pick\n", page("unused-tree"))
 

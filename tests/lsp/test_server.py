@@ -17,7 +17,7 @@ from lsp_editor import SERVER, Editor, Message, part
 from lsprotocol import types
 
 from btq_lang.convert import Converter
-from btq_lang.diagnostics import Diagnostic, Place, Related
+from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.editor import Server
 from btq_lang.findings import Findings
 from btq_lang.util.text import Span

@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 import pytest
 
 from btq_lang import __version__
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
+from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.render import Finding, Report, Trouble, render, sarif
-from btq_lang.rules import RULES, Severity
 from btq_lang.util.text import Span
 
 TEXT = "BehaviorTree main\n    🤖 Rety\n"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.render import Finding, Report, render, with_paths
-from btq_lang.rules import Severity
 from btq_lang.util.text import Span
 
 MISSION = """\

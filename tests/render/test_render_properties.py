@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.diagnostics import Change, Diagnostic, Fix, Place, Related, Tag
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag
+from btq_lang.diagnostics.rules import RULES
 from btq_lang.render import FORMATS, Finding, Report, render, sarif
 from btq_lang.render.cells import cut, laid_out, printable
 from btq_lang.render.colour import wants_colour
-from btq_lang.rules import RULES
 from btq_lang.util.text import Span
 
 # Every code point, also those that no file holds (surrogates, controls); often those that renderers trip over.

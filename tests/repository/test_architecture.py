@@ -40,7 +40,7 @@ ROWS = (
     ("__main__",),
 )
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
-READS_THE_DISK = {"loader.py", "rules/__init__.py", "preview/__init__.py"}
+READS_THE_DISK = {"loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
 READS_LOGS = "evidence/readers/"
 # Which rooms know a package of others.
 ONLY_IN = {"lxml": {"btcpp"}, "pygls": {"lsp", "server"}, "lsprotocol": {"lsp", "server"}}

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.checks import check
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

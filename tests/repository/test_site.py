@@ -13,7 +13,7 @@ import pytest
 from btq_lang.catalog.language import PHRASES
 from btq_lang.catalog.nodes import BUILTINS
 from btq_lang.catalog.qualities import qualities
-from btq_lang.rules import RULES
+from btq_lang.diagnostics.rules import RULES
 
 pytest.importorskip("material", reason="MkDocs is not installed: pip install -e '.[docs]'")
 ROOT = Path(__file__).resolve().parents[2]

@@ -25,7 +25,7 @@ TEXTS = (
     "README.md",
     "CHANGELOG.md",
     "docs/*.md",
-    "btq_lang/rules/*.md",
+    "btq_lang/diagnostics/rules/*.md",
     "btq_lang/**/*.html",
     "btq_lang/**/*.json",
     "editors/*/README.md",

@@ -11,7 +11,7 @@ import pytest
 
 from btq_lang.checks import check, check_again
 from btq_lang.checks.answers import Answers
-from btq_lang.diagnostics import Place
+from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success
 from btq_lang.requirements.memory import Memory
 from btq_lang.requirements.model import SourceNode

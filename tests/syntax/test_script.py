@@ -11,8 +11,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from btq_lang.diagnostics import Diagnostic, Fix
-from btq_lang.rules import Severity
+from btq_lang.diagnostics.model import Diagnostic, Fix
+from btq_lang.diagnostics.rules import Severity
 from btq_lang.script import (
     ALL_VERSIONS,
     MAX_DEPTH,

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.rules import RULES, Severity
-from btq_lang.rules import Tag as Tag
+from btq_lang.diagnostics.rules import RULES, Severity
+from btq_lang.diagnostics.rules import Tag as Tag
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:
