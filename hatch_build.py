@@ -24,8 +24,19 @@ PACKAGE = "btq_lang"
 COMPILED = (
     *("lexer", "parser"),
     *("attributes", "blocks", "claims", "clauses", "conditions", "cursor", "item_words", "nodes"),
-    *("node_clauses", "quantities", "scan", "slips", "syntax", "tokens", "words"),
-    *(f"script/{module}" for module in ("__init__", "check", "mistakes", "parser", "tokens", "tree", "versions")),
+    *(
+        "syntax/node_clauses",
+        "syntax/quantities",
+        "syntax/scan",
+        "syntax/suggestions",
+        "syntax/tree",
+        "syntax/tokens",
+        "syntax/words",
+    ),
+    *(
+        f"syntax/script/{module}"
+        for module in ("__init__", "check", "mistakes", "parser", "syntax/tokens", "tree", "versions")
+    ),
 )
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
 REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")

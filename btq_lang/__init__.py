@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from btq_lang.formatter import format_text
     from btq_lang.graph.missions import draw_tree
     from btq_lang.parser import Parsed, parse
-    from btq_lang.syntax import Node, Requirement, Tree
+    from btq_lang.syntax.tree import Node, Requirement, Tree
     from btq_lang.trace.missions import TraceTable, trace_table
     from btq_lang.util.text import LineIndex, Span
     from btq_lang.util.version import __version__
@@ -69,12 +69,12 @@ _HOMES = {
     "Diagnostic": "diagnostics.model",
     "Imported": "btcpp.importing",
     "LineIndex": "util.text",
-    "Node": "syntax",
+    "Node": "syntax.tree",
     "Parsed": "parser",
-    "Requirement": "syntax",
+    "Requirement": "syntax.tree",
     "Span": "util.text",
     "TraceTable": "trace.missions",
-    "Tree": "syntax",
+    "Tree": "syntax.tree",
     "Verification": "evidence.verifying",
     "Workspace": "workspace",
     "__version__": "util.version",

@@ -10,19 +10,8 @@ from typing import Final
 from btq_lang.clauses import ClauseParser
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.slips import CHILDREN, value_meant
-from btq_lang.syntax import (
-    NodeClause,
-    Pair,
-    Quality,
-    ReqRef,
-    Requirement,
-    Satisfices,
-    Satisfies,
-    Tags,
-    Word,
-)
-from btq_lang.tokens import (
+from btq_lang.syntax.suggestions import CHILDREN, value_meant
+from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
     CLOSE,
@@ -35,6 +24,17 @@ from btq_lang.tokens import (
     QUANTITY,
     STRING,
     SYMBOL,
+)
+from btq_lang.syntax.tree import (
+    NodeClause,
+    Pair,
+    Quality,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+    Tags,
+    Word,
 )
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.syntax import Node, NodeClause, Verbatim
+from btq_lang.syntax.tree import Node, NodeClause, Verbatim
 
 MAX_DEPTH: Final = 256  # levels below a BehaviorTree; the engine reads no more (4.9 and later)
 OF_ITS_OWN: Final = "move a part of them into a BehaviorTree of its own and call it with SubTree"

@@ -11,8 +11,9 @@ from btq_lang.catalog.units import dimension_name, parse_unit
 from btq_lang.conditions import HEADS, ConditionParser
 from btq_lang.cursor import shown
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.scan import number_end
-from btq_lang.syntax import (
+from btq_lang.syntax.scan import number_end
+from btq_lang.syntax.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tree import (
     Amount,
     Between,
     Bound,
@@ -30,7 +31,6 @@ from btq_lang.syntax import (
     Word,
     quote,
 )
-from btq_lang.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

@@ -11,9 +11,10 @@ from btq_lang.catalog.measured import measured
 from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
 from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.scan import is_unit, line_end, path_end, unit_run
-from btq_lang.slips import unknown_unit
-from btq_lang.syntax import (
+from btq_lang.syntax.scan import is_unit, line_end, path_end, unit_run
+from btq_lang.syntax.suggestions import unknown_unit
+from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tree import (
     Argument,
     Because,
     Clause,
@@ -32,7 +33,6 @@ from btq_lang.syntax import (
     quote,
     unquote,
 )
-from btq_lang.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

@@ -9,7 +9,8 @@ from typing import Final
 
 from btq_lang.cursor import Cursor
 from btq_lang.diagnostics.model import replace_fix
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
+from btq_lang.syntax.tree import (
     Binary,
     Call,
     Comparison,
@@ -20,7 +21,6 @@ from btq_lang.syntax import (
     Operand,
     Path,
 )
-from btq_lang.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 from btq_lang.util.text import Span
 
 # Words that begin a clause, so that they end the condition before them.

@@ -14,7 +14,7 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.parser import parse
-from btq_lang.syntax import Claim, Path, Requirement, Word
+from btq_lang.syntax.tree import Claim, Path, Requirement, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
@@ -74,7 +74,7 @@ def _nodes_needed(text: str) -> frozenset[str] | None:
 
 def is_script(text: str) -> bool:
     """Whether the engine takes it for a condition."""
-    from btq_lang.script import check_script, parse_script  # few files have a keyword
+    from btq_lang.syntax.script import check_script, parse_script  # few files have a keyword
 
     problems = check_script(parse_script(text), expects_value=True)
     return all(problem.effective_severity is not Severity.ERROR for problem in problems)

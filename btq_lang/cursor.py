@@ -13,10 +13,10 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.lexer import Lexer
-from btq_lang.scan import line_end, line_start, number_end, unit_run
-from btq_lang.slips import close_string, unknown_unit
-from btq_lang.syntax import Word
-from btq_lang.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.scan import line_end, line_start, number_end, unit_run
+from btq_lang.syntax.suggestions import close_string, unknown_unit
+from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tree import Word
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, port_type, xml_tag
-from btq_lang.syntax import Model, Node, Pair, Port, Tree
+from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.symbols import Summary, Symbol, asked_for, summarize
-from btq_lang.syntax import Item, Model, Signal, Tree
+from btq_lang.syntax.tree import Item, Model, Signal, Tree
 
 if TYPE_CHECKING:
     from btq_lang.mentions import Mention

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Final
 
-from btq_lang.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.spelling import near
 
 ITEM_WORDS: Final = (

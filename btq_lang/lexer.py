@@ -16,7 +16,7 @@ from bisect import bisect_left
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.scan import (
+from btq_lang.syntax.scan import (
     APOSTROPHE,
     CAPITAL_A,
     CAPITAL_Z,
@@ -49,7 +49,7 @@ from btq_lang.scan import (
     unit_run,
     word_map,
 )
-from btq_lang.slips import (
+from btq_lang.syntax.suggestions import (
     ATTRIBUTES,
     INSTEAD,
     attributes_in_braces,
@@ -59,8 +59,7 @@ from btq_lang.slips import (
     unknown_unit,
     value_meant,
 )
-from btq_lang.syntax import quote as quoted
-from btq_lang.tokens import (
+from btq_lang.syntax.tokens import (
     BLANK,
     BRACED,
     CLOSE,
@@ -78,6 +77,7 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+from btq_lang.syntax.tree import quote as quoted
 from btq_lang.util.text import LINE_END, Span
 
 if TYPE_CHECKING:

@@ -17,7 +17,8 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.symbols import requirements_at
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
+from btq_lang.syntax.tree import (
     Amount,
     Apply,
     Argument,
@@ -50,7 +51,6 @@ from btq_lang.syntax import (
     Word,
     walk,
 )
-from btq_lang.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
@@ -353,8 +353,8 @@ def _script(word: Word, node: Node, tree: Tree, pair: Pair, to: Listener) -> Non
 @lru_cache(1_000)  # many nodes have the same one
 def _names_in_script(text: str) -> list[tuple[int, str, str | None]]:
     """Where each name in a script ends, in the order of the text; the name; the operator that assigns to it."""
-    from btq_lang.script import Assign, Name, parse_script  # most files have no script, and it is large
-    from btq_lang.script import children as parts
+    from btq_lang.syntax.script import Assign, Name, parse_script  # most files have no script, and it is large
+    from btq_lang.syntax.script import children as parts
 
     found: list[tuple[int, str, str | None]] = []
     stack = list(parse_script(text).statements)

@@ -14,22 +14,9 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.scan import line_end, line_start
-from btq_lang.slips import ATTRIBUTES, CHILDREN, attributes_in_braces
-from btq_lang.syntax import (
-    Node,
-    NodeClause,
-    Pair,
-    Port,
-    Requirement,
-    Satisfies,
-    TypeWord,
-    Verbatim,
-    Word,
-    is_name,
-    quote,
-)
-from btq_lang.tokens import (
+from btq_lang.syntax.scan import line_end, line_start
+from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, attributes_in_braces
+from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
     CLOSE,
@@ -45,8 +32,21 @@ from btq_lang.tokens import (
     SYMBOL,
     SYMBOLS,
 )
+from btq_lang.syntax.tree import (
+    Node,
+    NodeClause,
+    Pair,
+    Port,
+    Requirement,
+    Satisfies,
+    TypeWord,
+    Verbatim,
+    Word,
+    is_name,
+    quote,
+)
+from btq_lang.syntax.words import unquote
 from btq_lang.util.text import Span
-from btq_lang.words import unquote
 
 
 class NodeParser(AttributeParser):

@@ -16,8 +16,23 @@ from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
 from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.nodes import NodeParser
-from btq_lang.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
-from btq_lang.syntax import (
+from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
+from btq_lang.syntax.tokens import (
+    BRACED,
+    CATEGORIES,
+    CLOSE,
+    DIRECTIONS,
+    ERROR,
+    NAME,
+    NEWLINE,
+    NODE_CLAUSES,
+    OPEN,
+    QUANTITY,
+    STRING,
+    SYMBOL,
+    Token,
+)
+from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,
@@ -41,21 +56,6 @@ from btq_lang.syntax import (
     moved_by,
     quote,
     unquote,
-)
-from btq_lang.tokens import (
-    BRACED,
-    CATEGORIES,
-    CLOSE,
-    DIRECTIONS,
-    ERROR,
-    NAME,
-    NEWLINE,
-    NODE_CLAUSES,
-    OPEN,
-    QUANTITY,
-    STRING,
-    SYMBOL,
-    Token,
 )
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import replace

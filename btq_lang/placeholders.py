@@ -13,7 +13,7 @@ from btq_lang.catalog.nodes import PLACEHOLDERS
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
-    from btq_lang.syntax import Node
+    from btq_lang.syntax.tree import Node
 
 
 def is_placeholder(node: Node) -> bool:

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import NAME
+from btq_lang.syntax.tree import (
     Apply,
     Context,
     Item,
@@ -32,7 +33,6 @@ from btq_lang.syntax import (
     Word,
     shape,
 )
-from btq_lang.tokens import NAME
 from btq_lang.util.record import Record, fields_of
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.file import Definition, File, is_of_package
 from btq_lang.project import Project, include_candidates
 from btq_lang.symbols import Use
-from btq_lang.syntax import Entry, Include, Root, Word
+from btq_lang.syntax.tree import Entry, Include, Root, Word
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

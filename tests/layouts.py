@@ -14,8 +14,8 @@ from itertools import islice
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
-from btq_lang.syntax import Requirement, Word, shape
-from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, QUANTITY, Token
+from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, ERROR, INDENT, NEWLINE, OPEN, QUANTITY, Token
+from btq_lang.syntax.tree import Requirement, Word, shape
 from btq_lang.util.record import fields_of
 
 # ---- what a file says -----------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from btq_lang.syntax import quote
+from btq_lang.syntax.tree import quote
 
 
 def made_up(strategy: st.SearchStrategy[str], number: int) -> Sequence[str]:

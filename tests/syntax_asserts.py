@@ -14,7 +14,8 @@ from textwrap import dedent, indent
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.parser import Parsed, parse
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
+from btq_lang.syntax.tree import (
     Amount,
     Apply,
     Because,
@@ -72,7 +73,6 @@ from btq_lang.syntax import (
     Window,
     Word,
 )
-from btq_lang.tokens import DEDENT, INDENT, QUANTITY, STRING, Token
 from btq_lang.util.text import Edit, LineIndex, apply_edits
 
 MISSING = "MISSING"

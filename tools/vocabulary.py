@@ -17,7 +17,7 @@ from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.claims import HAPPENINGS, VERBS
 from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
-from btq_lang.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
+from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 # Words that open an item of a file; what stands behind them differs, so each grammar treats them one by one.
 ITEMS = ("BehaviorTree", "Root", "include", "signal", "context", "apply", "quality", "qualities", "QualityReq")

@@ -18,7 +18,7 @@ from btq_lang.file import File
 from btq_lang.loader import absolute, shown
 from btq_lang.parser import parse
 from btq_lang.project import Project, include_candidates
-from btq_lang.syntax import Include
+from btq_lang.syntax.tree import Include
 from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace
 

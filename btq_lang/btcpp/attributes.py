@@ -10,8 +10,8 @@ from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import in_unit, spelt
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import is_xml_name
-from btq_lang.syntax import Entry, Pair, Root, Word
-from btq_lang.tokens import QUANTITY
+from btq_lang.syntax.tokens import QUANTITY
+from btq_lang.syntax.tree import Entry, Pair, Root, Word
 
 
 def attributes_of(

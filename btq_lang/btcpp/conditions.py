@@ -209,7 +209,7 @@ def _text(text: str) -> str:
 
 def _own_script(script: Script) -> str:
     """A script in a classic description: one expression that changes nothing, and means the same everywhere."""
-    from btq_lang.script import check_script, parse_script, variables  # few missions have one
+    from btq_lang.syntax.script import check_script, parse_script, variables  # few missions have one
 
     parsed = parse_script(script.code)
     if check_script(parsed, expects_value=True) or len(parsed.statements) != 1:

@@ -19,7 +19,7 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.entry_types import declared_type, is_number, is_text, meetings
-from btq_lang.syntax import Tree
+from btq_lang.syntax.tree import Tree
 from btq_lang.workspace import Scope
 
 

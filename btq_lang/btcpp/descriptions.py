@@ -15,8 +15,18 @@ from btq_lang.btcpp.source import Source
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.file import File
 from btq_lang.lexer import tokens
-from btq_lang.syntax import Apply, Claim, Entry, NodeClause, QualityPath, ReqRef, Requirement, Satisfices, Satisfies
-from btq_lang.tokens import COMMENT
+from btq_lang.syntax.tokens import COMMENT
+from btq_lang.syntax.tree import (
+    Apply,
+    Claim,
+    Entry,
+    NodeClause,
+    QualityPath,
+    ReqRef,
+    Requirement,
+    Satisfices,
+    Satisfies,
+)
 
 
 def description(

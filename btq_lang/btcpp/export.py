@@ -20,8 +20,8 @@ from btq_lang.btcpp.trees import Trees
 from btq_lang.btcpp.undeclared import suggested_model, undeclared
 from btq_lang.comments import NO_COMMENTS
 from btq_lang.file import SUFFIXES, is_btq
-from btq_lang.syntax import Entry, Include, Model, Root, Tree, Verbatim
-from btq_lang.syntax import Models as ModelsItem
+from btq_lang.syntax.tree import Entry, Include, Model, Root, Tree, Verbatim
+from btq_lang.syntax.tree import Models as ModelsItem
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace

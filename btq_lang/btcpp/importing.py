@@ -20,8 +20,8 @@ from btq_lang.btcpp.version3 import Change, is_version_3, translated
 from btq_lang.btcpp.wording import comment, is_kept, kind, name, pair, string, string_of, type_, value
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
-from btq_lang.syntax import is_name
-from btq_lang.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.syntax.tree import is_name
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
 from btq_lang.util.source_map import Places

@@ -14,7 +14,7 @@ from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.document import Attribute, Content, Element, Text
 from btq_lang.btcpp.source import Source
 from btq_lang.btcpp.spelling import spelt
-from btq_lang.syntax import Entry, Meta, Model, Port, Tree, Verbatim, Word
+from btq_lang.syntax.tree import Entry, Meta, Model, Port, Tree, Verbatim, Word
 from btq_lang.util.record import replace
 
 

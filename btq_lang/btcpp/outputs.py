@@ -14,7 +14,7 @@ from btq_lang.btcpp.enforcement import Enforcement, enforced
 from btq_lang.btcpp.export import Export, IncludedAs, export, is_mission, xml_name
 from btq_lang.btcpp.marks import generated_mark
 from btq_lang.btcpp.side_file import Built, side_file
-from btq_lang.syntax import Tree
+from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace
 

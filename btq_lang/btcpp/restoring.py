@@ -19,7 +19,8 @@ from btq_lang.file import is_btq
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
 from btq_lang.placeholders import is_placeholder
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
+from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,
@@ -35,7 +36,6 @@ from btq_lang.syntax import (
     Signal,
     Tree,
 )
-from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
 

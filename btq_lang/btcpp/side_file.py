@@ -21,9 +21,9 @@ from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.model import Applied, InContext, Requirement, Signal, SourceNode, Target
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
-from btq_lang.syntax import Requirement as RequirementItem
-from btq_lang.syntax import Signal as SignalItem
+from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, Satisfices, Tree
+from btq_lang.syntax.tree import Requirement as RequirementItem
+from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
 from btq_lang.workspace import Workspace
 

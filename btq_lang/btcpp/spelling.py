@@ -11,9 +11,9 @@ from typing import Final
 
 from btq_lang.btcpp.document import escape, escape_text
 from btq_lang.catalog.units import convert, parse_unit
-from btq_lang.quantities import parse_quantity
-from btq_lang.syntax import Word
-from btq_lang.tokens import QUANTITY, STRING
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import QUANTITY, STRING
+from btq_lang.syntax.tree import Word
 
 
 def spelt(word: Word) -> str:

@@ -21,7 +21,7 @@ from btq_lang.comments import NO_COMMENTS
 from btq_lang.custom_nodes import likely_category
 from btq_lang.entry_types import is_number
 from btq_lang.placeholders import is_placeholder
-from btq_lang.syntax import Entry, Node, Tree, Verbatim, Word
+from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
 
 _UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
 _NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence

@@ -14,7 +14,7 @@ from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.custom_nodes import CustomNode, custom_nodes, custom_nodes_of
 from btq_lang.file import File
-from btq_lang.syntax import Model, Models
+from btq_lang.syntax.tree import Model, Models
 from btq_lang.workspace import Workspace
 
 

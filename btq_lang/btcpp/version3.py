@@ -15,7 +15,7 @@ from typing import Final
 from btq_lang.btcpp.document import Attribute, Element
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
-from btq_lang.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 

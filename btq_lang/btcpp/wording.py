@@ -16,8 +16,8 @@ from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
 from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.item_words import ITEM_WORDS
-from btq_lang.syntax import is_name
-from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.syntax.tree import is_name
 
 
 def value(raw: str) -> str:

@@ -44,8 +44,8 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.findings import Findings, Told
 from btq_lang.project import configured
-from btq_lang.scan import line_start
-from btq_lang.syntax import (
+from btq_lang.syntax.scan import line_start
+from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,

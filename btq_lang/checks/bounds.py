@@ -10,9 +10,21 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.quantities import parse_quantity
-from btq_lang.syntax import Amount, Claim, Entry, Mission, Odds, OnViolation, Requirement, Scope, Signal, Word, walk
-from btq_lang.tokens import NUMBER, QUANTITY
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import NUMBER, QUANTITY
+from btq_lang.syntax.tree import (
+    Amount,
+    Claim,
+    Entry,
+    Mission,
+    Odds,
+    OnViolation,
+    Requirement,
+    Scope,
+    Signal,
+    Word,
+    walk,
+)
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

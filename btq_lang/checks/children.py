@@ -12,7 +12,7 @@ from btq_lang.checks.ports import is_case
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax import Entry, Node, Word
+from btq_lang.syntax.tree import Entry, Node, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

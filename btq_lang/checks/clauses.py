@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag, replace_fix
-from btq_lang.syntax import (
+from btq_lang.syntax.tree import (
     Clause,
     Confidence,
     Entry,

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.symbols import requirements_at
-from btq_lang.syntax import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
-from btq_lang.tokens import NAME
+from btq_lang.syntax.tokens import NAME
+from btq_lang.syntax.tree import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

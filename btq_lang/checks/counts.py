@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
-from btq_lang.quantities import parse_quantity
-from btq_lang.tokens import QUANTITY
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import QUANTITY
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.syntax import Entry, Word
+    from btq_lang.syntax.tree import Entry, Word
 
 
 def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -10,7 +10,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
-from btq_lang.syntax import Model, Tree
+from btq_lang.syntax.tree import Model, Tree
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.memory import Question
     from btq_lang.requirements.resolved import Requirements
     from btq_lang.requirements.trees import TreeNodes
-    from btq_lang.syntax import Port
+    from btq_lang.syntax.tree import Port
 
 Found: TypeAlias = tuple[Place, Diagnostic]
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.trees import TreeNodes
-    from btq_lang.syntax import Entry
+    from btq_lang.syntax.tree import Entry
 
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 

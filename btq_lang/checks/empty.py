@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import requirements_at
-from btq_lang.syntax import (
+from btq_lang.syntax.tree import (
     Because,
     Entry,
     Item,

@@ -15,7 +15,7 @@ from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
-from btq_lang.syntax import Model, Pair, Port, Signal, Tree
+from btq_lang.syntax.tree import Model, Pair, Port, Signal, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
@@ -240,7 +240,7 @@ def _inside(pair: Pair, name: str) -> Span:
 
 
 def _in_script(view: View, seen: SeenNode, pair: Pair) -> Iterator[Mention]:
-    from btq_lang.script import variables  # most files have no script, and it is large
+    from btq_lang.syntax.script import variables  # most files have no script, and it is large
 
     assert pair.value is not None, "there is a script"
     for variable in variables(view.script(pair.value.text)):

@@ -10,7 +10,7 @@ from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.file import is_btq
-from btq_lang.syntax import Entry, Include, quote
+from btq_lang.syntax.tree import Entry, Include, quote
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Symbol
-from btq_lang.syntax import Entry, Include, Model, Word, is_name, quote, shape
-from btq_lang.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.util.spelling import did_you_mean, distance
 from btq_lang.util.text import Span
 

@@ -11,8 +11,8 @@ from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
-from btq_lang.syntax import Goal
-from btq_lang.syntax import Requirement as WrittenRequirement
+from btq_lang.syntax.tree import Goal
+from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from btq_lang.checks.kinds import written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.quantities import parse_quantity
-from btq_lang.syntax import Entry, Model, Models, Pair, Port, Tree, Word, quote
-from btq_lang.tokens import BRACED, QUANTITY
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import BRACED, QUANTITY
+from btq_lang.syntax.tree import Entry, Model, Models, Pair, Port, Tree, Word, quote
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax import Include, Model, Models, Qualities, Root, Tree
+from btq_lang.syntax.tree import Include, Model, Models, Qualities, Root, Tree
 
 if TYPE_CHECKING:
     from btq_lang.custom_nodes import LikelyPort

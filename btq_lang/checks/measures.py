@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.syntax import Entry, Requirement
+from btq_lang.syntax.tree import Entry, Requirement
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

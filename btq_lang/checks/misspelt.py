@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks.entries import Mention, blackboards
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
-from btq_lang.syntax import Entry, Tree, Verbatim
+from btq_lang.syntax.tree import Entry, Tree, Verbatim
 from btq_lang.util.spelling import distance
 
 if TYPE_CHECKING:

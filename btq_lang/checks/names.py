@@ -12,7 +12,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax import Entry, Model, Models, Tree, Word, is_name
+from btq_lang.syntax.tree import Entry, Model, Models, Tree, Word, is_name
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 

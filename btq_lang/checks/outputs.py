@@ -12,7 +12,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax import Entry, Pair, Port, Word, is_name
+from btq_lang.syntax.tree import Entry, Pair, Port, Word, is_name
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

@@ -14,8 +14,8 @@ from btq_lang.claims import VERBS
 from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.placeholders import is_placeholder
-from btq_lang.syntax import Entry, Node, Pair, Tree, Word, is_name, quote
-from btq_lang.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
+from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

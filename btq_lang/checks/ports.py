@@ -16,7 +16,7 @@ from btq_lang.checks.kinds import is_torn, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
+from btq_lang.syntax.tree import Entry, Include, Meta, Model, Models, Pair, Port, Root, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, distance, near
 from btq_lang.util.text import Span

@@ -14,7 +14,7 @@ from btq_lang.diagnostics.rules import Severity
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.syntax import Entry
+    from btq_lang.syntax.tree import Entry
 
 _SKIPPED_IS_SUCCESS = frozenset(("Sequence", "ReactiveSequence", "AsyncSequence", "SequenceWithMemory", "TryCatch"))
 _TAKE_NO_SKIPPED = frozenset(("IfThenElse", "WhileDoElse"))

@@ -9,7 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.checks.strings import in_source
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
-from btq_lang.syntax import Entry, Requirement, Signal, Word
+from btq_lang.syntax.tree import Entry, Requirement, Signal, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

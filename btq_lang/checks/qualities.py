@@ -11,7 +11,7 @@ from btq_lang.checks.kinds import written
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Use
-from btq_lang.syntax import Entry, Qualities, Requirement
+from btq_lang.syntax.tree import Entry, Qualities, Requirement
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 

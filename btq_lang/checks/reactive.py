@@ -17,7 +17,7 @@ from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.syntax import Entry, Node, Word, quote
+from btq_lang.syntax.tree import Entry, Node, Word, quote
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

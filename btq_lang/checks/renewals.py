@@ -14,7 +14,7 @@ from btq_lang.checks.demanded import Demanded, Found
 from btq_lang.checks.writers import isolated, key_of
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.reading import signals_in
-from btq_lang.syntax import Verbatim
+from btq_lang.syntax.tree import Verbatim
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim, Requirement, Signal, SourceNode

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.checks.clauses import with_blanks
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, Tag, replace_fix
-from btq_lang.syntax import (
+from btq_lang.syntax.tree import (
     Apply,
     Entry,
     NodeClause,

@@ -10,7 +10,7 @@ from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
 from btq_lang.symbols import Symbol, same_requirement
-from btq_lang.syntax import Claim, Entry, OnViolation, Requirement
+from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement
 from btq_lang.util.spelling import did_you_mean
 
 if TYPE_CHECKING:

@@ -14,14 +14,14 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.checks.calls import ask_of_called
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
-from btq_lang.syntax import Node, Tree
+from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.facts import Facts
-    from btq_lang.syntax import Entry
+    from btq_lang.syntax.tree import Entry
 
 
 class Results(Record):

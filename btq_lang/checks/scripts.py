@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.syntax import Entry, Pair, Word
+    from btq_lang.syntax.tree import Entry, Pair, Word
 
 
 def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -56,7 +56,7 @@ def _expects_value(seen: SeenNode, pair: Pair) -> bool | None:
 
 
 def _problems(view: View, script: str, expects_value: bool) -> tuple[Diagnostic, ...]:
-    from btq_lang.script import check_script  # most files have no script, and it is large
+    from btq_lang.syntax.script import check_script  # most files have no script, and it is large
 
     versions = view.project.engines
     return check_script(view.script(script), versions=versions, expects_value=expects_value)

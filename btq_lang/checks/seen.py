@@ -14,7 +14,7 @@ from btq_lang.placeholders import is_placeholder
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.file import Definition
-    from btq_lang.syntax import Model, Node, Tree, Word
+    from btq_lang.syntax.tree import Model, Node, Tree, Word
 
 
 class SeenNode:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from btq_lang.syntax import Node
+    from btq_lang.syntax.tree import Node
 
 SUCCESS: Final = 1
 FAILURE: Final = 2

@@ -7,7 +7,7 @@ escape or a line end of two characters being one piece.
 from __future__ import annotations
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
-from btq_lang.syntax import Word, quote
+from btq_lang.syntax.tree import Word, quote
 from btq_lang.util.record import replace
 from btq_lang.util.text import Edit, Span, apply_edits
 

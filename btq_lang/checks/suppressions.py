@@ -15,7 +15,7 @@ from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import RULES, UNREADABLE
 from btq_lang.file import File
 from btq_lang.project import unknown_rule
-from btq_lang.tokens import COMMENT, Token
+from btq_lang.syntax.tokens import COMMENT, Token
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

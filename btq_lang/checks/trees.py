@@ -15,7 +15,7 @@ from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.symbols import Use
-from btq_lang.syntax import Entry, Model, Node, Tree
+from btq_lang.syntax.tree import Entry, Model, Node, Tree
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
 

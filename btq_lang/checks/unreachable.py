@@ -11,7 +11,7 @@ from btq_lang.checks.results import UNKNOWN, result, results
 from btq_lang.checks.statuses import FAILURE, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, Tag
-from btq_lang.syntax import Entry, Node, Verbatim
+from btq_lang.syntax.tree import Entry, Node, Verbatim
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Diagnostic, Tag
-from btq_lang.syntax import Context, Entry, Signal
+from btq_lang.syntax.tree import Context, Entry, Signal
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.symbols import Summary, Use
-from btq_lang.syntax import (
+from btq_lang.syntax.tree import (
     Apply,
     Entry,
     Include,
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.resolved import Requirements
-    from btq_lang.script import Script
+    from btq_lang.syntax.script import Script
 
     K = TypeVar("K")
     T = TypeVar("T")
@@ -327,7 +327,7 @@ class View:
         """What a script says; several checks ask of each."""
         known = self._scripts.get(text)
         if known is None:
-            from btq_lang.script import parse_script  # most files have no script, and it is large
+            from btq_lang.syntax.script import parse_script  # most files have no script, and it is large
 
             known = self._scripts[text] = parse_script(text)
         return known

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
-from btq_lang.syntax import Pair, Port, Verbatim
+from btq_lang.syntax.tree import Pair, Port, Verbatim
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def _is_script(node: SourceNode, key: str) -> bool:
 
 
 def _assigned(script: str) -> Iterator[str]:
-    from btq_lang.script import parse_script, variables
+    from btq_lang.syntax.script import parse_script, variables
 
     for variable in variables(parse_script(script)):
         if variable.writes:

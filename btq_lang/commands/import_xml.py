@@ -235,7 +235,7 @@ def _missing(job: _Job) -> Iterator[str]:
     if job.target is None or "include" not in job.done.text:
         return
     from btq_lang.parser import parse
-    from btq_lang.syntax import Include
+    from btq_lang.syntax.tree import Include
 
     project = find_project(job.target).project
     for entry in parse(job.done.text).entries:

@@ -18,9 +18,10 @@ from btq_lang.catalog.units import convert, parse_unit, to_si
 from btq_lang.file import File
 from btq_lang.lexer import tokens
 from btq_lang.placeholders import is_placeholder
-from btq_lang.quantities import parse_quantity
 from btq_lang.symbols import requirements_at
-from btq_lang.syntax import (
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
+from btq_lang.syntax.tree import (
     Apply,
     Because,
     Claim,
@@ -56,7 +57,6 @@ from btq_lang.syntax import (
     shape,
     walk,
 )
-from btq_lang.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

@@ -11,7 +11,7 @@ from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
 from btq_lang.loader import shown
-from btq_lang.syntax import Signal
+from btq_lang.syntax.tree import Signal
 from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:

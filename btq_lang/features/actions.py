@@ -12,8 +12,8 @@ from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
 from btq_lang.features.unused import UNUSED, needless_includes, removal, without
 from btq_lang.fixes import fixed
-from btq_lang.scan import string_end
-from btq_lang.tokens import COMMENT, STRING
+from btq_lang.syntax.scan import string_end
+from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Edit, Position, Span

@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from btq_lang.features.semantic_tokens import groups, known_of, stretch_of
 from btq_lang.features.stretches import Known, Stretch, encoded
-from btq_lang.syntax import Entry
+from btq_lang.syntax.tree import Entry
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Encoding
 from btq_lang.workspace import Workspace

@@ -25,8 +25,19 @@ from btq_lang.features.proposals import Proposal
 from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
 from btq_lang.file import File
 from btq_lang.mentions import What
-from btq_lang.syntax import is_name
-from btq_lang.tokens import CATEGORIES, CLOSE, COMMENT, NAME, NODE_CLAUSES, NUMBER, OPERATOR, QUANTITY, STRING, Token
+from btq_lang.syntax.tokens import (
+    CATEGORIES,
+    CLOSE,
+    COMMENT,
+    NAME,
+    NODE_CLAUSES,
+    NUMBER,
+    OPERATOR,
+    QUANTITY,
+    STRING,
+    Token,
+)
+from btq_lang.syntax.tree import is_name
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

@@ -13,7 +13,7 @@ from btq_lang.features.ports import ports_of
 from btq_lang.file import Definition
 from btq_lang.mentions import What
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax import Claim, Entry, Requirement, Root
+from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

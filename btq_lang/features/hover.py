@@ -11,7 +11,7 @@ from btq_lang.features.place import item_tokens
 from btq_lang.features.ports import ports_of
 from btq_lang.file import File
 from btq_lang.mentions import What
-from btq_lang.tokens import NAME
+from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

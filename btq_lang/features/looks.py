@@ -16,7 +16,7 @@ from btq_lang.clauses import EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.features.legend import MODIFIERS, TYPES
 from btq_lang.mentions import What
-from btq_lang.tokens import (
+from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
     COMMENT,

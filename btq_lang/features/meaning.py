@@ -15,8 +15,8 @@ from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What, called
-from btq_lang.syntax import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
-from btq_lang.tokens import COMMENT, NAME
+from btq_lang.syntax.tokens import COMMENT, NAME
+from btq_lang.syntax.tree import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

@@ -9,8 +9,8 @@ from btq_lang.catalog.units import parse_unit
 from btq_lang.features.clause_words import is_window
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.place import Place
-from btq_lang.syntax import Claim, Requirement, Signal, is_name
-from btq_lang.tokens import NAME
+from btq_lang.syntax.tokens import NAME
+from btq_lang.syntax.tree import Claim, Requirement, Signal, is_name
 from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace
 

@@ -6,7 +6,7 @@ import posixpath
 from collections.abc import Mapping
 
 from btq_lang.project import include_candidates
-from btq_lang.syntax import Include, quote
+from btq_lang.syntax.tree import Include, quote
 from btq_lang.util.text import Edit
 from btq_lang.workspace import Workspace
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.symbols import requirements_at
-from btq_lang.syntax import (
+from btq_lang.syntax.tree import (
     Apply,
     Context,
     Entry,

@@ -12,9 +12,8 @@ from collections.abc import Sequence
 from btq_lang.features.clause_words import opens_condition
 from btq_lang.file import File
 from btq_lang.lexer import tokens as tokens_of
-from btq_lang.scan import line_start
-from btq_lang.syntax import Item, Node, Tree, unquote
-from btq_lang.tokens import (
+from btq_lang.syntax.scan import line_start
+from btq_lang.syntax.tokens import (
     BLANK,
     CATEGORIES,
     CLOSE,
@@ -31,6 +30,7 @@ from btq_lang.tokens import (
     SYMBOL,
     Token,
 )
+from btq_lang.syntax.tree import Item, Node, Tree, unquote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

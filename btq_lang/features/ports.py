@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, port_type
-from btq_lang.syntax import Model, Node, Port, Tree
+from btq_lang.syntax.tree import Model, Node, Port, Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace import Workspace
 

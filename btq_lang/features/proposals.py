@@ -25,8 +25,8 @@ from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, por
 from btq_lang.file import Definition
 from btq_lang.mentions import Mention, What
 from btq_lang.requirements.nodes import Nodes
-from btq_lang.syntax import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
-from btq_lang.tokens import CATEGORIES
+from btq_lang.syntax.tokens import CATEGORIES
+from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace import Workspace
 

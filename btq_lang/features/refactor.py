@@ -19,7 +19,8 @@ from btq_lang.mentions import Mention, What
 from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES
+from btq_lang.syntax.tree import (
     Between,
     Claim,
     Clause,
@@ -35,7 +36,6 @@ from btq_lang.syntax import (
     is_name,
     quote,
 )
-from btq_lang.tokens import BRACED, NODE_CLAUSES
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Position, Span
 from btq_lang.workspace import Workspace

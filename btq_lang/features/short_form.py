@@ -11,8 +11,8 @@ from btq_lang.features.block import node_at
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import Refactoring
 from btq_lang.file import File
-from btq_lang.syntax import Entry, Node, Pair, Satisfices, Tree, is_name, quote
-from btq_lang.tokens import CLOSE, NODE_CLAUSES, OPEN
+from btq_lang.syntax.tokens import CLOSE, NODE_CLAUSES, OPEN
+from btq_lang.syntax.tree import Entry, Node, Pair, Satisfices, Tree, is_name, quote
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace import Workspace
 

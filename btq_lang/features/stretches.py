@@ -27,14 +27,14 @@ from btq_lang.features.looks import (
 from btq_lang.features.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.mentions import Listener, What, tell
-from btq_lang.syntax import Entry, Requirement
-from btq_lang.tokens import COMMENT, OPERATOR, SYMBOL
+from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
+from btq_lang.syntax.tree import Entry, Requirement
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span, width_of
 
 if TYPE_CHECKING:
     from btq_lang.mentions import Mention, Owner
-    from btq_lang.syntax import Node, Pair, Word
+    from btq_lang.syntax.tree import Node, Pair, Word
     from btq_lang.util.text import Encoding
 
     Token: TypeAlias = tuple[int, int, str]  # where it starts and ends, and its look

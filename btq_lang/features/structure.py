@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btq_lang.features.meaning import at, entry_at
-from btq_lang.syntax import Include, Node, Tree
-from btq_lang.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
+from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
+from btq_lang.syntax.tree import Include, Node, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace

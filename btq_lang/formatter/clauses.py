@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from btq_lang.formatter.layout import FormatOptions, fits
 from btq_lang.formatter.lines import Line
 from btq_lang.formatter.marks import Clauses, Marks
-from btq_lang.tokens import NAME
+from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 

@@ -14,7 +14,7 @@ from typing import Final
 from btq_lang.formatter.alignment import Gap
 from btq_lang.formatter.lines import Piece
 from btq_lang.formatter.marks import Marks
-from btq_lang.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
+from btq_lang.syntax.tokens import CLOSE, COMMENT, NAME, OPEN, OPERATOR
 from btq_lang.util.record import Record
 
 

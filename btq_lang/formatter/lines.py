@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from btq_lang.comments import block_of
-from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
+from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
 from btq_lang.util.text import LINE_END
 
 

@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.parser import Parsed
-from btq_lang.syntax import (
+from btq_lang.syntax.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
+from btq_lang.syntax.tree import (
     Amount,
     Argument,
     Because,
@@ -44,7 +45,6 @@ from btq_lang.syntax import (
     Window,
     Word,
 )
-from btq_lang.tokens import BLANK, CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 from btq_lang.util.record import Record, fields_of
 from btq_lang.util.text import LINE_END, Span
 

@@ -14,7 +14,7 @@ from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Applied, Claim, SourceNode
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.syntax import Node, NodeClause, QualityPath, Satisfices
+from btq_lang.syntax.tree import Node, NodeClause, QualityPath, Satisfices
 from btq_lang.workspace import Workspace
 
 if TYPE_CHECKING:

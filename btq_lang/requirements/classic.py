@@ -12,8 +12,8 @@ from btq_lang.constraints import Constraint, can_be_checked, clauses_of, constra
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
 from btq_lang.requirements.reader import Reader
-from btq_lang.syntax import Claim as WrittenClaim
-from btq_lang.syntax import Word
+from btq_lang.syntax.tree import Claim as WrittenClaim
+from btq_lang.syntax.tree import Word
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
 

@@ -32,19 +32,19 @@ from btq_lang.requirements.model import (
     Window,
 )
 from btq_lang.requirements.reader import COUNT, PERCENT, SORTS, TIME, Reader, Wanted
-from btq_lang.syntax import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
-from btq_lang.syntax import Claim as WrittenClaim
-from btq_lang.syntax import Clause as WrittenClause
-from btq_lang.syntax import Event as WrittenEvent
-from btq_lang.syntax import Every as WrittenEvery
-from btq_lang.syntax import Mission as WrittenMission
-from btq_lang.syntax import Odds as WrittenOdds
-from btq_lang.syntax import Parameter as WrittenParameter
-from btq_lang.syntax import Requirement as WrittenRequirement
-from btq_lang.syntax import Scope as WrittenScope
-from btq_lang.syntax import Signal as WrittenSignal
-from btq_lang.syntax import Subject as WrittenSubject
-from btq_lang.syntax import Window as WrittenWindow
+from btq_lang.syntax.tree import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
+from btq_lang.syntax.tree import Claim as WrittenClaim
+from btq_lang.syntax.tree import Clause as WrittenClause
+from btq_lang.syntax.tree import Event as WrittenEvent
+from btq_lang.syntax.tree import Every as WrittenEvery
+from btq_lang.syntax.tree import Mission as WrittenMission
+from btq_lang.syntax.tree import Odds as WrittenOdds
+from btq_lang.syntax.tree import Parameter as WrittenParameter
+from btq_lang.syntax.tree import Requirement as WrittenRequirement
+from btq_lang.syntax.tree import Scope as WrittenScope
+from btq_lang.syntax.tree import Signal as WrittenSignal
+from btq_lang.syntax.tree import Subject as WrittenSubject
+from btq_lang.syntax.tree import Window as WrittenWindow
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 

@@ -12,7 +12,6 @@ from math import fsum, inf
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import to_si
-from btq_lang.quantities import parse_quantity
 from btq_lang.requirements.durations import (
     ANY,
     ZERO,
@@ -25,7 +24,8 @@ from btq_lang.requirements.durations import (
     total,
     without_end,
 )
-from btq_lang.tokens import QUANTITY
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.util.record import Record, replace
 
 if TYPE_CHECKING:

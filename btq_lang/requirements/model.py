@@ -14,7 +14,7 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.catalog.units import Dimension, Unit
-    from btq_lang.syntax import Item, Node, Tree
+    from btq_lang.syntax.tree import Item, Node, Tree
     from btq_lang.util.text import Span as TextSpan
 
     Verb: TypeAlias = Literal[

@@ -11,7 +11,7 @@ from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, spellings
 from btq_lang.placeholders import is_placeholder
-from btq_lang.syntax import Node
+from btq_lang.syntax.tree import Node
 
 
 def names_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:

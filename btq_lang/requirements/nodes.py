@@ -15,7 +15,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
 from btq_lang.symbols import Symbol
-from btq_lang.syntax import Model, Node, Tree
+from btq_lang.syntax.tree import Model, Node, Tree
 
 if TYPE_CHECKING:
     from btq_lang.file import File

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.requirements.memory import Asker
-from btq_lang.syntax import Apply, Entry, Item, Path, Tree, Word, is_name, quote
+from btq_lang.syntax.tree import Apply, Entry, Item, Path, Tree, Word, is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 

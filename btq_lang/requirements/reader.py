@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.quantities import parse_quantity
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Aggregate,
@@ -36,7 +35,9 @@ from btq_lang.requirements.model import (
     Value,
 )
 from btq_lang.requirements.paths import PathReader
-from btq_lang.syntax import (
+from btq_lang.syntax.quantities import parse_quantity
+from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
+from btq_lang.syntax.tree import (
     Amount,
     Binary,
     Call,
@@ -47,11 +48,10 @@ from btq_lang.syntax import (
     Path,
     Word,
 )
-from btq_lang.syntax import Bounded as WrittenBounded
-from btq_lang.syntax import Condition as WrittenCondition
-from btq_lang.syntax import Not as WrittenNot
-from btq_lang.syntax import Table as WrittenTable
-from btq_lang.tokens import NAME, NUMBER, QUANTITY, STRING
+from btq_lang.syntax.tree import Bounded as WrittenBounded
+from btq_lang.syntax.tree import Condition as WrittenCondition
+from btq_lang.syntax.tree import Not as WrittenNot
+from btq_lang.syntax.tree import Table as WrittenTable
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span

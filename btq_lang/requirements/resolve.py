@@ -14,10 +14,10 @@ from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.symbols import Symbol
-from btq_lang.syntax import Apply, Context, Operand, Tree, walk
-from btq_lang.syntax import Requirement as WrittenRequirement
-from btq_lang.syntax import Signal as WrittenSignal
-from btq_lang.tokens import NAME
+from btq_lang.syntax.tokens import NAME
+from btq_lang.syntax.tree import Apply, Context, Operand, Tree, walk
+from btq_lang.syntax.tree import Requirement as WrittenRequirement
+from btq_lang.syntax.tree import Signal as WrittenSignal
 
 if TYPE_CHECKING:
     from btq_lang.file import File

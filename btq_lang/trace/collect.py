@@ -18,7 +18,7 @@ from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.syntax import QualityDecl
+from btq_lang.syntax.tree import QualityDecl
 from btq_lang.trace.meanings import Meaning, Meanings
 from btq_lang.trace.overview import (
     At,

@@ -24,7 +24,7 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
-from btq_lang.script import check_script, parse_script
+from btq_lang.syntax.script import check_script, parse_script
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

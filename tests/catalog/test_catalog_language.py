@@ -13,7 +13,7 @@ from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.item_words import ITEM_WORDS
 from btq_lang.parser import parse
-from btq_lang.tokens import NODE_CLAUSES
+from btq_lang.syntax.tokens import NODE_CLAUSES
 
 DOCS = (Path(__file__).resolve().parents[2] / "docs" / "language.md").read_text("utf-8")
 FORMS = {

@@ -25,7 +25,7 @@ from btq_lang.catalog.nodes import (
     xml_tag,
 )
 from btq_lang.catalog.units import parse_unit
-from btq_lang.tokens import SYMBOLS
+from btq_lang.syntax.tokens import SYMBOLS
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -8,7 +8,7 @@ import pytest
 from check_asserts import after, findings, fixes, problems
 
 from btq_lang.parser import parse
-from btq_lang.syntax import Node, shape
+from btq_lang.syntax.tree import Node, shape
 
 
 def tree(node: str) -> str:

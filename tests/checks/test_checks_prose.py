@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.checks.wording import as_clause
 from btq_lang.parser import parse
-from btq_lang.syntax import Requirement, quote
+from btq_lang.syntax.tree import Requirement, quote
 
 MET, VIOLATED = False, True
 

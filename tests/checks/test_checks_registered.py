@@ -12,7 +12,7 @@ from check_asserts import split_files
 from btq_lang.checks import CHECKS, checks_of
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import rules
-from btq_lang.syntax import Entry, Model
+from btq_lang.syntax.tree import Entry, Model
 from btq_lang.workspace import Workspace
 
 BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)

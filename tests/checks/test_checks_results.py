@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from btq_lang.checks.results import Results, result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View
-from btq_lang.syntax import Node
+from btq_lang.syntax.tree import Node
 from btq_lang.workspace import Workspace
 
 IDLE = 0

@@ -24,8 +24,8 @@ from btq_lang.cli import main
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.placeholders import is_placeholder
 from btq_lang.project import Project
-from btq_lang.syntax import Node as Written
-from btq_lang.syntax import Tree
+from btq_lang.syntax.tree import Node as Written
+from btq_lang.syntax.tree import Tree
 from btq_lang.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -13,8 +13,8 @@ from btq_lang.checks import check
 from btq_lang.evidence.signals import Signals
 from btq_lang.parser import parse
 from btq_lang.requirements.resolve import requirements
-from btq_lang.syntax import Claim
-from btq_lang.syntax import Requirement as RequirementItem
+from btq_lang.syntax.tree import Claim
+from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.workspace import Workspace
 
 LEVEL = "signal battery : % from {battery_level} level"

@@ -15,7 +15,7 @@ from missions import mission
 from btq_lang.formatter import FormatOptions, format_range, format_text
 from btq_lang.lexer import tokens
 from btq_lang.parser import parse
-from btq_lang.tokens import BLANK, COMMENT, DEDENT, INDENT
+from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT
 from btq_lang.util.text import apply_edits
 
 ROOT = Path(__file__).resolve().parents[2]

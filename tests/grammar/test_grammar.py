@@ -14,7 +14,7 @@ from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.item_words import ITEM_WORDS
 from btq_lang.parser import parse
-from btq_lang.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
+from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "grammar.md").read_text(encoding="utf-8")
 TOKENS = {

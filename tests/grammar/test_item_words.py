@@ -9,7 +9,7 @@ import pytest
 from btq_lang.file import File
 from btq_lang.item_words import item_word_meant, read_as
 from btq_lang.parser import parse
-from btq_lang.syntax import Include
+from btq_lang.syntax.tree import Include
 
 PIECES = (
     *("enclude", "Include", "inclde", "incldue", "inc", "lude", "_", "-", "?", "1", "ä", "$", "import"),

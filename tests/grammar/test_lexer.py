@@ -15,7 +15,7 @@ from btq_lang.conditions import FUNCTIONS, HEADS
 from btq_lang.item_words import ITEM_WORDS
 from btq_lang.lexer import Lexer, tokens
 from btq_lang.parser import parse
-from btq_lang.tokens import BLANK, DEDENT, DIRECTIONS, INDENT, NAMES, NEWLINE, NODE_CLAUSES, SYMBOLS, Token
+from btq_lang.syntax.tokens import BLANK, DEDENT, DIRECTIONS, INDENT, NAMES, NEWLINE, NODE_CLAUSES, SYMBOLS, Token
 
 
 def assert_lex(text: str, expected: str, *problems: str) -> None:

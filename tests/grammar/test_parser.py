@@ -12,7 +12,7 @@ import pytest
 from syntax_asserts import assert_fix, assert_parse, dump
 
 from btq_lang.parser import parse
-from btq_lang.syntax import Model, Root, Skipped, Tree, is_name, quote, unquote
+from btq_lang.syntax.tree import Model, Root, Skipped, Tree, is_name, quote, unquote
 
 # ---- File -----------------------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ import pytest
 from syntax_asserts import assert_parse, assert_same, dump
 
 from btq_lang.parser import parse
-from btq_lang.syntax import Node, Requirement, Satisfices, Satisfies
+from btq_lang.syntax.tree import Node, Requirement, Satisfices, Satisfies
 
 
 def test_the_authors_own_example_byte_for_byte(shared: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 from syntax_asserts import assert_fix, assert_parse
 
 from btq_lang.parser import parse
-from btq_lang.syntax import shape
+from btq_lang.syntax.tree import shape
 
 END = "found the end of the line"
 

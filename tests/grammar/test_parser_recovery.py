@@ -9,7 +9,7 @@ from syntax_asserts import apply_fix, assert_invariants, assert_parse, assert_sa
 
 from btq_lang.lexer import Lexer
 from btq_lang.parser import Parsed, parse
-from btq_lang.syntax import Skipped, shape
+from btq_lang.syntax.tree import Skipped, shape
 
 IN_BRACKETS = (
     *("A", " (", ")", "p", " = ", " =", "=", ":", '"x"', '"a b"', '"', "'", "3", "30 s", ",", "{k}", "_skipIf", " "),

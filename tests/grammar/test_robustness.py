@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from syntax_asserts import assert_diagnostics, assert_entries, assert_invariants, assert_tokens, show_problems
 
 from btq_lang.parser import parse
-from btq_lang.tokens import SYMBOLS
+from btq_lang.syntax.tokens import SYMBOLS
 from btq_lang.util.text import LINE_END
 
 ROOT = Path(__file__).resolve().parents[2]

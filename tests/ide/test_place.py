@@ -9,7 +9,7 @@ import pytest
 
 from btq_lang.features import complete, place
 from btq_lang.file import File
-from btq_lang.tokens import Token
+from btq_lang.syntax.tokens import Token
 from btq_lang.util.text import Span
 from btq_lang.workspace import Workspace
 

@@ -10,7 +10,7 @@ from feature_asserts import check_delta, check_tokens, decoded
 
 from btq_lang.features.colours import Change, colours, delta
 from btq_lang.lexer import tokens
-from btq_lang.tokens import COMMENT
+from btq_lang.syntax.tokens import COMMENT
 from btq_lang.util.text import LINE_END, LineIndex, Span
 from btq_lang.workspace import Workspace
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.script import (
+from btq_lang.syntax.script import (
     ALL_VERSIONS,
     MAX_DEPTH,
     Assign,
@@ -36,7 +36,7 @@ from btq_lang.script import (
     unparse,
     variables,
 )
-from btq_lang.script.tokens import Tokens
+from btq_lang.syntax.script.tokens import Tokens
 from btq_lang.util.text import Edit, Span, apply_edits
 
 # ---- what a script means: the same in every version, and without a problem in any ----

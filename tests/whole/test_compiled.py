@@ -25,8 +25,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 TELL = """
 import json, sys
-from btq_lang import checks, parser, syntax
-from btq_lang.script import parser as script
+from btq_lang import checks, parser
+from btq_lang.syntax import tree as syntax
+from btq_lang.syntax.script import parser as script
 from btq_lang.features.colours import colours
 from btq_lang.workspace import Workspace
 
@@ -129,7 +130,7 @@ def test_what_is_compiled_reads_and_checks_as_the_pure_form(compiled: Path) -> N
     texts += [torn(draw.choice((CLASSIC, SHORT, *texts[: len(EXAMPLES)])), draw) for _ in range(500)]
     pure_files, pure = answers(ROOT, texts)
     compiled_files, by_compiled = answers(compiled, texts)
-    names = ("parser.py", "syntax.py", "script/parser.py")
+    names = ("parser.py", "syntax/tree.py", "syntax/script/parser.py")
     assert pure_files == [ROOT / "btq_lang" / name for name in names]
     assert [file.parent for file in compiled_files] == [(compiled / "btq_lang" / name).parent for name in names]
     assert {file.suffix for file in compiled_files}.isdisjoint({".py"})

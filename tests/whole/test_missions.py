@@ -13,7 +13,7 @@ import pytest
 from missions import Spelling, mission, plan
 
 from btq_lang.parser import parse
-from btq_lang.syntax import Node, Tree
+from btq_lang.syntax.tree import Node, Tree
 
 SPELLINGS: tuple[Spelling, ...] = ("classic", "short")
 

@@ -12,7 +12,7 @@ from layouts import relaid
 from btq_lang.comments import Comment, Comments, comments
 from btq_lang.lexer import tokens
 from btq_lang.parser import parse
-from btq_lang.tokens import COMMENT
+from btq_lang.syntax.tokens import COMMENT
 
 PLACES = ("before", "within", "behind", "first", "last")
 

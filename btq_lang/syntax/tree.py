@@ -10,22 +10,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
-from btq_lang.node_clauses import Quality as Quality
-from btq_lang.node_clauses import QualityPath as QualityPath
-from btq_lang.node_clauses import ReqRef as ReqRef
-from btq_lang.node_clauses import Requirement as Requirement
-from btq_lang.node_clauses import Satisfices as Satisfices
-from btq_lang.node_clauses import Satisfies as Satisfies
-from btq_lang.node_clauses import Tags as Tags
-from btq_lang.scan import is_name as is_name
-from btq_lang.tokens import QUANTITY, STRING
+from btq_lang.syntax.node_clauses import Quality as Quality
+from btq_lang.syntax.node_clauses import QualityPath as QualityPath
+from btq_lang.syntax.node_clauses import ReqRef as ReqRef
+from btq_lang.syntax.node_clauses import Requirement as Requirement
+from btq_lang.syntax.node_clauses import Satisfices as Satisfices
+from btq_lang.syntax.node_clauses import Satisfies as Satisfies
+from btq_lang.syntax.node_clauses import Tags as Tags
+from btq_lang.syntax.scan import is_name as is_name
+from btq_lang.syntax.tokens import QUANTITY, STRING
+from btq_lang.syntax.words import Node as Node
+from btq_lang.syntax.words import Pair as Pair
+from btq_lang.syntax.words import TypeWord as TypeWord
+from btq_lang.syntax.words import Word as Word
+from btq_lang.syntax.words import unquote as unquote
 from btq_lang.util.record import Record, fields_of
 from btq_lang.util.text import Span
-from btq_lang.words import Node as Node
-from btq_lang.words import Pair as Pair
-from btq_lang.words import TypeWord as TypeWord
-from btq_lang.words import Word as Word
-from btq_lang.words import unquote as unquote
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic

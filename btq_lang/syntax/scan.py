@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.catalog.units import parse_unit
-from btq_lang.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
+from btq_lang.syntax.tokens import ERROR, NUMBER, QUANTITY, SYMBOLS
 
 if TYPE_CHECKING:
     from mypy_extensions import i64

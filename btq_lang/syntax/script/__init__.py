@@ -13,9 +13,9 @@ what they hold.
     check.py     all problems of a script for given versions
 """
 
-from btq_lang.script.check import ALL_VERSIONS, check_script
-from btq_lang.script.parser import MAX_DEPTH, parse_script
-from btq_lang.script.tree import (
+from btq_lang.syntax.script.check import ALL_VERSIONS, check_script
+from btq_lang.syntax.script.parser import MAX_DEPTH, parse_script
+from btq_lang.syntax.script.tree import (
     Assign,
     Binary,
     Bool,

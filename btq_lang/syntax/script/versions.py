@@ -15,7 +15,7 @@ from typing import Final, TypeGuard
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.script.tree import (
+from btq_lang.syntax.script.tree import (
     RANK,
     Assign,
     Binary,

@@ -11,13 +11,13 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from btq_lang.tokens import STRING
+from btq_lang.syntax.tokens import STRING
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from mypy_extensions import i64
 
-    from btq_lang.syntax import NodeClause, Verbatim
+    from btq_lang.syntax.tree import NodeClause, Verbatim
 
 
 class Word:

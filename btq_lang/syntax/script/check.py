@@ -10,9 +10,9 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.script import mistakes
-from btq_lang.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
-from btq_lang.script.versions import version_problems
+from btq_lang.syntax.script import mistakes
+from btq_lang.syntax.script.tree import Assign, Expression, Number, Script, Ternary, Text, ungrouped
+from btq_lang.syntax.script.versions import version_problems
 from btq_lang.util.text import Span
 
 ALL_VERSIONS: Final = ("4.6", "4.8", "4.10")

@@ -12,8 +12,8 @@ from typing import Final
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.units import nearest_units
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.scan import line_end, line_start, number_end
-from btq_lang.syntax import quote
+from btq_lang.syntax.scan import line_end, line_start, number_end
+from btq_lang.syntax.tree import quote
 from btq_lang.util.text import Span
 
 

@@ -13,8 +13,8 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from mypy_extensions import i64
 
-    from btq_lang.syntax import Argument, Clause, Parameter
-    from btq_lang.words import Word
+    from btq_lang.syntax.tree import Argument, Clause, Parameter
+    from btq_lang.syntax.words import Word
 
 
 class _Part:

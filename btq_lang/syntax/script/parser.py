@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NoReturn
 
-from btq_lang.script import mistakes
-from btq_lang.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
-from btq_lang.script.tree import (
+from btq_lang.syntax.script import mistakes
+from btq_lang.syntax.script.tokens import BEGINS, END, ERROR, NAME, NUMBER, OPERANDS, TEXT, tokenize
+from btq_lang.syntax.script.tree import (
     ASSIGNMENT,
     COMPARISON,
     RANK,

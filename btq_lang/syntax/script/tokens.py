@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.script import mistakes
-from btq_lang.script.tree import ASSIGNMENT, RANK
+from btq_lang.syntax.script import mistakes
+from btq_lang.syntax.script.tree import ASSIGNMENT, RANK
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
