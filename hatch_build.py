@@ -23,7 +23,16 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 PACKAGE = "btq_lang"
 COMPILED = (
     *("lexer", "parser"),
-    *("attributes", "blocks", "claims", "clauses", "conditions", "cursor", "item_words", "nodes"),
+    *(
+        "grammar/attributes",
+        "grammar/blocks",
+        "grammar/claims",
+        "grammar/requirements",
+        "grammar/conditions",
+        "grammar/cursor",
+        "grammar/item_words",
+        "grammar/nodes",
+    ),
     *(
         "syntax/node_clauses",
         "syntax/quantities",

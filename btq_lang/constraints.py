@@ -10,9 +10,9 @@ import re
 from collections.abc import Container
 from functools import cache, lru_cache
 
-from btq_lang.claims import VERBS
-from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.conditions import HEADS
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Claim, Path, Requirement, Word
 from btq_lang.util.record import Record

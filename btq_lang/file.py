@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from btq_lang.facts import Facts, Names, Tally
-from btq_lang.item_words import may_include
+from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record

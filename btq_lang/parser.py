@@ -11,11 +11,11 @@ import re
 from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.claims import VERBS
-from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
-from btq_lang.item_words import ITEM_WORDS, item_word_meant, read_as
-from btq_lang.nodes import NodeParser
+from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.conditions import HEADS
+from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
+from btq_lang.grammar.nodes import NodeParser
 from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
 from btq_lang.syntax.tokens import (
     BRACED,

@@ -13,10 +13,10 @@ from btq_lang.catalog.names import is_port_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, KnownWord, NodeKind, available, lookup
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View, misspelt_clause
-from btq_lang.claims import VERBS
-from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.conditions import HEADS
 from btq_lang.symbols import Symbol
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote, shape

@@ -10,9 +10,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
-from btq_lang.claims import VERBS
-from btq_lang.conditions import HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
+from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.conditions import HEADS
 from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote

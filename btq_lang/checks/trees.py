@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.blocks import OF_ITS_OWN
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
@@ -14,6 +13,7 @@ from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.grammar.blocks import OF_ITS_OWN
 from btq_lang.symbols import Use
 from btq_lang.syntax.tree import Entry, Model, Node, Tree
 from btq_lang.util.spelling import did_you_mean

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from btq_lang.attributes import meant_clause
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
@@ -17,6 +16,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics.model import Place, Related
+from btq_lang.grammar.attributes import meant_clause
 from btq_lang.symbols import Summary, Use
 from btq_lang.syntax.tree import (
     Apply,

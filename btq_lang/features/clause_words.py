@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btq_lang.claims import HAPPENINGS
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.conditions import COMPARISONS, FUNCTIONS
+from btq_lang.grammar.claims import HAPPENINGS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
+from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
 

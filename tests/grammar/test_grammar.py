@@ -9,10 +9,10 @@ from typing import TypeAlias
 
 import pytest
 
-from btq_lang.claims import HAPPENINGS, VERBS
-from btq_lang.clauses import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.conditions import COMPARISONS, FUNCTIONS, HEADS
-from btq_lang.item_words import ITEM_WORDS
+from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
+from btq_lang.grammar.item_words import ITEM_WORDS
+from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.cursor import Cursor
 from btq_lang.diagnostics.model import replace_fix
+from btq_lang.grammar.cursor import Cursor
 from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING, SYMBOL
 from btq_lang.syntax.tree import (
     Binary,

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
-from btq_lang.conditions import HEADS, ConditionParser
-from btq_lang.cursor import shown
 from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.grammar.conditions import HEADS, ConditionParser
+from btq_lang.grammar.cursor import shown
 from btq_lang.syntax.scan import number_end
 from btq_lang.syntax.tokens import NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
 from btq_lang.syntax.tree import (

@@ -8,12 +8,12 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from btq_lang.attributes import AttributeParser, meant_clause
-from btq_lang.blocks import MAX_DEPTH, OF_ITS_OWN, Block
-from btq_lang.claims import VERBS
-from btq_lang.conditions import HEADS
-from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.grammar.attributes import AttributeParser, meant_clause
+from btq_lang.grammar.blocks import MAX_DEPTH, OF_ITS_OWN, Block
+from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.conditions import HEADS
+from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.syntax.scan import line_end, line_start
 from btq_lang.syntax.suggestions import ATTRIBUTES, CHILDREN, attributes_in_braces
 from btq_lang.syntax.tokens import (

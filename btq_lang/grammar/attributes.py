@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.clauses import ClauseParser
-from btq_lang.cursor import VALUES, shown
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.grammar.cursor import VALUES, shown
+from btq_lang.grammar.requirements import ClauseParser
 from btq_lang.syntax.suggestions import CHILDREN, value_meant
 from btq_lang.syntax.tokens import (
     BRACED,

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.measured import measured
-from btq_lang.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
-from btq_lang.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.grammar.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
+from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.syntax.scan import is_unit, line_end, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING

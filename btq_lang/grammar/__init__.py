@@ -1,0 +1,16 @@
+"""The productions of docs/grammar.md between lexer and parser: a module a group of productions.
+
+One invariant: a production reads from a cursor, always moves on, and gives a tree and diagnostics for every text; one
+mistake gives one diagnostic.  Logical lines come in, trees of `syntax` go out.  Not known here: other items, other
+files, and what names mean.
+
+    cursor.py        where the parser is: the next token, what is expected, recovery
+    nodes.py         nodes and their children
+    attributes.py    what stands in brackets
+    requirements.py  requirements and their clauses
+    claims.py        what a clause demands
+    conditions.py    what it demands it under
+    blocks.py        the lines below a head
+    item_words.py    the words that items begin with
+    token_list.py    all tokens of a text, for those who look at text and not at the tree
+"""
