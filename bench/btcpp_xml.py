@@ -21,7 +21,7 @@ from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.reader import read
 from btq_lang.parser import parse
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
 

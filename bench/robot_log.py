@@ -20,7 +20,7 @@ from btq_lang.btcpp.export import export
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.model import Series
 from btq_lang.requirements.model import SourceNode
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 TINY = """\
 signal battery : % from {level}

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from btq_lang.trace.missions import TraceTable, trace_table
     from btq_lang.util.text import LineIndex, Span
     from btq_lang.util.version import __version__
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 __all__ = [
     "Built",
@@ -76,7 +76,7 @@ _HOMES = {
     "TraceTable": "trace.missions",
     "Tree": "syntax.tree",
     "Verification": "evidence.verifying",
-    "Workspace": "workspace",
+    "Workspace": "workspace.workspace",
     "__version__": "util.version",
     "build": "building",
     "check": "checks",

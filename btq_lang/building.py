@@ -15,11 +15,11 @@ from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.file import File
-from btq_lang.project import SUPPORTED, is_engine
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import SUPPORTED, is_engine
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 
 class Built(Record):

@@ -28,9 +28,9 @@ if TYPE_CHECKING:  # all these import the checks, and an editor waits for the se
     from btq_lang.features.outline import Match, Outline
     from btq_lang.features.signature import Signature
     from btq_lang.features.structure import Fold
-    from btq_lang.findings import Findings
-    from btq_lang.loader import LoadProblem
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.findings import Findings
+    from btq_lang.workspace.loader import LoadProblem
+    from btq_lang.workspace.workspace import Workspace
 
 
 _MOST_KEPT = 2_000  # texts, of some 300 characters each
@@ -57,7 +57,7 @@ class Converter:
 
     def path(self, uri: str) -> str:
         """The path of a file; what is no file (an untitled buffer) goes by its URI, as if that stood at the top."""
-        from btq_lang.loader import absolute  # it knows workspaces, which are not needed to start
+        from btq_lang.workspace.loader import absolute  # it knows workspaces, which are not needed to start
 
         parts = urlsplit(uri)
         return absolute(_path_of(parts.path) if parts.scheme == "file" else f"/{unquote(uri)}")

@@ -25,14 +25,14 @@ from pygls.lsp.server import LanguageServer
 
 from btq_lang import failures, features
 from btq_lang.convert import Converter
-from btq_lang.findings import Findings
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
 from btq_lang.util.version import __version__
+from btq_lang.workspace.findings import Findings
 
 if TYPE_CHECKING:
     from btq_lang.features import Colours
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")
 Handler = TypeVar("Handler", bound=Callable[..., Any])

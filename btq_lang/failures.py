@@ -20,7 +20,7 @@ def internal_error(error: BaseException, otherwise: str = "") -> str:
     Args:
         otherwise: what is said in place of `while reading …` where no file was at hand.
     """
-    from btq_lang.loader import shown  # a server imports this when it starts, and seldom needs more
+    from btq_lang.workspace.loader import shown  # a server imports this when it starts, and seldom needs more
 
     said = " ".join(str(error).split())
     what = f"{type(error).__name__}: {said}" if said else type(error).__name__
@@ -37,7 +37,7 @@ def place(error: BaseException) -> object:
 
 def _files(error: BaseException) -> Iterator[str]:
     """The files that were at hand, the last one first."""
-    from btq_lang.file import SUFFIXES  # as above
+    from btq_lang.workspace.file import SUFFIXES  # as above
 
     for frame, _ in reversed([*_frames(error)]):
         path = frame.f_locals.get("path")

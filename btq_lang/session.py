@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
 
 from btq_lang.diagnostics.rules import RULES, Severity
-from btq_lang.findings import Findings
 from btq_lang.util.record import replace
 from btq_lang.util.text import LineIndex
+from btq_lang.workspace.findings import Findings
 
 if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the server to start
     from btq_lang.checks.answers import Answers
     from btq_lang.commands.files import Files
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.facts import Name
-    from btq_lang.loader import LoadProblem
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.item_index import Name
+    from btq_lang.workspace.loader import LoadProblem
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Session:
@@ -76,7 +76,7 @@ class Session:
 
     def close(self, path: str) -> tuple[str, ...]:
         """A file is not open any more: the one on the disk counts again."""
-        from btq_lang.loader import read
+        from btq_lang.workspace.loader import read
 
         text = self.open.pop(path, None)
         self._answers.pop(path, None)
@@ -90,7 +90,7 @@ class Session:
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; all files that there are."""
         from btq_lang.commands.files import Files
-        from btq_lang.loader import is_project_file
+        from btq_lang.workspace.loader import is_project_file
 
         self._read_for = self.folders, {**self.settings}
         if self._files is None:
@@ -117,7 +117,7 @@ class Session:
 
     def _read_projects(self, problems: Iterable[LoadProblem]) -> None:
         """Keep what is wrong with project files: those of missions, and those that are open."""
-        from btq_lang.loader import find_project, is_project_file, read
+        from btq_lang.workspace.loader import find_project, is_project_file, read
 
         found = {path: find_project(path, self.open) for path in self.open if is_project_file(path)}
         of_open = [each for one in found.values() for each in one.problems]

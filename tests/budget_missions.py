@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 # What the kinds of nodes with children have in common where trees are drawn.
 GROUPS = {

@@ -15,9 +15,9 @@ from btq_lang.btcpp.opening import file_of
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.project import Project
 from btq_lang.util.text import Edit, LineIndex, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 MAIN = "main.btq"
 MARKER = re.compile(r"(?P<where>next-line |file )?(?P<severity>error|warning|info|hint): \[(?P<rule>[\w-]+)\]")

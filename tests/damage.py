@@ -44,7 +44,7 @@ from btq_lang.lexer import tokens  # noqa: E402
 from btq_lang.parser import parse  # noqa: E402
 from btq_lang.trace import write as write_overview  # noqa: E402
 from btq_lang.trace.collect import collect  # noqa: E402
-from btq_lang.workspace import Workspace  # noqa: E402
+from btq_lang.workspace.workspace import Workspace  # noqa: E402
 
 MAIN = "main.btq"
 MOST_LINES = 16  # of a mission before it is damaged

@@ -24,7 +24,7 @@ from btq_lang.features.colours import colours
 from btq_lang.features.completion import complete
 from btq_lang.features.outline import Outline, document_symbols
 from btq_lang.util.text import LineIndex, Position
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 FILES = {
     "main.btq": """include "skills.btq"

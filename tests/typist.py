@@ -15,7 +15,7 @@ from btq_lang.features.rename import Refusal, rename
 from btq_lang.formatter import format_text
 from btq_lang.session import Session
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Typist:

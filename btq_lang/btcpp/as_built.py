@@ -14,13 +14,13 @@ from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.restoring import restored
 from btq_lang.btcpp.side_file import side_path
-from btq_lang.file import File
-from btq_lang.loader import absolute, shown
 from btq_lang.parser import parse
-from btq_lang.project import Project, include_candidates
 from btq_lang.syntax.tree import Include
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project, include_candidates
+from btq_lang.workspace.file import File
+from btq_lang.workspace.loader import absolute, shown
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
 

@@ -12,7 +12,7 @@ from btq_lang.btcpp.document import Content, Document, Element
 from btq_lang.btcpp.export import Export, export
 from btq_lang.btcpp.source import Remark
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def bundle(

@@ -18,9 +18,9 @@ import re
 from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.entry_types import declared_type, is_number, is_text, meetings
 from btq_lang.syntax.tree import Tree
-from btq_lang.workspace import Scope
+from btq_lang.workspace.port_types import declared_type, is_number, is_text, meetings
+from btq_lang.workspace.workspace import Scope
 
 
 def fitting(types: tuple[str, ...], raw: str) -> str:

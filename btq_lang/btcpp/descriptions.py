@@ -13,7 +13,6 @@ from btq_lang.btcpp.document import escape
 from btq_lang.btcpp.marks import marked_description
 from btq_lang.btcpp.source import Source
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.file import File
 from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.syntax.tree import (
@@ -27,6 +26,7 @@ from btq_lang.syntax.tree import (
     Satisfices,
     Satisfies,
 )
+from btq_lang.workspace.file import File
 
 
 def description(

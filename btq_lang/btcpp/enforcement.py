@@ -33,7 +33,7 @@ from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.requirements.spans import node_of
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     Way: TypeAlias = Literal["enforced", "monitored", "reviewed"]

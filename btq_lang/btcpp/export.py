@@ -18,13 +18,13 @@ from btq_lang.btcpp.source import Remark, Source
 from btq_lang.btcpp.spelling import spelt
 from btq_lang.btcpp.trees import Trees
 from btq_lang.btcpp.undeclared import suggested_model, undeclared
-from btq_lang.comments import NO_COMMENTS
-from btq_lang.file import SUFFIXES, is_btq
 from btq_lang.syntax.tree import Entry, Include, Model, Root, Tree, Verbatim
 from btq_lang.syntax.tree import Models as ModelsItem
 from btq_lang.util.garbage import NotCollecting
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.comments import NO_COMMENTS
+from btq_lang.workspace.file import SUFFIXES, is_btq
+from btq_lang.workspace.workspace import Workspace
 
 IncludedAs: TypeAlias = Callable[[str], str]
 

@@ -15,7 +15,7 @@ from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
     class Looks(Protocol):
         """How to look at nodes and at the mission; who keeps what was found has a way of their own."""

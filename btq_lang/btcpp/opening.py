@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from btq_lang.file import SUFFIXES, File, Origin
-from btq_lang.loader import find_project, load
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import SUFFIXES, File, Origin
+from btq_lang.workspace.loader import find_project, load
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,7 +16,7 @@ from btq_lang.btcpp.marks import generated_mark
 from btq_lang.btcpp.side_file import Built, side_file
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Output(Record):

@@ -15,10 +15,8 @@ from btq_lang.btcpp.reader import read
 from btq_lang.btcpp.side_file import FORMAT, VERSIONS
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import xml_tag
-from btq_lang.file import is_btq
 from btq_lang.lexer import tokens
 from btq_lang.parser import Parsed, parse
-from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 from btq_lang.syntax.tree import (
     Apply,
@@ -38,6 +36,8 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Edit, LineIndex, Span, apply_edits
+from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.placeholders import is_placeholder
 
 
 class Restored(Record):

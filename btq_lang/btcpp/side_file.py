@@ -25,7 +25,7 @@ from btq_lang.syntax.tree import Apply, Context, Entry, Qualities, QualityDecl, 
 from btq_lang.syntax.tree import Requirement as RequirementItem
 from btq_lang.syntax.tree import Signal as SignalItem
 from btq_lang.util.record import Record, fields_of
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 

@@ -14,13 +14,13 @@ from btq_lang.btcpp.fragment import fragment_problem
 from btq_lang.btcpp.spelling import FORBIDDEN, as_comment, spelt
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
-from btq_lang.comments import NO_COMMENTS, Comments, comments
-from btq_lang.comments import Comment as SourceComment
-from btq_lang.file import File
 from btq_lang.syntax.tree import Entry, Verbatim, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Scope, Workspace
+from btq_lang.workspace.comments import NO_COMMENTS, Comments, comments
+from btq_lang.workspace.comments import Comment as SourceComment
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Scope, Workspace
 
 if TYPE_CHECKING:
 

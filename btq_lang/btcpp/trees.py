@@ -17,11 +17,11 @@ from btq_lang.btcpp.source import Source
 from btq_lang.catalog.kinds import CATEGORIES, at_least
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, xml_tag
-from btq_lang.comments import NO_COMMENTS
-from btq_lang.custom_nodes import likely_category
-from btq_lang.entry_types import is_number
-from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
+from btq_lang.workspace.comments import NO_COMMENTS
+from btq_lang.workspace.custom_nodes import likely_category
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.port_types import is_number
 
 _UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
 _NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence

@@ -12,10 +12,10 @@ from typing import Final
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.custom_nodes import CustomNode, custom_nodes, custom_nodes_of
-from btq_lang.file import File
 from btq_lang.syntax.tree import Model, Models
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.custom_nodes import CustomNode, custom_nodes, custom_nodes_of
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 
 def undeclared(workspace: Workspace, path: str) -> dict[str, CustomNode]:

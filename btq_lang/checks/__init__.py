@@ -42,8 +42,6 @@ from btq_lang.checks import (
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.findings import Findings, Told
-from btq_lang.project import configured
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tree import (
     Apply,
@@ -60,12 +58,14 @@ from btq_lang.syntax.tree import (
     Tree,
 )
 from btq_lang.util.record import Record
+from btq_lang.workspace.config import configured
+from btq_lang.workspace.findings import Findings, Told
 
 if TYPE_CHECKING:
     from btq_lang.checks.answers import Answers
-    from btq_lang.facts import Facts
-    from btq_lang.project import Project
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.workspace import Workspace
 
 Check: TypeAlias = "Callable[[View, Entry], Iterator[Diagnostic]]"
 

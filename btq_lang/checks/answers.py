@@ -22,17 +22,17 @@ from heapq import heappop, heappush
 from itertools import repeat
 from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar
 
-from btq_lang.facts import Facts, Name
-from btq_lang.file import File
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.item_index import Facts, Name
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.checks import Found
     from btq_lang.checks.view import View
-    from btq_lang.findings import Told
-    from btq_lang.project import Project
     from btq_lang.requirements.memory import Memory
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.findings import Told
 
     T = TypeVar("T")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
-from btq_lang.symbols import Use
 from btq_lang.syntax.tree import Entry, Satisfices, Satisfies, Tree
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import Use
 
 _WORDS = ("satisfices", "satisfies")
 

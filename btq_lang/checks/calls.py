@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
-from btq_lang.symbols import Use
+from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

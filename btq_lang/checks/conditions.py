@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Clause, Context, Entry, Operand, ReqRef, Requirement, Tree, walk
+from btq_lang.workspace.symbols import requirements_at
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

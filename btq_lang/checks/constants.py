@@ -9,9 +9,9 @@ from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_port_name
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.entry_types import Meeting, is_number, is_text, meetings
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Entry, Model, Models, Port, Tree, Word
+from btq_lang.workspace.port_types import Meeting, is_number, is_text, meetings
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.tree import (
     Because,
     Entry,
@@ -26,6 +25,7 @@ from btq_lang.syntax.tree import (
     Tree,
     Word,
 )
+from btq_lang.workspace.symbols import requirements_at
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -22,7 +22,7 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.facts import Facts
+    from btq_lang.workspace.item_index import Facts
 
 # A name in a tree; an empty tree stands for the root blackboard.
 Name: TypeAlias = tuple[str, str]

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.file import is_btq
 from btq_lang.syntax.tree import Entry, Include, quote
 from btq_lang.util.text import Span
+from btq_lang.workspace.file import is_btq
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 NOWHERE = "; neither this file nor its includes define it"
 

@@ -17,16 +17,16 @@ from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, 
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.claims import VERBS
 from btq_lang.grammar.conditions import HEADS
-from btq_lang.symbols import Symbol
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote, shape
 from btq_lang.util.spelling import did_you_mean, distance
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import Symbol
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
-    from btq_lang.custom_nodes import LikelyPort
-    from btq_lang.facts import Facts
+    from btq_lang.workspace.custom_nodes import LikelyPort
+    from btq_lang.workspace.item_index import Facts
 
 # How many children the nodes of a category have; None: any number.
 CHILDREN: dict[str, tuple[int, int | None]] = {

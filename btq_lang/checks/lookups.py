@@ -19,11 +19,11 @@ from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.syntax.tree import Include, Model, Models, Qualities, Root, Tree
 
 if TYPE_CHECKING:
-    from btq_lang.custom_nodes import LikelyPort
-    from btq_lang.facts import Facts
-    from btq_lang.file import Origin
     from btq_lang.util.text import Span
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.custom_nodes import LikelyPort
+    from btq_lang.workspace.file import Origin
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.workspace import Workspace
 
 # ---- a name: what these say depends on nothing but the items that define it ----
 
@@ -224,7 +224,7 @@ def names_unknown_requirements(workspace: Workspace, path: str) -> bool:
 
 def custom_node(workspace: Workspace, path: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
     """What the uses of a custom node suggest that it is: its category and its ports."""
-    from btq_lang.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
+    from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
 
     found = found_in_uses(workspace, path, name)
     return found.category, found.ports

@@ -18,9 +18,9 @@ from btq_lang.checks.calls import ask_of_called, callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.entry_types import declared_type, is_text
 from btq_lang.syntax.tree import Entry, Pair, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace.port_types import declared_type, is_text
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode

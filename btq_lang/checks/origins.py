@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def shown_on_origins(workspace: Workspace, path: str, found: Iterable[Diagnostic]) -> list[Diagnostic]:

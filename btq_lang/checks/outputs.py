@@ -16,7 +16,7 @@ from btq_lang.syntax.tree import Entry, Pair, Port, Word, is_name
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
-    from btq_lang.facts import Facts
+    from btq_lang.workspace.item_index import Facts
 
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -13,16 +13,16 @@ from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.grammar.claims import VERBS
 from btq_lang.grammar.conditions import HEADS
-from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
+from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.facts import Facts
+    from btq_lang.workspace.item_index import Facts
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"

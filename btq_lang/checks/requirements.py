@@ -9,9 +9,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
 from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
-from btq_lang.symbols import Symbol, same_requirement
 from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement
 from btq_lang.util.spelling import did_you_mean
+from btq_lang.workspace.symbols import Symbol, same_requirement
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View

@@ -20,8 +20,8 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
-    from btq_lang.facts import Facts
     from btq_lang.syntax.tree import Entry
+    from btq_lang.workspace.item_index import Facts
 
 
 class Results(Record):

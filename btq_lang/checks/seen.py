@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.placeholders import is_placeholder
+from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
-    from btq_lang.file import Definition
     from btq_lang.syntax.tree import Model, Node, Tree, Word
+    from btq_lang.workspace.file import Definition
 
 
 class SeenNode:

@@ -9,8 +9,8 @@ from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
 from btq_lang.checks.writers import declared_port, isolated
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.entry_types import is_text
 from btq_lang.util.spelling import near
+from btq_lang.workspace.port_types import is_text
 
 if TYPE_CHECKING:
     from btq_lang.checks.writers import Entries

@@ -13,11 +13,11 @@ from collections.abc import Iterator
 
 from btq_lang.diagnostics.model import Diagnostic, replace_fix
 from btq_lang.diagnostics.rules import RULES, UNREADABLE
-from btq_lang.file import File
-from btq_lang.project import unknown_rule
 from btq_lang.syntax.tokens import COMMENT, Token
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
+from btq_lang.workspace.config import unknown_rule
+from btq_lang.workspace.file import File
 
 _IGNORE = r"btq:\s*ignore(?![\w-])(\s*\[([^\]]*)(\])?)?"  # few files have one, so it is compiled when it is used
 

@@ -14,14 +14,14 @@ from btq_lang.checks.kinds import include_place, is_torn, written
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, Tag, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.grammar.blocks import OF_ITS_OWN
-from btq_lang.symbols import Use
 from btq_lang.syntax.tree import Entry, Model, Node, Tree
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.file import Definition
+    from btq_lang.workspace.file import Definition
 
 _MOST_NAMES = 5  # in one message
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open

@@ -17,7 +17,6 @@ from btq_lang.checks.calls import calls
 from btq_lang.checks.seen import NO_NODES, SeenNode, SeenNodes
 from btq_lang.diagnostics.model import Place, Related
 from btq_lang.grammar.attributes import meant_clause
-from btq_lang.symbols import Summary, Use
 from btq_lang.syntax.tree import (
     Apply,
     Entry,
@@ -30,7 +29,8 @@ from btq_lang.syntax.tree import (
     is_name,
 )
 from btq_lang.util.spelling import near
-from btq_lang.workspace import Scope, Workspace
+from btq_lang.workspace.symbols import Summary, Use
+from btq_lang.workspace.workspace import Scope, Workspace
 
 if TYPE_CHECKING:
     from btq_lang.checks.answers import Answers
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from btq_lang.checks.ports import KnownPorts
     from btq_lang.constraints import Constraint
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.facts import Facts
-    from btq_lang.file import Definition, File
     from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.resolved import Requirements
     from btq_lang.syntax.script import Script
+    from btq_lang.workspace.file import Definition, File
+    from btq_lang.workspace.item_index import Facts
 
     K = TypeVar("K")
     T = TypeVar("T")

@@ -6,8 +6,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 
-from btq_lang.loader import absolute, collect, find_project, shown, stamp
-from btq_lang.watch import watch
+from btq_lang.workspace.loader import absolute, collect, find_project, shown, stamp
+from btq_lang.workspace.watcher import watch
 
 
 def run_again(run: Callable[[], tuple[str, ...]], paths: Sequence[str], watched: tuple[str, ...]) -> None:

@@ -18,11 +18,11 @@ from btq_lang.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.commands.left_over import left_over
 from btq_lang.diagnostics.model import Place
-from btq_lang.loader import LoadProblem, absolute, read, shown, write_whole
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
+from btq_lang.workspace.loader import LoadProblem, absolute, read, shown, write_whole
 
 
 class Target(Record):

@@ -11,12 +11,12 @@ from btq_lang.checks import check
 from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.loader import LoadProblem, shown, write_whole
-from btq_lang.project import Project, unknown_rule
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import replace
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project, unknown_rule
+from btq_lang.workspace.loader import LoadProblem, shown, write_whole
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.commands.options import CheckOptions
@@ -114,7 +114,7 @@ def _fix(
     groups: tuple[Group, ...], options: CheckOptions, files: Files
 ) -> tuple[tuple[Group, ...], int, tuple[LoadProblem, ...]]:
     """Apply the safe fixes to the files that were asked for; the groups with the new texts, and how many fixes."""
-    from btq_lang.fixes import fixed
+    from btq_lang.workspace.fixes import fixed
 
     done: list[Group] = []
     trouble: list[LoadProblem] = []

@@ -17,10 +17,10 @@ from btq_lang.commands.git import Commit, GitTrouble, Revisions, revisions
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.diff import Place, as_json, as_markdown, as_text
 from btq_lang.diff.comparison import NOWHERE, ByHand, Comparison, Side, compared, without_made_models
-from btq_lang.file import SUFFIXES, File
-from btq_lang.loader import LoadProblem, absolute, collect, find_project, read, shown
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.util.record import replace
+from btq_lang.workspace.file import SUFFIXES, File
+from btq_lang.workspace.loader import LoadProblem, absolute, collect, find_project, read, shown
 
 
 class Trouble(Exception):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 
 from btq_lang.commands.files import Files
-from btq_lang.loader import find_project, read
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.loader import find_project, read
+from btq_lang.workspace.workspace import Workspace
 
 
 class Disk:

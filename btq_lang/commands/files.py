@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.opening import file_of
-from btq_lang.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.loader import Found, LoadProblem, absolute, collect, decoded, excluder, find_project, load
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.file import File
-    from btq_lang.project import Project
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.file import File
 
 STDIN = "-"
 

@@ -8,9 +8,9 @@ from argparse import Namespace
 
 from btq_lang.commands.files import Files, usage_problem, write_stdout
 from btq_lang.formatter import format_text
-from btq_lang.loader import LoadProblem, shown, write_whole
 from btq_lang.render.colour import painter, wants_colour
 from btq_lang.util.text import LineIndex
+from btq_lang.workspace.loader import LoadProblem, shown, write_whole
 
 
 def run(options: Namespace) -> int:

@@ -13,10 +13,10 @@ from typing import Final
 from btq_lang.btcpp.marks import is_built_of, is_mission
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.side_file import SIDE_SUFFIX, xml_path
-from btq_lang.file import SUFFIXES, File
-from btq_lang.loader import absolute, find_project, read
-from btq_lang.project import Project, include_candidates
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project, include_candidates
+from btq_lang.workspace.file import SUFFIXES, File
+from btq_lang.workspace.loader import absolute, find_project, read
+from btq_lang.workspace.workspace import Workspace
 
 
 class GitTrouble(Exception):

@@ -11,8 +11,8 @@ from btq_lang.commands.output import form_of, form_problem, write_output
 from btq_lang.diagnostics.rules import UNREADABLE
 from btq_lang.graph import FORMATS, draw
 from btq_lang.graph.missions import figures
-from btq_lang.loader import LoadProblem, shown
 from btq_lang.render import Finding, Report, render, with_paths
+from btq_lang.workspace.loader import LoadProblem, shown
 
 
 def run(options: Namespace) -> int:

@@ -12,12 +12,12 @@ from btq_lang.btcpp.by_hand import ADVICE
 from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.version3 import Change
-from btq_lang.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
-from btq_lang.project import include_candidates
 from btq_lang.render import Finding, Report, render, with_paths
 from btq_lang.render.colour import wants_colour
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex
+from btq_lang.workspace.config import include_candidates
+from btq_lang.workspace.loader import LoadProblem, absolute, decoded, find_project, read, shown, write_whole
 
 _STDIN = "-"
 

@@ -7,7 +7,7 @@ import shlex
 import sys
 from argparse import Namespace
 
-from btq_lang.loader import write_whole
+from btq_lang.workspace.loader import write_whole
 
 _PROJECT = """\
 # What holds for all missions of this project

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 
 from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.side_file import is_side_file, side_path
-from btq_lang.file import SUFFIXES
-from btq_lang.loader import read
+from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.loader import read
 
 
 def left_over(folders: Iterable[str]) -> list[str]:

@@ -8,8 +8,8 @@ from argparse import Namespace
 from collections.abc import Sequence
 
 from btq_lang.commands.files import write_stdout
-from btq_lang.file import SUFFIXES
-from btq_lang.loader import LoadProblem, absolute, write_whole
+from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.loader import LoadProblem, absolute, write_whole
 
 
 def form_of(options: Namespace, forms: Sequence[str]) -> str:

@@ -14,11 +14,11 @@ from threading import Event, Lock, Thread
 
 from btq_lang.commands.files import Files, usage_problem
 from btq_lang.graph.picture import picture, places
-from btq_lang.loader import absolute, shown, stamp
 from btq_lang.preview.server import Preview
 from btq_lang.util.text import Span
-from btq_lang.watch import watch
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.loader import absolute, shown, stamp
+from btq_lang.workspace.watcher import watch
+from btq_lang.workspace.workspace import Workspace
 
 
 def run(options: Namespace) -> int:

@@ -10,8 +10,8 @@ import os
 import posixpath
 from collections.abc import Iterable
 
-from btq_lang.file import SUFFIXES
-from btq_lang.loader import LoadProblem, absolute, read
+from btq_lang.workspace.file import SUFFIXES
+from btq_lang.workspace.loader import LoadProblem, absolute, read
 
 
 def place_of_mission(target: str, file: str, others: Iterable[tuple[str, str]]) -> str:

@@ -27,12 +27,12 @@ from btq_lang.evidence.readers.side import SideFile, side_file_at, side_files_be
 from btq_lang.evidence.signal_sources import signal_sources
 from btq_lang.evidence.verdicts import SATISFIED, VIOLATED
 from btq_lang.evidence.verifying import judged
-from btq_lang.loader import IS_SPECIAL, collect, find_project, is_special, shown
 from btq_lang.render.colour import wants_colour
+from btq_lang.workspace.loader import IS_SPECIAL, collect, find_project, is_special, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series
-    from btq_lang.project import Project
+    from btq_lang.workspace.config import Project
 
 
 def run(options: Namespace) -> int:

@@ -20,7 +20,7 @@ from btq_lang.diff.items import item_changes, renamed_items
 from btq_lang.diff.matching import Forest, match
 from btq_lang.diff.nodes import tree_changes
 from btq_lang.diff.said import Place, said
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 __all__ = ["Change", "Detail", "Place", "compare"]
 

@@ -11,7 +11,7 @@ from btq_lang.diff import Change, Place, compare
 from btq_lang.diff.changes import GUARD, Detail
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Position
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class ByHand(Record):

@@ -15,10 +15,7 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, xml_tag
 from btq_lang.catalog.qualities import EDITIONS, find
 from btq_lang.catalog.units import convert, parse_unit, to_si
-from btq_lang.file import File
 from btq_lang.lexer import tokens
-from btq_lang.placeholders import is_placeholder
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import COMMENT, NUMBER, QUANTITY
 from btq_lang.syntax.tree import (
@@ -59,7 +56,10 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.symbols import requirements_at
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
-    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace.project_evidence import SignalSource
 
 FORMATS: Final = ("table", "json", "csv", "junit", "markdown")
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.btcpp.instances import Instance
     from btq_lang.requirements.model import SourceNode, Target
     from btq_lang.requirements.resolved import Requirements
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Candidate:

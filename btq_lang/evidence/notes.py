@@ -10,9 +10,9 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.evidence.readers import SUFFIXES
 from btq_lang.evidence.wording import period
-from btq_lang.loader import shown
 from btq_lang.syntax.tree import Signal
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate

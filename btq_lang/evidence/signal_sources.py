@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.units import a_dimension
 from btq_lang.evidence.readers.samples import NoSamples, read_sources
-from btq_lang.loader import shown
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.loader import shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.identity import Candidate
     from btq_lang.evidence.model import Series
-    from btq_lang.project import Project
-    from btq_lang.project_evidence import SignalSource
     from btq_lang.requirements.model import Signal
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.project_evidence import SignalSource
 
 
 def signal_sources(

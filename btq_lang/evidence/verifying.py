@@ -23,14 +23,14 @@ from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.readers.side import side_file_at
 from btq_lang.evidence.signal_sources import signal_sources
-from btq_lang.loader import IS_SPECIAL, absolute, collect, is_special, shown
 from btq_lang.util.record import Record, replace
+from btq_lang.workspace.loader import IS_SPECIAL, absolute, collect, is_special, shown
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import Series
     from btq_lang.evidence.verdicts import Report
-    from btq_lang.project_evidence import SignalSource
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.project_evidence import SignalSource
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Verification(Record):

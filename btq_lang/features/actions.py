@@ -11,13 +11,13 @@ from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import refactorings
 from btq_lang.features.short_form import short_form
 from btq_lang.features.unused import UNUSED, needless_includes, removal, without
-from btq_lang.fixes import fixed
 from btq_lang.syntax.scan import string_end
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Edit, Position, Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.fixes import fixed
+from btq_lang.workspace.workspace import Workspace
 
 QUICK_FIX, REFACTOR, FIX_ALL, ORGANIZE = "quickfix", "refactor", "source.fixAll.btq", "source.organizeImports.btq"
 

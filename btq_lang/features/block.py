@@ -8,11 +8,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btq_lang.file import File
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.syntax.tree import Entry, Node, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Edit, Span
+from btq_lang.workspace.file import File
 
 STEP = "    "
 

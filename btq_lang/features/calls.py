@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, home_of, subject
-from btq_lang.file import Definition
-from btq_lang.mentions import What
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 
 class TreeItem(Record):

@@ -17,7 +17,7 @@ from btq_lang.features.stretches import Known, Stretch, encoded
 from btq_lang.syntax.tree import Entry
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Encoding
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")
 

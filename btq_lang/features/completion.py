@@ -23,8 +23,6 @@ from btq_lang.features.place import Place, item_tokens, place_at, word_text
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.features.proposals import Proposal
 from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
-from btq_lang.file import File
-from btq_lang.mentions import What
 from btq_lang.syntax.tokens import (
     CATEGORIES,
     CLOSE,
@@ -40,7 +38,9 @@ from btq_lang.syntax.tokens import (
 from btq_lang.syntax.tree import is_name
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Completion(Record):

@@ -22,12 +22,12 @@ from btq_lang.features.meaning import (
 )
 from btq_lang.features.outline import clauses_detail
 from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
-from btq_lang.file import Definition
-from btq_lang.mentions import What
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 _MOST_USES = 12
 

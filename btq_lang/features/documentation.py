@@ -8,9 +8,9 @@ from btq_lang.checks.view import View
 from btq_lang.features import describe
 from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_match
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
-from btq_lang.file import Definition
 from btq_lang.util.text import Edit
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.workspace import Workspace
 
 
 def documentation(workspace: Workspace, path: str, kind: str, name: str) -> str | None:

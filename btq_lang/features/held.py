@@ -9,9 +9,9 @@ from functools import lru_cache
 
 from btq_lang.btcpp.enforcement import Held, how_held, unasked
 from btq_lang.constraints import constraints
-from btq_lang.file import Definition, is_btq
 from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition, is_btq
+from btq_lang.workspace.workspace import Workspace
 
 _MOST_MISSIONS = 4  # planning one takes as long as checking it
 _MOST_NODES = 4

@@ -10,13 +10,13 @@ from btq_lang.features.held import missions_of
 from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.ports import ports_of
-from btq_lang.file import Definition
-from btq_lang.mentions import What
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 _COUNTED = {Kind.REQUIREMENT: What.REQUIREMENT, Kind.TREE: What.TREE}
 _MOST_MISSIONS = 4  # resolving one takes long, and a library may be in hundreds

@@ -9,12 +9,12 @@ from btq_lang.features.meaning import Found, Subject, at, definition, everywhere
 from btq_lang.features.navigation import writes
 from btq_lang.features.place import item_tokens
 from btq_lang.features.ports import ports_of
-from btq_lang.file import File
-from btq_lang.mentions import What
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Hover(Record):

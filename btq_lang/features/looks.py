@@ -15,7 +15,6 @@ from btq_lang.grammar.claims import HAPPENINGS, VERBS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.requirements import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.requirements import EXPERIMENTS, METHODS
-from btq_lang.mentions import What
 from btq_lang.syntax.tokens import (
     BRACED,
     CATEGORIES,
@@ -28,6 +27,7 @@ from btq_lang.syntax.tokens import (
     STRING,
     SYMBOL,
 )
+from btq_lang.workspace.references import What
 
 
 @lru_cache(2_000)  # most kinds stand in a file many times

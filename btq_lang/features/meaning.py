@@ -13,13 +13,13 @@ from functools import lru_cache
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, QualityMatch, find, fold
-from btq_lang.file import Definition
-from btq_lang.mentions import Mention, What, called
 from btq_lang.syntax.tokens import COMMENT, NAME
 from btq_lang.syntax.tree import Entry, Model, Qualities, QualityPath, Requirement, Root, Satisfices, Tree, Word
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.references import Mention, What, called
+from btq_lang.workspace.workspace import Workspace
 
 ENGINE = "engine"
 STANDARD = "standard"

@@ -12,7 +12,7 @@ from btq_lang.features.place import Place
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Claim, Requirement, Signal, is_name
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Measured(Record):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Mapping
 
-from btq_lang.project import include_candidates
 from btq_lang.syntax.tree import Include, quote
 from btq_lang.util.text import Edit
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import include_candidates
+from btq_lang.workspace.workspace import Workspace
 
 
 def moved_files(workspace: Workspace, moves: Mapping[str, str]) -> dict[str, tuple[Edit, ...]]:

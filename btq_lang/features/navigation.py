@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from btq_lang.features.meaning import Found, at, definition, everywhere, subject
-from btq_lang.mentions import What
 from btq_lang.syntax.tree import Node
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Target(Record):

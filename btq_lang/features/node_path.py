@@ -5,7 +5,7 @@ from __future__ import annotations
 from btq_lang.features.block import node_at
 from btq_lang.features.meaning import entry_at
 from btq_lang.syntax.tree import Node, Tree, is_name, quote
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def node_path(workspace: Workspace, path: str, offset: int) -> str | None:

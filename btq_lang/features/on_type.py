@@ -9,12 +9,12 @@ from btq_lang.catalog.nodes import lookup
 from btq_lang.features.block import deeper
 from btq_lang.features.meaning import at, everywhere, subject
 from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
-from btq_lang.file import File
-from btq_lang.mentions import What
 from btq_lang.syntax.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.syntax.tree import Model
 from btq_lang.util.text import Edit, Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.references import What
+from btq_lang.workspace.workspace import Workspace
 
 
 def on_type(workspace: Workspace, path: str, offset: int, typed: str) -> tuple[Edit, ...]:

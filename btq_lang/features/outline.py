@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.tree import (
     Apply,
     Context,
@@ -27,7 +26,8 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.symbols import requirements_at
+from btq_lang.workspace.workspace import Workspace
 
 
 class Outline(Record):

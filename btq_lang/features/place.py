@@ -10,7 +10,6 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 from btq_lang.features.clause_words import opens_condition
-from btq_lang.file import File
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tokens import (
@@ -33,7 +32,8 @@ from btq_lang.syntax.tokens import (
 from btq_lang.syntax.tree import Item, Node, Tree, unquote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 
 class LineNode(Record):

@@ -6,7 +6,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup, port_type
 from btq_lang.syntax.tree import Model, Node, Port, Tree
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class NodePort(Record):

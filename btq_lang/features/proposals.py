@@ -22,13 +22,13 @@ from btq_lang.features.measures import Measured, parameters_at
 from btq_lang.features.outline import requirement_detail
 from btq_lang.features.place import LineNode, Place, word_text
 from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
-from btq_lang.file import Definition
-from btq_lang.mentions import Mention, What
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.util.record import Record, replace
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import Definition
+from btq_lang.workspace.references import Mention, What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Proposal(Record):

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from importlib import import_module
 
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 _A_STEP = 50  # items, of some 20 nodes each: a few milliseconds
 

@@ -14,9 +14,6 @@ from btq_lang.checks.lookups import taken_names
 from btq_lang.features.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.navigation import direction
-from btq_lang.file import File
-from btq_lang.mentions import Mention, What
-from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES
@@ -38,7 +35,10 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Position, Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.references import Mention, What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Refactoring(Record):

@@ -14,12 +14,12 @@ from btq_lang.catalog.names import instance_name_problem, is_port_name, model_na
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
 from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
-from btq_lang.file import is_btq
-from btq_lang.mentions import Mention, What
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import is_btq
+from btq_lang.workspace.references import Mention, What
+from btq_lang.workspace.workspace import Workspace
 
 
 class Renamable(Record):

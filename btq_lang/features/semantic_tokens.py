@@ -14,7 +14,7 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.util.text import Encoding
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 
 def encoded_within(workspace: Workspace, path: str, within: Span, encoding: Encoding) -> list[int]:

@@ -10,11 +10,11 @@ from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.features.block import node_at
 from btq_lang.features.meaning import entry_at
 from btq_lang.features.refactor import Refactoring
-from btq_lang.file import File
 from btq_lang.syntax.tokens import CLOSE, NODE_CLAUSES, OPEN
 from btq_lang.syntax.tree import Entry, Node, Pair, Satisfices, Tree, is_name, quote
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 _Rewrites: TypeAlias = Mapping[int, tuple[Edit, ...]]
 

@@ -6,7 +6,7 @@ from btq_lang.features import describe
 from btq_lang.features.place import place_at
 from btq_lang.features.ports import ports_of_kind, ports_of_tree
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Parameter(Record):

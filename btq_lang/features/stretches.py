@@ -26,16 +26,16 @@ from btq_lang.features.looks import (
 )
 from btq_lang.features.meaning import match_of
 from btq_lang.lexer import pieces
-from btq_lang.mentions import Listener, What, tell
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
 from btq_lang.syntax.tree import Entry, Requirement
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Span, width_of
+from btq_lang.workspace.references import Listener, What, tell
 
 if TYPE_CHECKING:
-    from btq_lang.mentions import Mention, Owner
     from btq_lang.syntax.tree import Node, Pair, Word
     from btq_lang.util.text import Encoding
+    from btq_lang.workspace.references import Mention, Owner
 
     Token: TypeAlias = tuple[int, int, str]  # where it starts and ends, and its look
     World: TypeAlias = tuple[str, tuple[str, ...], tuple[str, ...]]

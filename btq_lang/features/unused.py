@@ -16,13 +16,13 @@ from btq_lang.checks import check
 from btq_lang.checks.lookups import is_read
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.features.refactor import names_of_nodes
-from btq_lang.file import File
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 from btq_lang.syntax.tree import Context, Entry, Include, Model, Models, Root, Signal, Tree, shape
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 UNUSED = {
     "unused-context": "unused context",

@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
-from btq_lang.comments import block_of
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE, QUANTITY, Token
 from btq_lang.util.text import LINE_END
+from btq_lang.workspace.comments import block_of
 
 
 class Piece:

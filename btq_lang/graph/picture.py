@@ -13,7 +13,7 @@ from btq_lang.graph.folding import foldable, with_folded_notes
 from btq_lang.graph.missions import figures, keyed
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Picture(Record):

@@ -13,7 +13,7 @@ from btq_lang import features
 from btq_lang.editor import Refused, Server
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 NODE_PATH = "btq.server.nodePath"
 XML = "btq.server.xml"
@@ -90,7 +90,7 @@ def register(server: Server) -> None:
             (place,) = places
             server.window_show_document(types.ShowDocumentParams(place.uri, take_focus=True, selection=place.range))
             return
-        from btq_lang.project import Project  # as above
+        from btq_lang.workspace.config import Project  # as above
 
         shown = Project(folders=session.folders).shown
         named = [f"{shown(convert.path(place.uri))}:{place.range.start.line + 1}" for place in places]

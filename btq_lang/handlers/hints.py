@@ -13,7 +13,7 @@ from btq_lang.handlers.commands import USES
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 SHOW_REFERENCES = "btq.showReferences"  # a command of the editor's, which opens its own list
 

@@ -13,7 +13,7 @@ from lsprotocol import types
 from btq_lang.editor import Server
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 
 def register(server: Server) -> None:

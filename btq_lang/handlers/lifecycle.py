@@ -62,7 +62,7 @@ def register(server: Server) -> None:
 
 
 def _work_in(session: Session, folders: tuple[str, ...]) -> None:
-    from btq_lang.loader import work_in  # an editor waits for the server to start
+    from btq_lang.workspace.loader import work_in  # an editor waits for the server to start
 
     session.folders = folders
     work_in(folders[0] if folders else "")
@@ -117,7 +117,9 @@ async def _first_check(server: Server) -> None:
 
 def _endings() -> tuple[str, ...]:
     """Of the names of files that missions and projects are read from."""
-    from btq_lang.file import SUFFIXES  # the parser comes with it, and an editor waits for the server to start
+    from btq_lang.workspace.file import (
+        SUFFIXES,  # the parser comes with it, and an editor waits for the server to start
+    )
 
     return *SUFFIXES, ".xml", "/btq.toml", "/pyproject.toml"
 

@@ -12,7 +12,7 @@ from btq_lang.editor import Refused, Server
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 
 def register(server: Server) -> None:

@@ -31,13 +31,13 @@ from btq_lang.requirements.model import (
     Use,
 )
 from btq_lang.requirements.paths import Problem
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.tree import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax.tree import Argument as WrittenArgument
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span as TextSpan
+from btq_lang.workspace.symbols import requirements_at
 
 if TYPE_CHECKING:
     from btq_lang.requirements.reader import Reader

@@ -49,8 +49,8 @@ from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 
 if TYPE_CHECKING:
-    from btq_lang.file import Definition
     from btq_lang.requirements.model import Sort
+    from btq_lang.workspace.file import Definition
 
 
 def resolve(reader: Reader, definition: Definition, written: WrittenRequirement, quality: str | None) -> Requirement:

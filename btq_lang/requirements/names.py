@@ -10,8 +10,8 @@ from functools import lru_cache
 from btq_lang.catalog.kinds import NodeKind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, spellings
-from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tree import Node
+from btq_lang.workspace.placeholders import is_placeholder
 
 
 def names_of(node: Node, kind: NodeKind | None, category: str | None) -> frozenset[str]:

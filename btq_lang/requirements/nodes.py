@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes
-from btq_lang.symbols import Symbol
 from btq_lang.syntax.tree import Model, Node, Tree
+from btq_lang.workspace.symbols import Symbol
 
 if TYPE_CHECKING:
-    from btq_lang.file import File
-    from btq_lang.workspace import Scope, Workspace
+    from btq_lang.workspace.file import File
+    from btq_lang.workspace.workspace import Scope, Workspace
 
 
 class Nodes:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
     from btq_lang.requirements.nodes import Nodes
     from btq_lang.util.text import Span
-    from btq_lang.workspace import Scope, Workspace
+    from btq_lang.workspace.workspace import Scope, Workspace
 
 
 class Problem(Record):

@@ -59,7 +59,7 @@ from btq_lang.util.text import Span
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Sort
     from btq_lang.requirements.nodes import Nodes
-    from btq_lang.workspace import Scope, Workspace
+    from btq_lang.workspace.workspace import Scope, Workspace
 
     # Of a temperature: 25 degC is a level, the difference of two levels is none, and K may be either.
     Level: TypeAlias = Literal["level", "difference", "either"]

@@ -13,17 +13,17 @@ from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Reader
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.symbols import Symbol
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Apply, Context, Operand, Tree, walk
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.syntax.tree import Signal as WrittenSignal
+from btq_lang.workspace.symbols import Symbol
 
 if TYPE_CHECKING:
-    from btq_lang.file import File
     from btq_lang.requirements.model import Applied, Condition, Requirement, Signal, Use
     from btq_lang.requirements.trees import TreeNodes
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.file import File
+    from btq_lang.workspace.workspace import Workspace
 
 
 def requirements(workspace: Workspace, path: str, memory: Memory | None = None) -> Requirements:

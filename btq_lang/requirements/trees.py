@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
-from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
+from btq_lang.workspace.placeholders import is_placeholder
 
 _TIMEOUT: Final = BUILTINS["Timeout"]
 

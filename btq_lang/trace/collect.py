@@ -14,7 +14,6 @@ from btq_lang.catalog.qualities import get, qualities
 from btq_lang.diagnostics.model import Place
 from btq_lang.graph.figure import Box, Note
 from btq_lang.graph.missions import arguments, by_tree, concerns, figure, said
-from btq_lang.placeholders import is_placeholder
 from btq_lang.requirements.model import Applied, Mission, Requirement, SourceNode, Span, Target, Total
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
@@ -34,7 +33,8 @@ from btq_lang.trace.overview import Total as TotalRow
 from btq_lang.trace.ways import declared_ways, is_hard
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.catalog.qualities import Edition

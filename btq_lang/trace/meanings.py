@@ -9,7 +9,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS, Edition, Quality, find, fold, get, successors
 from btq_lang.syntax.tree import Qualities, QualityDecl
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 class Meaning(Record):

@@ -9,14 +9,14 @@ from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.loader import shown
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.ways import declared_ways
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.loader import shown
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.trace.collect import SaidOf

@@ -12,7 +12,7 @@ from btq_lang.graph.missions import said
 from btq_lang.requirements.model import Applied, Requirement
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace.overview import Clause
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     # For each of `applied` of a mission's requirements, in its order, its clauses.

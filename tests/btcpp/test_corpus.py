@@ -17,8 +17,8 @@ from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 # What does not come back, and why.
 LOST = {

@@ -25,7 +25,7 @@ from btq_lang.btcpp.keys import Keys
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.script import check_script, parse_script
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 GOLDEN = sorted((ROOT / "tests" / "btcpp" / "golden").glob("enforce_*.btq"))

@@ -14,9 +14,9 @@ from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.project import Project
 from btq_lang.syntax.tree import Tree
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 VERSIONS = ("4.6", "4.8", "4.10")
 

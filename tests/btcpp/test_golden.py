@@ -16,7 +16,7 @@ from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import Enforcement, enforced
 from btq_lang.btcpp.export import export
 from btq_lang.util.text import LineIndex
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 GOLDEN = Path(__file__).parent / "golden"
 SOURCES = sorted(GOLDEN.glob("*.btq"))

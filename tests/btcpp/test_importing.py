@@ -18,7 +18,7 @@ from btq_lang.btcpp.reader import read
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
 from btq_lang.util.text import LineIndex, Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def assert_import(xml: str, btq: str, *changes: str, keep_v3: bool = True) -> None:

@@ -11,9 +11,9 @@ from btq_lang.btcpp.export import export
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.file import File
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 SKILLS = """\
 //- main.btq

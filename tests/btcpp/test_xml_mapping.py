@@ -10,7 +10,7 @@ import pytest
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = {name: (DOCS / name).read_text(encoding="utf-8") for name in ("xml-mapping.md", "enforcement.md")}

@@ -11,9 +11,9 @@ from btq_lang.btcpp.opening import open_workspace
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.project import Project
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 
 def test_includes_that_are_found() -> None:

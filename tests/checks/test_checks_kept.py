@@ -18,7 +18,7 @@ from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.syntax.tree import Entry, Include, Tree
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
 MAIN = """include "skills.btq"

@@ -6,7 +6,7 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
 from btq_lang.checks import check
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 SPEED = "signal speed : m/s from {speed} initially 0 m/s\n"
 

@@ -6,8 +6,8 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
 from btq_lang.checks import check
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 PICK = """\
 BehaviorTree Pick

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
 
-from btq_lang.project import Project
+from btq_lang.workspace.config import Project
 
 
 def node(quality: str, head: str = "") -> str:

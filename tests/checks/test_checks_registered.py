@@ -13,7 +13,7 @@ from btq_lang.checks import CHECKS, checks_of
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import rules
 from btq_lang.syntax.tree import Entry, Model
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PAGES = sorted(Path(rules.__file__).parent.glob("*.md"))

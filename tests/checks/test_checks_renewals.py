@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.checks import check
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 RULE = "guard-never-renewed"
 GUARD = "signal n : 1 from {level} initially 0\nQualityReq q\n    A keeps n <= 3\n    on violation halt\n"

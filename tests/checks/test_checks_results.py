@@ -13,7 +13,7 @@ from btq_lang.checks.results import Results, result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 IDLE = 0
 

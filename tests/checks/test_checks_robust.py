@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.lexer import tokens
-from btq_lang.project import Project
 from btq_lang.util.record import replace
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SUFFIXES = (".btq", ".qualitybtcpp")

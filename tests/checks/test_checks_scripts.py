@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from check_asserts import findings, fixes, problems
 
-from btq_lang.project import Project
+from btq_lang.workspace.config import Project
 
 RULES = ("script-error", "empty-script", "script-version")
 

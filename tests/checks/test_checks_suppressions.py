@@ -7,7 +7,7 @@ from check_asserts import assert_clean, assert_fix, assert_problems
 
 from btq_lang.checks import check_again
 from btq_lang.checks.answers import Answers
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 RETY = "warning unknown-node «Rety» unknown node `Rety`; did you mean `Retry`?"
 

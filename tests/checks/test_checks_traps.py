@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from check_asserts import after, findings, problems
 
-from btq_lang.project import Project
+from btq_lang.workspace.config import Project
 
 TRAPS = (
     *("reactive-multiple-async", "one-shot-monitor", "while-skip-is-success", "unreachable-child"),

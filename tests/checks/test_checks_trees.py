@@ -7,7 +7,7 @@ import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, problems
 
 from btq_lang.catalog.kinds import VERSIONS
-from btq_lang.project import Project
+from btq_lang.workspace.config import Project
 
 PICK = "BehaviorTree Pick\n    X\n"
 

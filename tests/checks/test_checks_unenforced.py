@@ -12,7 +12,7 @@ from mission_strategies import missions
 from btq_lang.btcpp.enforcement import how_held
 from btq_lang.checks import check
 from btq_lang.requirements.resolve import requirements
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 RULE = "not-enforced"
 GOLDEN = sorted((Path(__file__).parents[1] / "btcpp" / "golden").glob("*.btq"))

@@ -9,7 +9,7 @@ import pytest
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.util.text import LineIndex
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 PATH = "/original/paper_example.qualitybtcpp"
 

@@ -18,7 +18,7 @@ from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
 from btq_lang.catalog.verdicts import VERDICTS
 from btq_lang.evidence.verdicts import WORST_FIRST
-from btq_lang.project import parse_project
+from btq_lang.workspace.config import parse_project
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"

@@ -15,7 +15,7 @@ import pytest
 from btq_lang.diff import as_json, as_markdown, as_text
 from btq_lang.diff.comparison import Comparison, Side, compared
 from btq_lang.diff.matching import common
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 OLD = dedent("""\
     signal battery : % from {level}

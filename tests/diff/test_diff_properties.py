@@ -13,7 +13,7 @@ from missions import mission
 
 from btq_lang.diff import Change, compare
 from btq_lang.formatter import format_text
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 INNER = ("->", "?", "R->")
 LEAVES = ("Pick", "Place", "MoveBase")

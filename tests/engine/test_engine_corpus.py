@@ -17,7 +17,7 @@ from engine_loader import Answer, Engine, job, stubs_of
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 STAGES = {"OK": "done", "LOAD": "load", "CREATE": "create"}
 MISSING_INCLUDE = "Error parsing the XML: Error=XML_ERROR_FILE_NOT_FOUND"

@@ -23,7 +23,7 @@ from btq_lang.btcpp.enforcement import enforced
 from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 Parts = Mapping[str, Sequence[Any]]
 

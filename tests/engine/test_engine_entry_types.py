@@ -7,7 +7,7 @@ from mixed_types import CASES, mission
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def test_the_engine_refuses_what_the_rule_tells(engine: Engine) -> None:

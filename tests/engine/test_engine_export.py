@@ -22,11 +22,11 @@ from btq_lang.catalog.nodes import xml_tag
 from btq_lang.checks import check
 from btq_lang.cli import main
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.placeholders import is_placeholder
-from btq_lang.project import Project
 from btq_lang.syntax.tree import Node as Written
 from btq_lang.syntax.tree import Tree
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted(folder.name for folder in (ROOT / "examples").iterdir() if folder.is_dir())

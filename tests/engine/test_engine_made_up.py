@@ -15,8 +15,8 @@ from btq_lang.btcpp.export import export
 from btq_lang.checks import check
 from btq_lang.cli import main
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 # What only the tick shows and the mission has brought about itself: a port reads an entry that nobody has written, the
 # condition of a WhileDoElse or an IfThenElse is skipped.

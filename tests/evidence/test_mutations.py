@@ -28,8 +28,8 @@ from btq_lang.evidence.readers import NotALog, read
 from btq_lang.evidence.readers.samples import NoSamples
 from btq_lang.evidence.readers.samples import read as read_samples
 from btq_lang.evidence.runs import activations
-from btq_lang.project_evidence import SignalSource
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.project_evidence import SignalSource
+from btq_lang.workspace.workspace import Workspace
 
 TWO_RUNS = rows("0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I")
 CHANGES = tree_log(TWO_RUNS, names_of(MAIN_XML))

@@ -9,7 +9,7 @@ from evidence_logs import START, Verify, as_logged, btlog
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.export import export
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 PAGE = (Path(__file__).parents[2] / "docs" / "evidence.md").read_text(encoding="utf-8")
 

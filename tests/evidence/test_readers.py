@@ -17,7 +17,7 @@ from btq_lang.evidence import verify as verify_logs
 from btq_lang.evidence.identity import Candidate
 from btq_lang.evidence.readers import read
 from btq_lang.evidence.runs import activations
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 TWO_RUNS = "0 1R 2R 5 2S 3S 1S 2I 3I 1I 20 1R 2R 30 2F 1F 2I 1I"
 DEMANDS = "QualityReq rq : safety\n    Move needs battery > 1 %\n    Move takes at most 6 ms\n"

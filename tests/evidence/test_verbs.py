@@ -15,7 +15,7 @@ from btq_lang.parser import parse
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim
 from btq_lang.syntax.tree import Requirement as RequirementItem
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 LEVEL = "signal battery : % from {battery_level} level"
 FRESH = f"{LEVEL} fresh within 10 ms"

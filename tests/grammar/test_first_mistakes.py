@@ -16,7 +16,7 @@ from check_asserts import MAIN, after, show
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 Case = tuple[str, str, str | None]  # a mission, its diagnostic with the notes, and the mission after the fix
 

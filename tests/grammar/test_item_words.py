@@ -6,10 +6,10 @@ import random
 
 import pytest
 
-from btq_lang.file import File
 from btq_lang.grammar.item_words import item_word_meant, read_as
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Include
+from btq_lang.workspace.file import File
 
 PIECES = (
     *("enclude", "Include", "inclde", "incldue", "inc", "lude", "_", "-", "?", "1", "ä", "$", "import"),

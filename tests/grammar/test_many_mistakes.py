@@ -10,7 +10,7 @@ import pytest
 from btq_lang.checks import check, check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.render import Finding, Report, render
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 MAIN = "main.btq"
 FEW, MANY = 200, 1_000

@@ -10,7 +10,7 @@ import pytest
 
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.util.text import LineIndex, Position, Span, changed
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
 IN_ROOT = (

@@ -19,7 +19,7 @@ from btq_lang.graph.missions import figures
 from btq_lang.graph.picture import picture, places
 from btq_lang.graph.placing import Drawing, Rectangle, place
 from btq_lang.graph.widths import shortened, width, wrapped
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 SVG = "{http://www.w3.org/2000/svg}"

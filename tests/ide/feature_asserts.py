@@ -41,10 +41,10 @@ from btq_lang.features.signature import signature_help
 from btq_lang.features.structure import document_links, folding_ranges, selection_range
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.parser import parse
-from btq_lang.project import Project
 from btq_lang.syntax.tokens import BLANK, CLOSE, DEDENT, ERROR, INDENT, NEWLINE, OPEN
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 _TAG = re.compile(r"\$0|</?([a-z]+)>")
 

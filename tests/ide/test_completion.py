@@ -19,7 +19,7 @@ from feature_asserts import (
 from btq_lang.features.completion import complete
 from btq_lang.features.snippets import item_snippets, node_snippets
 from btq_lang.parser import parse
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 FILES = """//- main.btq
 signal battery : % from {battery_level}

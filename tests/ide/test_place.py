@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from btq_lang.features import complete, place
-from btq_lang.file import File
 from btq_lang.syntax.tokens import Token
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MISSIONS = [str(path.relative_to(EXAMPLES)) for path in sorted(EXAMPLES.rglob("*.btq"))]

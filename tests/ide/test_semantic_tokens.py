@@ -12,7 +12,7 @@ from btq_lang.features.colours import Change, colours, delta
 from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.util.text import LINE_END, LineIndex, Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 AROUND_COMMENTS = (
     *("\n#", "\n# why", "\n    # why", "# why", "//", "/*", "*/", "#", '"', "'", "(", ")", "{", "=", ":", "\n", "\r"),

@@ -19,9 +19,9 @@ from lsprotocol import types
 from btq_lang.convert import Converter
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.editor import Server
-from btq_lang.findings import Findings
 from btq_lang.util.text import Span
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.workspace import Workspace
 
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n"
 RIGHT = WRONG.replace("Sequnce", "Sequence")

@@ -40,7 +40,7 @@ ROWS = (
     ("__main__",),
 )
 ROW_OF = {room: row for row, rooms in enumerate(ROWS) for room in rooms}
-READS_THE_DISK = {"loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
+READS_THE_DISK = {"workspace/loader.py", "diagnostics/rules/__init__.py", "preview/__init__.py"}
 READS_LOGS = "evidence/readers/"
 # Which rooms know a package of others.
 ONLY_IN = {"lxml": {"btcpp"}, "pygls": {"lsp", "server"}, "lsprotocol": {"lsp", "server"}}
@@ -121,7 +121,7 @@ def test_only_the_edges_open_files(path: Path) -> None:
 def test_a_file_without_clauses_needs_no_requirements() -> None:
     text = 'QualityReq rq1 "In time"\nBehaviorTree Main\n    Action Drive satisfies rq1\n'
     program = (
-        "import sys; from btq_lang.checks import check; from btq_lang.workspace import Workspace\n"
+        "import sys; from btq_lang.checks import check; from btq_lang.workspace.workspace import Workspace\n"
         f"assert check(Workspace.of({{'a.btq': {text!r}}}), 'a.btq') == ()\n"
         "print([name for name in sys.modules if name.startswith('btq_lang.requirements')])"
     )
@@ -142,16 +142,22 @@ def test_no_module_is_named_as_one_of_the_standard_library() -> None:
         (
             "import btq_lang.cli; btq_lang.cli.main(['check', 'examples/laboratory'])",
             {"pygls", "lsprotocol", "lxml", "dataclasses", "inspect", "pathlib", "json", "asyncio", "multiprocessing"}
-            | {"argparse", "ast", "btq_lang.fixes", "btq_lang.render.full"},
+            | {"argparse", "ast", "btq_lang.workspace.fixes", "btq_lang.render.full"},
         ),
         (
             "import btq_lang.commands.arguments",
-            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.catalog", "btq_lang.requirements", "dataclasses"},
+            {
+                "btq_lang.parser",
+                "btq_lang.workspace.workspace",
+                "btq_lang.catalog",
+                "btq_lang.requirements",
+                "dataclasses",
+            },
         ),
         ("import btq_lang.cli; btq_lang.cli.main(['--version'])", {"argparse", "btq_lang.parser"}),
         (
             "import site; site.main(); import btq_lang.server",  # what an editor waits for
-            {"btq_lang.parser", "btq_lang.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
+            {"btq_lang.parser", "btq_lang.workspace.workspace", "btq_lang.checks", "btq_lang.catalog", "lxml"},
         ),
     ],
 )

@@ -12,11 +12,11 @@ import pytest
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.file import File
 from btq_lang.formatter import format_text
-from btq_lang.loader import find_project, load
 from btq_lang.parser import parse
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.file import File
+from btq_lang.workspace.loader import find_project, load
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*") if path.suffix in (".btq", ".qualitybtcpp"))

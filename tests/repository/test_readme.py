@@ -11,7 +11,7 @@ import pytest
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "examples").glob("**/*.md"))]

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import btq_lang as btq
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 AVOIDED = re.compile(

@@ -29,7 +29,7 @@ from btq_lang.requirements.model import (
 )
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def resolved(text: str) -> Requirements:

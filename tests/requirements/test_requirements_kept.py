@@ -18,7 +18,7 @@ from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 MAIN = """include "skills.btq"
 include "requirements.btq"

@@ -29,7 +29,7 @@ from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.resolve import requirements
 from btq_lang.trace import write as write_overview
 from btq_lang.trace.collect import collect
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 MAIN = "main.btq"
 

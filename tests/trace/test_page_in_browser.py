@@ -26,7 +26,7 @@ from btq_lang.trace import write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.missions import built_ways
 from btq_lang.trace.overview import Overview
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 

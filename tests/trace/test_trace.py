@@ -16,14 +16,14 @@ from worked_mission import WORKED
 from btq_lang.btcpp.opening import open_workspace
 from btq_lang.cli import main
 from btq_lang.graph.svg import _COLOURS
-from btq_lang.project import Project
 from btq_lang.render.cells import laid_out
 from btq_lang.trace import FORMATS, write
 from btq_lang.trace.collect import collect
 from btq_lang.trace.meanings import Meanings
 from btq_lang.trace.overview import Clause, Overview
 from btq_lang.trace.page_parts import PAGE_STYLE
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.workspace import Workspace
 
 ROOT = Path(__file__).resolve().parents[2]
 

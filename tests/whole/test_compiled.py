@@ -29,7 +29,7 @@ from btq_lang import checks, parser
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.script import parser as script
 from btq_lang.features.colours import colours
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 def told(part):
     if type(part) in (list, tuple):

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from layouts import relaid
 
-from btq_lang.comments import Comment, Comments, comments
 from btq_lang.lexer import tokens
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import COMMENT
+from btq_lang.workspace.comments import Comment, Comments, comments
 
 PLACES = ("before", "within", "behind", "first", "last")
 

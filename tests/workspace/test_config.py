@@ -10,8 +10,15 @@ from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
-from btq_lang.project import Project, configured, has_btq_table, include_candidates, parse_project, unknown_rule
 from btq_lang.util.text import LineIndex, Span
+from btq_lang.workspace.config import (
+    Project,
+    configured,
+    has_btq_table,
+    include_candidates,
+    parse_project,
+    unknown_rule,
+)
 
 WHOLE = """\
 engine = "4.8"

@@ -15,10 +15,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang import loader
-from btq_lang.loader import LoadProblem, collect, find_project, load, read, shown, stamp, write_whole
-from btq_lang.project import Project
 from btq_lang.util.text import Position
+from btq_lang.workspace import loader
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.loader import LoadProblem, collect, find_project, load, read, shown, stamp, write_whole
 
 WINDOWS = sys.platform == "win32"
 NO_LINKS = pytest.mark.skipif(WINDOWS, reason="making links needs rights on Windows")

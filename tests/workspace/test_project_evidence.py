@@ -6,8 +6,8 @@ import pytest
 from test_config import problems
 
 from btq_lang.catalog.units import parse_unit
-from btq_lang.project import parse_project
-from btq_lang.project_evidence import Evidence, SignalSource
+from btq_lang.workspace.config import parse_project
+from btq_lang.workspace.project_evidence import Evidence, SignalSource
 
 WHOLE = """\
 [evidence]

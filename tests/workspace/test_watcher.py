@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btq_lang.watch import INTERVAL, watch
+from btq_lang.workspace.watcher import INTERVAL, watch
 
 
 class Stop(Exception):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.file import File
-from btq_lang.project import Project
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.config import Project
+from btq_lang.workspace.file import File
+from btq_lang.workspace.workspace import Workspace
 
 FILES = {
     "/p/requirements.btq": 'QualityReq fast : time-behaviour "In time"\n    takes at most 30 s\nsignal battery : %\n',

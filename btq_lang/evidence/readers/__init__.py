@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from btq_lang.evidence.model import NamedLog, Session
-    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace.project_evidence import SignalSource
 
 SUFFIXES: Final = (".btlog", ".db3", ".btdb", ".mcap")  # of what is read below a folder
 

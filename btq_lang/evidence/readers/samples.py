@@ -17,7 +17,7 @@ from btq_lang.util.spelling import did_you_mean, near
 
 if TYPE_CHECKING:
     from btq_lang.evidence.model import SampleValue
-    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace.project_evidence import SignalSource
 
 
 class NoSamples(Exception):

@@ -7,8 +7,8 @@ import os
 from collections.abc import Iterator, Sequence
 
 from btq_lang.btcpp.side_file import SIDE_SUFFIX
-from btq_lang.loader import absolute, read
 from btq_lang.util.record import Record
+from btq_lang.workspace.loader import absolute, read
 
 
 class SideFile(Record):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from btq_lang.evidence.model import SampleValue
-    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace.project_evidence import SignalSource
 
     Times = NDArray[int64]
 

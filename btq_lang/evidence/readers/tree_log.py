@@ -18,7 +18,7 @@ from btq_lang.evidence.readers.topics import Clock, Topics
 from btq_lang.evidence.readers.tree import NotALog, read_tree
 
 if TYPE_CHECKING:
-    from btq_lang.project_evidence import SignalSource
+    from btq_lang.workspace.project_evidence import SignalSource
 
 
 def read(path: str, sources: Iterable[SignalSource] = ()) -> Iterator[NamedLog]:

@@ -12,21 +12,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from btq_lang.facts import Facts, Names, Tally
 from btq_lang.grammar.item_words import may_include
 from btq_lang.parser import Parsed, parse, reparse
 from btq_lang.syntax.tree import Entry, Include, Item
 from btq_lang.util.record import Record
 from btq_lang.util.text import LineIndex, Span, changed
+from btq_lang.workspace.item_index import Facts, Names, Tally
 
 if TYPE_CHECKING:
     from btq_lang.catalog.name_kinds import Kind
     from btq_lang.diagnostics.model import Diagnostic, Place
-    from btq_lang.facts import Name
-    from btq_lang.mentions import Mention
-    from btq_lang.project import Project
-    from btq_lang.symbols import Summary, Symbol
     from btq_lang.util.source_map import Places
+    from btq_lang.workspace.config import Project
+    from btq_lang.workspace.item_index import Name
+    from btq_lang.workspace.references import Mention
+    from btq_lang.workspace.symbols import Summary, Symbol
 
     Kept = TypeVar("Kept", bound=Item)
 

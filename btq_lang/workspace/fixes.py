@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.util.text import Edit, Span, apply_edits
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.workspace import Workspace
 
 
 def fixed(workspace: Workspace, found: Mapping[str, Sequence[Diagnostic]]) -> tuple[dict[str, str], int]:

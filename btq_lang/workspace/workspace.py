@@ -16,16 +16,16 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.file import Definition, File, is_of_package
-from btq_lang.project import Project, include_candidates
-from btq_lang.symbols import Use
 from btq_lang.syntax.tree import Entry, Include, Root, Word
 from btq_lang.util.record import Record
+from btq_lang.workspace.config import Project, include_candidates
+from btq_lang.workspace.file import Definition, File, is_of_package
+from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
-    from btq_lang.facts import Name, Names
-    from btq_lang.file import Origin
     from btq_lang.util.text import Span
+    from btq_lang.workspace.file import Origin
+    from btq_lang.workspace.item_index import Name, Names
 
 
 class Workspace:

@@ -31,7 +31,7 @@ from btq_lang.util.text import LineIndex, Position
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.project_evidence import Evidence
+    from btq_lang.workspace.project_evidence import Evidence
 
 Kind: TypeAlias = "Literal['btq.toml', 'pyproject.toml']"
 PROJECT_FILES: tuple[Kind, ...] = ("btq.toml", "pyproject.toml")  # the first of those in a folder counts
@@ -236,7 +236,7 @@ def _severities(key: str, value: object) -> _Read:
 
 
 def _evidence(key: str, value: object) -> _Read:
-    from btq_lang.project_evidence import read_evidence  # few projects have logs
+    from btq_lang.workspace.project_evidence import read_evidence  # few projects have logs
 
     found, complaints = read_evidence(value)
     return found, [_Complaint(message, below) for message, below in complaints]

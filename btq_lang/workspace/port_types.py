@@ -18,8 +18,8 @@ from btq_lang.syntax.tree import Model, Node, Pair, Port, Tree
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.file import Definition
-    from btq_lang.workspace import Scope
+    from btq_lang.workspace.file import Definition
+    from btq_lang.workspace.workspace import Scope
 
 
 class Meeting(Record):

@@ -13,11 +13,11 @@ from itertools import chain
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.symbols import Summary, Symbol, asked_for, summarize
 from btq_lang.syntax.tree import Item, Model, Signal, Tree
+from btq_lang.workspace.symbols import Summary, Symbol, asked_for, summarize
 
 if TYPE_CHECKING:
-    from btq_lang.mentions import Mention
+    from btq_lang.workspace.references import Mention
 
 Name: TypeAlias = tuple[Kind, str]
 
@@ -44,14 +44,14 @@ class Facts:
     @cached_property
     def mentions(self) -> tuple[Mention, ...]:
         """Every word of it that names something."""
-        from btq_lang.mentions import mentions  # only editors ask
+        from btq_lang.workspace.references import mentions  # only editors ask
 
         return mentions(self.item)
 
     @cached_property
     def kinds(self) -> frozenset[tuple[str, bool]]:
         """What its nodes are, and whether that is quoted."""
-        from btq_lang.mentions import kinds  # as above
+        from btq_lang.workspace.references import kinds  # as above
 
         nodes = self.item.walk() if isinstance(self.item, Tree) else ()
         return frozenset([(word.text, word.quoted) for node in nodes for word in kinds(node)])

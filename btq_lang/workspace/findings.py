@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 
 if TYPE_CHECKING:
-    from btq_lang.workspace import Workspace
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Told:

@@ -14,14 +14,14 @@ from btq_lang.catalog.literals import check_literal
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name, legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, xml_tag
-from btq_lang.placeholders import is_placeholder
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Node, Tree, Word
 from btq_lang.util.record import Record
-from btq_lang.workspace import Workspace
+from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.file import File
+    from btq_lang.workspace.file import File
 
 
 class LikelyPort(Record):

@@ -16,7 +16,6 @@ from typing import TypeAlias
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
-from btq_lang.symbols import requirements_at
 from btq_lang.syntax.tokens import BRACED, NAME, NUMBER, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Amount,
@@ -53,6 +52,7 @@ from btq_lang.syntax.tree import (
 )
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
+from btq_lang.workspace.symbols import requirements_at
 
 
 class What(Enum):

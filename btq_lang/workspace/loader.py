@@ -14,10 +14,10 @@ import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import BinaryIO
 
-from btq_lang.file import SUFFIXES
-from btq_lang.project import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
 from btq_lang.util.record import Record, replace
 from btq_lang.util.text import LineIndex, Position
+from btq_lang.workspace.config import PROJECT_FILES, Project, has_btq_table, include_candidates, parse_project
+from btq_lang.workspace.file import SUFFIXES
 
 _SKIPPED_FOLDERS = frozenset({"build", "node_modules"})  # besides the hidden ones: .git, .venv
 IS_SPECIAL = "cannot be read: expected a regular file, found a pipe or a device"
