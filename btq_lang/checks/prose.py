@@ -14,7 +14,7 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
-    from btq_lang.constraints import Constraint
+    from btq_lang.requirements.constraints import Constraint
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -62,7 +62,7 @@ def _all_without_claims(view: View) -> dict[int, set[str]]:
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
     """The clause that stands for prose; a condition of a requirement needs but its verb."""
     from btq_lang.checks.wording import as_clause  # few requirements are prose
-    from btq_lang.constraints import clauses_of
+    from btq_lang.requirements.constraints import clauses_of
 
     text = " ".join(constraint.text.split()).rstrip(".")
     condition = f"{'never' if constraint.violates else 'keeps'} {text}"

@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from btq_lang.checks.answers import Answers
     from btq_lang.checks.entries import Mention
     from btq_lang.checks.ports import KnownPorts
-    from btq_lang.constraints import Constraint
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.requirements.budgets import Budgets
+    from btq_lang.requirements.constraints import Constraint
     from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.resolved import Requirements
     from btq_lang.syntax.script import Script
@@ -412,7 +412,10 @@ class View:
         """What stands behind SuccessIf and FailureIf in a description, and whether it is more than prose."""
         if requirement.text is None or requirement.clauses:
             return ()
-        from btq_lang.constraints import can_be_checked, constraints  # requirements with clauses need none of it
+        from btq_lang.requirements.constraints import (  # requirements with clauses need none of it
+            can_be_checked,
+            constraints,
+        )
 
         names = _NodeNames(self)
         return tuple([(each, can_be_checked(each.text, names)) for each in constraints(requirement.text)])

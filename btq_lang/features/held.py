@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from btq_lang.btcpp.enforcement import Held, how_held, unasked
-from btq_lang.constraints import constraints
+from btq_lang.requirements.constraints import constraints
 from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
 from btq_lang.workspace.file import Definition, is_btq
 from btq_lang.workspace.workspace import Workspace

