@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from btq_lang.btcpp.importing import Imported, import_xml
     from btq_lang.btcpp.opening import open_workspace
-    from btq_lang.building import Built, build
     from btq_lang.checks import check
+    from btq_lang.commands.building import Built, build
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.diff.changes import Change
     from btq_lang.diff.comparison import diff_missions
@@ -64,7 +64,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Built": "building",
+    "Built": "commands.building",
     "Change": "diff.changes",
     "Diagnostic": "diagnostics.model",
     "Imported": "btcpp.importing",
@@ -78,7 +78,7 @@ _HOMES = {
     "Verification": "evidence.verifying",
     "Workspace": "workspace.workspace",
     "__version__": "util.version",
-    "build": "building",
+    "build": "commands.building",
     "check": "checks",
     "diff_missions": "diff.comparison",
     "draw_tree": "graph.missions",

@@ -336,7 +336,7 @@ def _add_init(commands: _SubParsersAction[Parser]) -> None:
 
 
 def _add_completion(commands: _SubParsersAction[Parser]) -> None:
-    from btq_lang.shell import SHELLS
+    from btq_lang.commands.shell import SHELLS
 
     parser = _command(
         commands,

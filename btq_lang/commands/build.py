@@ -14,7 +14,7 @@ from btq_lang.btcpp.marks import is_generated
 from btq_lang.btcpp.outputs import Output, Places, outputs, sources, without_tree
 from btq_lang.btcpp.side_file import is_side_file, side_path
 from btq_lang.btcpp.source import Remark
-from btq_lang.building import errors, for_target
+from btq_lang.commands.building import errors, for_target
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem
 from btq_lang.commands.left_over import left_over
 from btq_lang.diagnostics.model import Place

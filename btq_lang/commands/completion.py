@@ -6,8 +6,8 @@ import sys
 from argparse import Namespace
 
 from btq_lang.commands.arguments import build_parser
+from btq_lang.commands.shell import completion_script
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.shell import completion_script
 
 
 def run(options: Namespace) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from btq_lang.shell import SHELLS, completion_script
+from btq_lang.commands.shell import SHELLS, completion_script
 
 
 def parser() -> argparse.ArgumentParser:

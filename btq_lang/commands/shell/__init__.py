@@ -61,19 +61,19 @@ def completion_script(
     """
     commands = tuple(_commands(parser, parser.prog, choices or {}))
     if shell == "bash":
-        from btq_lang.shell import bash
+        from btq_lang.commands.shell import bash
 
         return bash.script(commands)
     if shell == "zsh":
-        from btq_lang.shell import zsh
+        from btq_lang.commands.shell import zsh
 
         return zsh.script(commands)
     if shell == "fish":
-        from btq_lang.shell import fish
+        from btq_lang.commands.shell import fish
 
         return fish.script(commands)
     if shell == "powershell":
-        from btq_lang.shell import powershell
+        from btq_lang.commands.shell import powershell
 
         return powershell.script(commands)
     raise ValueError(f"no completion for {shell!r}; expected one of {', '.join(SHELLS)}")
