@@ -22,12 +22,12 @@ from btq_lang.protocol import Json, Plain
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span
 
 if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
-    from btq_lang.features.actions import Action
-    from btq_lang.features.completion import Completion
-    from btq_lang.features.hover import Hover
-    from btq_lang.features.outline import Match, Outline
-    from btq_lang.features.signature import Signature
-    from btq_lang.features.structure import Fold
+    from btq_lang.ide.actions import Action
+    from btq_lang.ide.completion import Completion
+    from btq_lang.ide.hover import Hover
+    from btq_lang.ide.outline import Match, Outline
+    from btq_lang.ide.signature import Signature
+    from btq_lang.ide.structure import Fold
     from btq_lang.workspace.findings import Findings
     from btq_lang.workspace.loader import LoadProblem
     from btq_lang.workspace.workspace import Workspace

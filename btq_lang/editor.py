@@ -23,7 +23,8 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
-from btq_lang import failures, features
+from btq_lang import failures
+from btq_lang import ide as features
 from btq_lang.convert import Converter
 from btq_lang.protocol import Json, Messages, Protocol
 from btq_lang.session import Session
@@ -31,7 +32,7 @@ from btq_lang.util.version import __version__
 from btq_lang.workspace.findings import Findings
 
 if TYPE_CHECKING:
-    from btq_lang.features import Colours
+    from btq_lang.ide import Colours
     from btq_lang.workspace.workspace import Workspace
 
 T = TypeVar("T")

@@ -20,9 +20,9 @@ from statistics import median
 from lsp_editor import Editor, Message, part
 
 from btq_lang.checks import check
-from btq_lang.features.colours import colours
-from btq_lang.features.completion import complete
-from btq_lang.features.outline import Outline, document_symbols
+from btq_lang.ide.colours import colours
+from btq_lang.ide.completion import complete
+from btq_lang.ide.outline import Outline, document_symbols
 from btq_lang.util.text import LineIndex, Position
 from btq_lang.workspace.workspace import Workspace
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from btq_lang.features.actions import code_actions
-from btq_lang.features.completion import complete
-from btq_lang.features.on_type import on_type
-from btq_lang.features.rename import Refusal, rename
 from btq_lang.formatter import format_text
+from btq_lang.ide.actions import code_actions
+from btq_lang.ide.completion import complete
+from btq_lang.ide.on_type import on_type
+from btq_lang.ide.rename import Refusal, rename
 from btq_lang.session import Session
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace.workspace import Workspace

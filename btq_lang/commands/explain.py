@@ -15,7 +15,7 @@ from btq_lang.catalog.qualities import Quality, find, parts, qualities, siblings
 from btq_lang.catalog.units import Unit, dimension_name, nearest_units, parse_unit, symbols
 from btq_lang.catalog.verdicts import VERDICTS, Verdict
 from btq_lang.diagnostics.rules import RULES, page
-from btq_lang.features.describe import in_si, si_symbol
+from btq_lang.ide.describe import in_si, si_symbol
 from btq_lang.render.colour import wants_colour
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import is_name, quote

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from btq_lang import features
+from btq_lang import ide as features
 from btq_lang.editor import Server
 from btq_lang.protocol import Plain
 

@@ -6,9 +6,9 @@ import asyncio
 
 from lsprotocol import types
 
-from btq_lang import features
+from btq_lang import ide as features
 from btq_lang.editor import Server
-from btq_lang.features.legend import MODIFIERS, TYPES
+from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.protocol import Json, Plain
 
 

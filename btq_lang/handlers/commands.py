@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from btq_lang import features
+from btq_lang import ide as features
 from btq_lang.editor import Refused, Server
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from functools import partial
 
 from lsprotocol import types
 
-from btq_lang import features
+from btq_lang import ide as features
 from btq_lang.convert import markdown
 from btq_lang.editor import Server
 from btq_lang.protocol import Json

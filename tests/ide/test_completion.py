@@ -16,8 +16,8 @@ from feature_asserts import (
     check_offers,
 )
 
-from btq_lang.features.completion import complete
-from btq_lang.features.snippets import item_snippets, node_snippets
+from btq_lang.ide.completion import complete
+from btq_lang.ide.snippets import item_snippets, node_snippets
 from btq_lang.parser import parse
 from btq_lang.workspace.workspace import Workspace
 

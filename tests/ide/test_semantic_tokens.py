@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 from feature_asserts import check_delta, check_tokens, decoded
 
-from btq_lang.features.colours import Change, colours, delta
+from btq_lang.ide.colours import Change, colours, delta
 from btq_lang.lexer import tokens
 from btq_lang.syntax.tokens import COMMENT
 from btq_lang.util.text import LINE_END, LineIndex, Span

@@ -14,17 +14,17 @@ import pytest
 from lsp_editor import Editor, Message
 from typist import Typist
 
-from btq_lang.features.calls import prepare_calls
-from btq_lang.features.colours import colours
-from btq_lang.features.completion import complete
-from btq_lang.features.hints import code_lenses, inlay_hints
-from btq_lang.features.hover import hover
-from btq_lang.features.navigation import find_references, goto_definition, highlights
-from btq_lang.features.on_type import linked_ranges
-from btq_lang.features.outline import document_symbols, workspace_symbols
-from btq_lang.features.rename import prepare_rename
-from btq_lang.features.signature import signature_help
-from btq_lang.features.structure import document_links, folding_ranges, selection_range
+from btq_lang.ide.calls import prepare_calls
+from btq_lang.ide.colours import colours
+from btq_lang.ide.completion import complete
+from btq_lang.ide.hints import code_lenses, inlay_hints
+from btq_lang.ide.hover import hover
+from btq_lang.ide.navigation import find_references, goto_definition, highlights
+from btq_lang.ide.on_type import linked_ranges
+from btq_lang.ide.outline import document_symbols, workspace_symbols
+from btq_lang.ide.rename import prepare_rename
+from btq_lang.ide.signature import signature_help
+from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 from btq_lang.session import Session
 from btq_lang.util.text import Span
 

@@ -616,7 +616,7 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
         server.check_soon(server.session.edit(path, WRONG))  # all is there already
         await asyncio.sleep(0.05)
 
-    monkeypatch.setattr("btq_lang.features.getting_ready", making, raising=False)
+    monkeypatch.setattr("btq_lang.ide.getting_ready", making, raising=False)
     asyncio.run(type_meanwhile())
     assert steps == [WRONG] * 3 + [RIGHT] * 100
 
@@ -648,7 +648,7 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
         while len(steps) < 100:
             await asyncio.sleep(0)
 
-    monkeypatch.setattr("btq_lang.features.getting_ready", making, raising=False)
+    monkeypatch.setattr("btq_lang.ide.getting_ready", making, raising=False)
     asyncio.run(ask_meanwhile())
 
 
@@ -669,10 +669,8 @@ def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
         while "the rest" not in made:
             await asyncio.sleep(0)
 
-    monkeypatch.setattr("btq_lang.features.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
-    monkeypatch.setattr(
-        "btq_lang.features.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False
-    )
+    monkeypatch.setattr("btq_lang.ide.making", lambda *_: iter(made.append("tokens") or ()), raising=False)
+    monkeypatch.setattr("btq_lang.ide.getting_ready", lambda *_: iter(made.append("the rest") or ()), raising=False)
     asyncio.run(pause())
     assert made == [*["tokens"] * asks, "the rest"]
 
@@ -1040,7 +1038,7 @@ def test_lines_end_where_editors_end_them(editor: Editor) -> None:
 
 def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: Path) -> None:
     program = (
-        "import btq_lang.features as features\n"
+        "import btq_lang.ide as features\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
         "features.explain = broken\n"
         "from btq_lang.server import main; main([])\n"
@@ -1092,7 +1090,7 @@ def test_a_request_that_cannot_be_read_is_answered(tmp_path: Path) -> None:
 
 def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:
     program = (
-        "import btq_lang.features as features\n"
+        "import btq_lang.ide as features\n"
         "features.explain = lambda *_: print('Content-Length: 3')\n"
         "from btq_lang.server import main; main([])\n"
     )
@@ -1105,7 +1103,7 @@ def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:
 
 def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> None:
     program = (
-        "import btq_lang.features as features\n"
+        "import btq_lang.ide as features\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
         "features.signature_help = broken\n"
         "from btq_lang.server import main; main([])\n"
@@ -1244,7 +1242,8 @@ def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(mon
 # A server that says what it does, and for which every file takes a minute to check.
 SLOW = """
 import sys
-from btq_lang import editor, features, session
+from btq_lang import editor, session
+from btq_lang import ide as features
 editor.MOST_REST = 60
 check, complete = session.Session.findings, features.complete
 def slow(self, path):

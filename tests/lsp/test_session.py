@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from btq_lang.convert import Converter
-from btq_lang.features.colours import Change, Colours, colours, delta
-from btq_lang.features.completion import complete
-from btq_lang.features.navigation import find_references
-from btq_lang.features.outline import document_symbols
+from btq_lang.ide.colours import Change, Colours, colours, delta
+from btq_lang.ide.completion import complete
+from btq_lang.ide.navigation import find_references
+from btq_lang.ide.outline import document_symbols
 from btq_lang.session import Session
 
 MAIN = """include "skills.btq"

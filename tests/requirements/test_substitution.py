@@ -20,11 +20,11 @@ from btq_lang.checks import check, check_again
 from btq_lang.checks.answers import Answers
 from btq_lang.cli import main
 from btq_lang.diff import compare
-from btq_lang.features.completion import complete
-from btq_lang.features.hover import hover
 from btq_lang.graph import draw
 from btq_lang.graph.missions import figures
 from btq_lang.graph.picture import picture
+from btq_lang.ide.completion import complete
+from btq_lang.ide.hover import hover
 from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.resolve import requirements
 from btq_lang.trace import write as write_overview

@@ -28,7 +28,7 @@ import json, sys
 from btq_lang import checks, parser
 from btq_lang.syntax import tree as syntax
 from btq_lang.syntax.script import parser as script
-from btq_lang.features.colours import colours
+from btq_lang.ide.colours import colours
 from btq_lang.workspace.workspace import Workspace
 
 def told(part):
@@ -51,8 +51,8 @@ for line in sys.stdin:
 
 LEFT_BEHIND = """
 import gc, sys
-from btq_lang.features.completion import complete
-from btq_lang.features.hover import hover
+from btq_lang.ide.completion import complete
+from btq_lang.ide.hover import hover
 from btq_lang.session import Session
 
 text, path, session = sys.stdin.read(), "/nowhere/main.btq", Session()

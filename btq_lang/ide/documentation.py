@@ -5,9 +5,9 @@ from __future__ import annotations
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import include_fix
 from btq_lang.checks.view import View
-from btq_lang.features import describe
-from btq_lang.features.meaning import defined_elsewhere, own_quality, quality_match
-from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.ide import describe
+from btq_lang.ide.meaning import defined_elsewhere, own_quality, quality_match
+from btq_lang.ide.ports import ports_of_kind, ports_of_tree
 from btq_lang.util.text import Edit
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.workspace import Workspace

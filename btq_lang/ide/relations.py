@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.features.meaning import at, definition, everywhere, own_quality, quality_of, subject
-from btq_lang.features.navigation import Target, goto_definition
+from btq_lang.ide.meaning import at, definition, everywhere, own_quality, quality_of, subject
+from btq_lang.ide.navigation import Target, goto_definition
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.references import What

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from btq_lang.features import describe
-from btq_lang.features.place import place_at
-from btq_lang.features.ports import ports_of_kind, ports_of_tree
+from btq_lang.ide import describe
+from btq_lang.ide.place import place_at
+from btq_lang.ide.ports import ports_of_kind, ports_of_tree
 from btq_lang.util.record import Record
 from btq_lang.workspace.workspace import Workspace
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import lru_cache
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.features import describe
-from btq_lang.features.held import missions_of
-from btq_lang.features.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
-from btq_lang.features.outline import requirement_detail
-from btq_lang.features.ports import ports_of
+from btq_lang.ide import describe
+from btq_lang.ide.held import missions_of
+from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
+from btq_lang.ide.outline import requirement_detail
+from btq_lang.ide.ports import ports_of
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record

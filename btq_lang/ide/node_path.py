@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from btq_lang.features.block import node_at
-from btq_lang.features.meaning import entry_at
+from btq_lang.ide.block import node_at
+from btq_lang.ide.meaning import entry_at
 from btq_lang.syntax.tree import Node, Tree, is_name, quote
 from btq_lang.workspace.workspace import Workspace
 

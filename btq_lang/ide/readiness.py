@@ -24,8 +24,8 @@ def getting_ready(workspace: Workspace, path: str) -> Iterator[None]:
         _ = facts.kinds
         if done % _A_STEP == 0:
             yield
-    from btq_lang.features.completion import complete  # they are there by now
-    from btq_lang.features.hover import hover
+    from btq_lang.ide.completion import complete  # they are there by now
+    from btq_lang.ide.hover import hover
 
     line = _INDENTED.search(file.text)
     if line is not None:

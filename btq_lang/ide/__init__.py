@@ -12,27 +12,27 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from btq_lang.features.actions import code_actions
-    from btq_lang.features.calls import Call, TreeItem, called, callers, prepare_calls
-    from btq_lang.features.colours import Colours, colours, delta, making
-    from btq_lang.features.completion import complete
-    from btq_lang.features.documentation import documentation as documented
-    from btq_lang.features.documentation import include_edits
-    from btq_lang.features.hints import code_lenses, inlay_hints
-    from btq_lang.features.hover import hover as explain
-    from btq_lang.features.moves import moved_files
-    from btq_lang.features.navigation import Target, find_references, goto_definition, highlights
-    from btq_lang.features.node_path import node_path as path_of_node
-    from btq_lang.features.on_type import linked_ranges
-    from btq_lang.features.on_type import on_type as typed
-    from btq_lang.features.outline import document_symbols, workspace_symbols
-    from btq_lang.features.readiness import getting_ready
-    from btq_lang.features.relations import goto_implementation, goto_type
-    from btq_lang.features.rename import Refusal, prepare_rename
-    from btq_lang.features.rename import rename as renamed
-    from btq_lang.features.semantic_tokens import encoded_within
-    from btq_lang.features.signature import signature_help
-    from btq_lang.features.structure import document_links, folding_ranges, selection_range
+    from btq_lang.ide.actions import code_actions
+    from btq_lang.ide.calls import Call, TreeItem, called, callers, prepare_calls
+    from btq_lang.ide.colours import Colours, colours, delta, making
+    from btq_lang.ide.completion import complete
+    from btq_lang.ide.documentation import documentation as documented
+    from btq_lang.ide.documentation import include_edits
+    from btq_lang.ide.hints import code_lenses, inlay_hints
+    from btq_lang.ide.hover import hover as explain
+    from btq_lang.ide.moves import moved_files
+    from btq_lang.ide.navigation import Target, find_references, goto_definition, highlights
+    from btq_lang.ide.node_path import node_path as path_of_node
+    from btq_lang.ide.on_type import linked_ranges
+    from btq_lang.ide.on_type import on_type as typed
+    from btq_lang.ide.outline import document_symbols, workspace_symbols
+    from btq_lang.ide.readiness import getting_ready
+    from btq_lang.ide.relations import goto_implementation, goto_type
+    from btq_lang.ide.rename import Refusal, prepare_rename
+    from btq_lang.ide.rename import rename as renamed
+    from btq_lang.ide.semantic_tokens import encoded_within
+    from btq_lang.ide.signature import signature_help
+    from btq_lang.ide.structure import document_links, folding_ranges, selection_range
 
 __all__ = [
     "Call",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.features.proposals import Proposal
+from btq_lang.ide.proposals import Proposal
 
 
 def item_snippets() -> Iterator[Proposal]:

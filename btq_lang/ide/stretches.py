@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.features.looks import (
+from btq_lang.ide.looks import (
     DEFINED,
     NEW_NODE,
     NEW_QUALITY,
@@ -24,7 +24,7 @@ from btq_lang.features.looks import (
     look_of_node,
     plain_look,
 )
-from btq_lang.features.meaning import match_of
+from btq_lang.ide.meaning import match_of
 from btq_lang.lexer import pieces
 from btq_lang.syntax.tokens import COMMENT, OPERATOR, SYMBOL
 from btq_lang.syntax.tree import Entry, Requirement

@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.features.meaning import edition
-from btq_lang.features.stretches import Known, Stretch, encoded
+from btq_lang.ide.meaning import edition
+from btq_lang.ide.stretches import Known, Stretch, encoded
 from btq_lang.parser import Parsed
 from btq_lang.util.text import Span
 

@@ -11,9 +11,9 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import PLACEHOLDERS, lookup
 from btq_lang.checks.lookups import taken_names
-from btq_lang.features.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
-from btq_lang.features.meaning import entry_at
-from btq_lang.features.navigation import direction
+from btq_lang.ide.block import STEP, Standing, blanks_before, block_of, deeper, moved, node_at, shifts
+from btq_lang.ide.meaning import entry_at
+from btq_lang.ide.navigation import direction
 from btq_lang.requirements.model import Span as Time
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BRACED, NODE_CLAUSES

@@ -6,9 +6,9 @@ from bisect import bisect_left
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
-from btq_lang.features.block import deeper
-from btq_lang.features.meaning import at, everywhere, subject
-from btq_lang.features.place import item_tokens, line_blanks, place_at, word_text, words_before
+from btq_lang.ide.block import deeper
+from btq_lang.ide.meaning import at, everywhere, subject
+from btq_lang.ide.place import item_tokens, line_blanks, place_at, word_text, words_before
 from btq_lang.syntax.tokens import CATEGORIES, CLOSE, NAME, NODE_CLAUSES, OPEN, STRING, SYMBOL, Token
 from btq_lang.syntax.tree import Model
 from btq_lang.util.text import Edit, Span

@@ -17,11 +17,11 @@ from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.catalog.units import dimension_name, parse_unit, symbols
 from btq_lang.diagnostics.rules import RULES
-from btq_lang.features.meaning import Found, edition, is_main, match_of, subject
-from btq_lang.features.measures import Measured, parameters_at
-from btq_lang.features.outline import requirement_detail
-from btq_lang.features.place import LineNode, Place, word_text
-from btq_lang.features.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
+from btq_lang.ide.meaning import Found, edition, is_main, match_of, subject
+from btq_lang.ide.measures import Measured, parameters_at
+from btq_lang.ide.outline import requirement_detail
+from btq_lang.ide.place import LineNode, Place, word_text
+from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
 from btq_lang.requirements.nodes import Nodes
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape

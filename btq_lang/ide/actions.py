@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic, Fix
 from btq_lang.diagnostics.rules import UNREADABLE
-from btq_lang.features.meaning import entry_at
-from btq_lang.features.refactor import refactorings
-from btq_lang.features.short_form import short_form
-from btq_lang.features.unused import UNUSED, needless_includes, removal, without
+from btq_lang.ide.meaning import entry_at
+from btq_lang.ide.refactor import refactorings
+from btq_lang.ide.short_form import short_form
+from btq_lang.ide.unused import UNUSED, needless_includes, removal, without
 from btq_lang.syntax.scan import string_end
 from btq_lang.syntax.tokens import COMMENT, STRING
 from btq_lang.util.record import Record

@@ -14,15 +14,15 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
-from btq_lang.features import proposals as offer
-from btq_lang.features.clause_words import Expected, expected, is_count, is_window
-from btq_lang.features.completion_list import listed
-from btq_lang.features.meaning import entry_at
-from btq_lang.features.measures import Measured, measured_at
-from btq_lang.features.place import Place, item_tokens, place_at, word_text
-from btq_lang.features.ports import ports_of_kind, ports_of_tree
-from btq_lang.features.proposals import Proposal
-from btq_lang.features.snippets import item_snippets, model_snippets, node_snippets
+from btq_lang.ide import proposals as offer
+from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
+from btq_lang.ide.completion_list import listed
+from btq_lang.ide.meaning import entry_at
+from btq_lang.ide.measures import Measured, measured_at
+from btq_lang.ide.place import Place, item_tokens, place_at, word_text
+from btq_lang.ide.ports import ports_of_kind, ports_of_tree
+from btq_lang.ide.proposals import Proposal
+from btq_lang.ide.snippets import item_snippets, model_snippets, node_snippets
 from btq_lang.syntax.tokens import (
     CATEGORIES,
     CLOSE,

@@ -7,9 +7,9 @@ from typing import TypeAlias
 
 from btq_lang.checks import check
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.features.block import node_at
-from btq_lang.features.meaning import entry_at
-from btq_lang.features.refactor import Refactoring
+from btq_lang.ide.block import node_at
+from btq_lang.ide.meaning import entry_at
+from btq_lang.ide.refactor import Refactoring
 from btq_lang.syntax.tokens import CLOSE, NODE_CLAUSES, OPEN
 from btq_lang.syntax.tree import Entry, Node, Pair, Satisfices, Tree, is_name, quote
 from btq_lang.util.text import Edit, Span, apply_edits

@@ -10,7 +10,7 @@ from btq_lang.catalog.nodes import KNOWN_WORDS, NodeKind, lookup, spellings
 from btq_lang.catalog.qualities import EDITIONS, Quality, parts, siblings
 from btq_lang.catalog.units import BASES, Unit, convert, dimension_name, parse_unit, to_si
 from btq_lang.diagnostics.rules import RULES, page
-from btq_lang.features.meaning import (
+from btq_lang.ide.meaning import (
     ROOT_BLACKBOARD,
     Found,
     Subject,
@@ -20,8 +20,8 @@ from btq_lang.features.meaning import (
     home_of,
     quality_of,
 )
-from btq_lang.features.outline import clauses_detail
-from btq_lang.features.ports import NodePort, ports_of_kind, ports_of_tree
+from btq_lang.ide.outline import clauses_detail
+from btq_lang.ide.ports import NodePort, ports_of_kind, ports_of_tree
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tree import Apply, Context, Model, Node, QualityDecl, Requirement, Signal, Tree, Word, walk
 from btq_lang.util.text import Span
@@ -106,7 +106,7 @@ def requirement(workspace: Workspace, path: str, found: Definition) -> str:
         )
     attached = used(workspace, Subject(What.REQUIREMENT, found.symbol.name, home_of(found)), "Attached to")
     if item.clauses or item.text is not None:
-        from btq_lang.features.held import held  # most hovers need no plan of a build
+        from btq_lang.ide.held import held  # most hovers need no plan of a build
 
         said = held(workspace, path, found, is_attached=bool(attached))
         lines.append(f"Enforcement by `btq build`:\n{said}" if said else "")

@@ -15,7 +15,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
 from btq_lang.checks.lookups import is_read
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.features.refactor import names_of_nodes
+from btq_lang.ide.refactor import names_of_nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.syntax.tokens import BLANK, COMMENT, DEDENT, INDENT, NEWLINE
 from btq_lang.syntax.tree import Context, Entry, Include, Model, Models, Root, Signal, Tree, shape

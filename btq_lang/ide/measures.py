@@ -6,9 +6,9 @@ from __future__ import annotations
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import parse_unit
-from btq_lang.features.clause_words import is_window
-from btq_lang.features.meaning import entry_at
-from btq_lang.features.place import Place
+from btq_lang.ide.clause_words import is_window
+from btq_lang.ide.meaning import entry_at
+from btq_lang.ide.place import Place
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import Claim, Requirement, Signal, is_name
 from btq_lang.util.record import Record

@@ -12,8 +12,8 @@ from itertools import compress, count
 from operator import is_, is_not, ne
 from typing import TypeVar
 
-from btq_lang.features.semantic_tokens import groups, known_of, stretch_of
-from btq_lang.features.stretches import Known, Stretch, encoded
+from btq_lang.ide.semantic_tokens import groups, known_of, stretch_of
+from btq_lang.ide.stretches import Known, Stretch, encoded
 from btq_lang.syntax.tree import Entry
 from btq_lang.util.record import Record
 from btq_lang.util.text import LINE_END, Encoding

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btq_lang.features.meaning import Found, at, definition, everywhere, subject
+from btq_lang.ide.meaning import Found, at, definition, everywhere, subject
 from btq_lang.syntax.tree import Node
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
@@ -103,7 +103,7 @@ def writes(workspace: Workspace, found: Found) -> bool:
 
 def direction(workspace: Workspace, path: str, node: Node, port: str) -> str | None:
     """Where the value of a node's port flows; None where nobody says."""
-    from btq_lang.features.ports import ports_of
+    from btq_lang.ide.ports import ports_of
 
     return next((one.direction for one in ports_of(workspace, path, node) if one.name == port), None)
 

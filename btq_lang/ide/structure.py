@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.features.meaning import at, entry_at
+from btq_lang.ide.meaning import at, entry_at
 from btq_lang.syntax.tokens import BLANK, CLOSE, COMMENT, DEDENT, INDENT, NEWLINE, OPEN, STRING
 from btq_lang.syntax.tree import Include, Node, Tree
 from btq_lang.util.record import Record

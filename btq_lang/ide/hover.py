@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.language import phrase_at
-from btq_lang.features import describe
-from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
-from btq_lang.features.navigation import writes
-from btq_lang.features.place import item_tokens
-from btq_lang.features.ports import ports_of
+from btq_lang.ide import describe
+from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, quality_match, subject
+from btq_lang.ide.navigation import writes
+from btq_lang.ide.place import item_tokens
+from btq_lang.ide.ports import ports_of
 from btq_lang.syntax.tokens import NAME
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span

@@ -13,7 +13,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, is_port_name, model_name_problem
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import fold
-from btq_lang.features.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
+from btq_lang.ide.meaning import ENGINE, STANDARD, Found, Subject, at, definition, everywhere, subject
 from btq_lang.syntax.tree import is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, Span, apply_edits

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.features.meaning import Found, Subject, at, definition, everywhere, home_of, subject
+from btq_lang.ide.meaning import Found, Subject, at, definition, everywhere, home_of, subject
 from btq_lang.syntax.tree import Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
-from btq_lang.features.clause_words import opens_condition
+from btq_lang.ide.clause_words import opens_condition
 from btq_lang.lexer import tokens as tokens_of
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tokens import (

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from btq_lang.features.proposals import Proposal
+from btq_lang.ide.proposals import Proposal
 from btq_lang.util.record import replace
 
 
