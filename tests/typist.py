@@ -13,7 +13,7 @@ from btq_lang.ide.actions import code_actions
 from btq_lang.ide.completion import complete
 from btq_lang.ide.on_type import on_type
 from btq_lang.ide.rename import Refusal, rename
-from btq_lang.session import Session
+from btq_lang.lsp.session import Session
 from btq_lang.util.text import Edit, Span, apply_edits
 from btq_lang.workspace.workspace import Workspace
 

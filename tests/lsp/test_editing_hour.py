@@ -25,7 +25,7 @@ from btq_lang.ide.outline import document_symbols, workspace_symbols
 from btq_lang.ide.rename import prepare_rename
 from btq_lang.ide.signature import signature_help
 from btq_lang.ide.structure import document_links, folding_ranges, selection_range
-from btq_lang.session import Session
+from btq_lang.lsp.session import Session
 from btq_lang.util.text import Span
 
 HERE = Path(__file__).parent

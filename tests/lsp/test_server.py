@@ -16,9 +16,9 @@ import pytest
 from lsp_editor import SERVER, Editor, Message, part
 from lsprotocol import types
 
-from btq_lang.convert import Converter
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
-from btq_lang.editor import Server
+from btq_lang.lsp.convert import Converter
+from btq_lang.lsp.editor import Server
 from btq_lang.util.text import Span
 from btq_lang.workspace.findings import Findings
 from btq_lang.workspace.workspace import Workspace
@@ -594,7 +594,7 @@ def test_semantic_tokens(editor: Editor) -> None:
 
 
 def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0)
     path = str(tmp_path / "main.btq")
     steps: list[str] = []
 
@@ -622,7 +622,7 @@ def test_an_edit_ends_what_is_made_ready_in_a_pause(tmp_path: Path, monkeypatch:
 
 
 def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0.05)
+    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0.05)
     steps: list[int] = []
 
     def making(*_: object) -> Iterator[None]:
@@ -656,7 +656,7 @@ def test_nothing_is_made_ready_while_somebody_waits(tmp_path: Path, monkeypatch:
 def test_tokens_are_made_in_a_pause_for_an_editor_that_asks_for_them(
     asks: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btq_lang.editor.A_PAUSE", 0)
+    monkeypatch.setattr("btq_lang.lsp.editor.A_PAUSE", 0)
     path = str(tmp_path / "main.btq")
     made: list[str] = []
 
@@ -1059,7 +1059,7 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
 def test_what_raises_while_somebody_types_is_logged_once(tmp_path: Path, broken: str, is_told: bool) -> None:
     """A check, which nobody asks for, and what takes a change, which nobody is answered."""
     program = (
-        "from btq_lang.session import Session\n"
+        "from btq_lang.lsp.session import Session\n"
         "def broken(*_): raise ZeroDivisionError('broken')\n"
         f"Session.{broken} = broken\n"
         "from btq_lang.server import main; main([])\n"
@@ -1235,14 +1235,15 @@ def test_a_key_does_not_wait_for_what_an_editor_may_ask_about_the_key_before(mon
         assert server.told == ["open"] * 4
         server.task.cancel()
 
-    monkeypatch.setattr("btq_lang.editor.TO_ASK", 2)
+    monkeypatch.setattr("btq_lang.lsp.editor.TO_ASK", 2)
     asyncio.run(asyncio.wait_for(press(), 4))  # seconds; less than three keys would wait
 
 
 # A server that says what it does, and for which every file takes a minute to check.
 SLOW = """
 import sys
-from btq_lang import editor, session
+from btq_lang.lsp import editor
+from btq_lang.lsp import session
 from btq_lang import ide as features
 editor.MOST_REST = 60
 check, complete = session.Session.findings, features.complete

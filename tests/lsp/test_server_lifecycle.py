@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from lsp_editor import SERVER, Editor, Message
 
-from btq_lang import editor as btq_editor
+from btq_lang.lsp import editor as btq_editor
 
 NOT_INITIALIZED, INVALID_REQUEST, PARSE_ERROR = -32002, -32600, -32700
 
@@ -103,7 +103,7 @@ def test_what_is_no_message_is_refused_in_one_line(body: bytes, code: int, messa
     answer = editor.wait_for(lambda each: "id" in each)
     assert (answer["id"], *refusal(answer)) == (None, code, message)
     assert editor.request("textDocument/documentSymbol", **editor.document("main.btq"))[0]["name"] == "Main"
-    assert editor.close().splitlines() == [f"ERROR:btq_lang.protocol:{message}"]
+    assert editor.close().splitlines() == [f"ERROR:btq_lang.lsp.protocol:{message}"]
     assert not any(each.get("method") == "window/showMessage" for each in editor.kept)
 
 
@@ -127,11 +127,13 @@ def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
         with editor.process as server:
             assert server.wait(timeout=60) == 1
             assert server.stderr is not None
-            assert server.stderr.read() == b"ERROR:btq_lang.editor:the editor's process %d has ended\n" % crashing.pid
+            assert (
+                server.stderr.read() == b"ERROR:btq_lang.lsp.editor:the editor's process %d has ended\n" % crashing.pid
+            )
 
 
 def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
-    program = "import btq_lang.editor as editor; editor.A_LOOK = 0; from btq_lang.server import main; main([])"
+    program = "import btq_lang.lsp.editor as editor; editor.A_LOOK = 0; from btq_lang.server import main; main([])"
     editor = Editor(tmp_path, command=(sys.executable, "-c", program), processId=os.getpid())
     for number in range(20):
         editor.open(f"main{number}.btq", "")

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from btq_lang.convert import Converter
 from btq_lang.ide.colours import Change, Colours, colours, delta
 from btq_lang.ide.completion import complete
 from btq_lang.ide.navigation import find_references
 from btq_lang.ide.outline import document_symbols
-from btq_lang.session import Session
+from btq_lang.lsp.convert import Converter
+from btq_lang.lsp.session import Session
 
 MAIN = """include "skills.btq"
 include "requirements.btq"
@@ -74,7 +74,7 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0 if seed % 2 else 100_000)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0 if seed % 2 else 100_000)
     chance = random.Random(seed)
     session = session_of(folder, {})
     told = {path: session.diagnostics(path) for path in session.paths()}
@@ -142,7 +142,7 @@ def test_only_what_is_worked_in_is_held(folder: Path, monkeypatch: pytest.Monkey
     told = {path: session.diagnostics(path) for path in session.paths()}
     session.let_go()
     assert held() == set(FILES)  # they are few
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
     session.let_go()
     assert held() == {"other.btq"}
     session.edit(f"{folder}/skills.btq", SKILLS)
@@ -162,7 +162,7 @@ def test_many_files_are_let_go_of_in_parts(tmp_path: Path, monkeypatch: pytest.M
 
     for number in range(12):
         (tmp_path / f"tree{number}.btq").write_text(OTHER, encoding="utf-8")
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
     session = session_of(tmp_path, {})
     for path in session.paths():
         session.diagnostics(path)
@@ -176,7 +176,7 @@ def test_many_files_are_let_go_of_in_parts(tmp_path: Path, monkeypatch: pytest.M
 def test_a_closed_file_is_let_go_of_with_all_that_was_found_in_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
     path, convert = str(tmp_path / "main.btq"), Converter()
     text = OTHER.replace("Pick", "Sequnce")
     (tmp_path / "main.btq").write_text(text, encoding="utf-8")
@@ -190,7 +190,7 @@ def test_a_closed_file_is_let_go_of_with_all_that_was_found_in_it(
 
 
 def test_a_file_that_two_projects_have(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
     one, other = tmp_path / "one", tmp_path / "other"
     files = {
         one / "btq.toml": "",
@@ -220,7 +220,7 @@ def test_a_file_that_two_projects_have(tmp_path: Path, monkeypatch: pytest.Monke
 def test_where_a_missing_name_stands_is_known_of_files_that_are_not_held(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btq_lang.session._MOST_IDLE", 0)
+    monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0)
     other = f"{folder}/other.btq"
     session = session_of(folder, {other: OTHER})
     for path in session.paths():

@@ -53,7 +53,7 @@ LEFT_BEHIND = """
 import gc, sys
 from btq_lang.ide.completion import complete
 from btq_lang.ide.hover import hover
-from btq_lang.session import Session
+from btq_lang.lsp.session import Session
 
 text, path, session = sys.stdin.read(), "/nowhere/main.btq", Session()
 session.open[path] = text

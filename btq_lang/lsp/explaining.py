@@ -7,9 +7,9 @@ from functools import partial
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.convert import markdown
-from btq_lang.editor import Server
-from btq_lang.protocol import Json
+from btq_lang.lsp.convert import markdown
+from btq_lang.lsp.editor import Server
+from btq_lang.lsp.protocol import Json
 
 
 def register(server: Server) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from btq_lang.editor import Server
+from btq_lang.lsp.editor import Server
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.convert import markdown
-from btq_lang.editor import Server
-from btq_lang.handlers.commands import USES
+from btq_lang.lsp.commands import USES
+from btq_lang.lsp.convert import markdown
+from btq_lang.lsp.editor import Server
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

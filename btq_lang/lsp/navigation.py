@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.editor import Refused, Server
+from btq_lang.lsp.editor import Refused, Server
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:

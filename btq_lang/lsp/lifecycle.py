@@ -7,9 +7,9 @@ import gc
 
 from lsprotocol import types
 
-from btq_lang.editor import Server
-from btq_lang.handlers.progress import checking
-from btq_lang.session import Session
+from btq_lang.lsp.editor import Server
+from btq_lang.lsp.progress import checking
+from btq_lang.lsp.session import Session
 
 
 def register(server: Server) -> None:

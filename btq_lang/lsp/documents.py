@@ -7,9 +7,9 @@ import json
 
 from lsprotocol import types
 
-from btq_lang.editor import NOTHING, Server
-from btq_lang.handlers.progress import checking
-from btq_lang.protocol import Json
+from btq_lang.lsp.editor import NOTHING, Server
+from btq_lang.lsp.progress import checking
+from btq_lang.lsp.protocol import Json
 
 
 def register(server: Server) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.editor import Server
-from btq_lang.protocol import Plain
+from btq_lang.lsp.editor import Server
+from btq_lang.lsp.protocol import Plain
 
 KINDS = [
     types.CodeActionKind.QuickFix,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.editor import Refused, Server
+from btq_lang.lsp.editor import Refused, Server
 
 if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace

@@ -7,9 +7,9 @@ import asyncio
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.editor import Server
 from btq_lang.ide.legend import MODIFIERS, TYPES
-from btq_lang.protocol import Json, Plain
+from btq_lang.lsp.editor import Server
+from btq_lang.lsp.protocol import Json, Plain
 
 
 def register(server: Server) -> None:

@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager
 
 from lsprotocol import types
 
-from btq_lang.editor import Server
+from btq_lang.lsp.editor import Server
 
 MANY_FILES = 50
 

@@ -23,11 +23,11 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter, run_async
 from pygls.lsp.server import LanguageServer
 
-from btq_lang import failures
 from btq_lang import ide as features
-from btq_lang.convert import Converter
-from btq_lang.protocol import Json, Messages, Protocol
-from btq_lang.session import Session
+from btq_lang.lsp import failures
+from btq_lang.lsp.convert import Converter
+from btq_lang.lsp.protocol import Json, Messages, Protocol
+from btq_lang.lsp.session import Session
 from btq_lang.util.version import __version__
 from btq_lang.workspace.findings import Findings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lsprotocol import types
 
 from btq_lang import ide as features
-from btq_lang.editor import Server
+from btq_lang.lsp.editor import Server
 
 
 def register(server: Server) -> None:

@@ -18,7 +18,7 @@ from lsprotocol import types
 
 from btq_lang.diagnostics.model import Diagnostic, Tag
 from btq_lang.diagnostics.rules import RULES, Severity, page_path
-from btq_lang.protocol import Json, Plain
+from btq_lang.lsp.protocol import Json, Plain
 from btq_lang.util.text import Edit, Encoding, LineIndex, Position, Span
 
 if TYPE_CHECKING:  # all these import the checks, and an editor waits for the server to start
