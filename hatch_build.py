@@ -21,32 +21,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PACKAGE = "btq_lang"
-COMPILED = (
-    *("lexer", "parser"),
-    *(
-        "grammar/attributes",
-        "grammar/blocks",
-        "grammar/claims",
-        "grammar/requirements",
-        "grammar/conditions",
-        "grammar/cursor",
-        "grammar/item_words",
-        "grammar/nodes",
-    ),
-    *(
-        "syntax/node_clauses",
-        "syntax/quantities",
-        "syntax/scan",
-        "syntax/suggestions",
-        "syntax/tree",
-        "syntax/tokens",
-        "syntax/words",
-    ),
-    *(
-        f"syntax/script/{module}"
-        for module in ("__init__", "check", "mistakes", "parser", "syntax/tokens", "tree", "versions")
-    ),
-)
+COMPILED = ("lexer.py", "parser.py", "grammar", "syntax")
 # mypyc makes C of typed Python and calls setuptools to have it compiled.
 REQUIRED = ("mypy[mypyc]>=2.0,<3", "setuptools>=64")
 
@@ -79,6 +54,12 @@ class CompileHook(BuildHookInterface[Any]):
             shutil.rmtree(self.folder, ignore_errors=True)
 
 
+def compiled_sources(package: Path) -> list[Path]:
+    """The modules of a package that are compiled."""
+    named = [package / name for name in COMPILED]
+    return sorted(path for each in named for path in ([each] if each.is_file() else each.rglob("*.py")))
+
+
 def compile_package(root: Path, folder: Path) -> list[Path]:
     """Compile the package of a checkout in another folder.
 
@@ -91,7 +72,7 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     shutil.copytree(root / PACKAGE, folder / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
     options = ("--config-file", str(root / "pyproject.toml"), "--python-version", version)
-    modules = [f"{PACKAGE}/{module}.py" for module in COMPILED]
+    modules = [str(path.relative_to(folder)) for path in compiled_sources(folder / PACKAGE)]
     command = (sys.executable, "-m", "mypyc", *options, *modules)
     environment = DEFAULTS | os.environ | {"MYPYPATH": str(folder)}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

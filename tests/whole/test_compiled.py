@@ -156,5 +156,5 @@ def test_nothing_compiled_lies_in_the_checkout(compiled: Path) -> None:
 
 def test_what_is_compiled_has_no_property_that_is_worked_out_once() -> None:
     """mypyc makes of a `cached_property` in a compiled class one that is worked out every time."""
-    modules = [ROOT / "btq_lang" / f"{module}.py" for module in hatch_build().COMPILED]
+    modules = hatch_build().compiled_sources(ROOT / "btq_lang")
     assert [path.name for path in modules if "cached_property" in path.read_text(encoding="utf-8")] == []
