@@ -5,8 +5,8 @@ It knows indentation, brackets, strings, numbers with units and comments (langua
 words that begin an item, for these are where a forgotten bracket ends.
 
 The parser pulls: `open_line` finds the next line that says something and compares its indentation, `scan` cuts it into
-`kinds`, `starts` and `raws`, three flat lists that are used again for the next line.  Characters are compared one by
-one and not by regular expressions because that is the form which mypyc compiles well.
+`kinds`, `starts` and `raws`, three flat lists.  Characters are compared as numbers, one by one, because mypyc compiles
+that well; words and blanks are long, so two maps of the text say where they end, which is quick in both forms.
 """
 
 from __future__ import annotations
@@ -131,6 +131,7 @@ class Lexer:
     """A place in a text, and the logical line that begins there.
 
     Attributes:
+        words, ink: the maps of the text that `scan` reads (`word_map`, `ink_map`).
         position: where the next thing is read.
         level: how many blocks are open around the line.
         line_start: where the line begins, its blanks included.
@@ -368,7 +369,7 @@ class Lexer:
         return end
 
     def _other(self, start: i64, character: str) -> i64:
-        """Symbols, signs, braces and comments; what begins nothing is reported once a line and left out."""
+        """Symbols, signs, braces and comments."""
         text = self.text
         if character == "#" or character == "/":
             behind = self._comment(start)
@@ -393,6 +394,11 @@ class Lexer:
             return self._add(OPERATOR, start, start + 2 if two in _TWO else start + 1)
         if character == "!" or text.startswith("&&", start):  # the parser knows whether a condition is meant
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
+        return self._nothing(start, character)
+
+    def _nothing(self, start: i64, character: str) -> i64:
+        """What begins nothing, reported once a line; mostly it is left out."""
+        text = self.text
         if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
             return self._close_square(start)
         if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:

@@ -63,7 +63,7 @@ class AttributeParser(ClauseParser):
         self.advance()
         self.group += 1
         while self.kind != CLOSE and self.kind != NEWLINE:
-            if (self.kind == NAME or self.kind == STRING) and self.raws[self.index + 1] == "=":
+            if self.at_key():
                 pairs.append(self.pair())
             elif self.kind == NAME and self.raw in NODE_CLAUSES:
                 clauses.append(self.node_clause())

@@ -141,7 +141,7 @@ class NodeParser(AttributeParser):
         label = None
         if self.kind == NAME and self.kinds[self.index + 1] in (NAME, STRING) and (meant := self.misspelt_clause()):
             clauses.append(self.node_clause(meant))
-        elif self.kind == STRING or (self.kind == NAME and self.raw not in NODE_CLAUSES):
+        elif self.at_label():
             label = self.take()
         attributes: tuple[Pair, ...] = ()
         if self.kind == OPEN:

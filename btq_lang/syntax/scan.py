@@ -87,7 +87,7 @@ def is_name(text: str) -> bool:
 
 
 def begins_name(code: i64) -> bool:
-    """A letter or `_`, as `[^\\W\\d]` has it."""
+    """A letter or `_`"""
     if code < ASCII:
         return 0x61 <= code <= 0x7A or 0x41 <= code <= 0x5A or code == UNDERSCORE
     return chr(code).isalpha()
