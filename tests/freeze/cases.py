@@ -257,7 +257,7 @@ def logged(number: int) -> Case:
     log, form = logs[number % len(logs)], turn(VERDICTS, number // len(logs))
     files: dict[str, str | bytes] = {log.name: log.read_bytes()}
     if log.name.startswith("lab"):
-        files |= {"lab.btq": frozen.text("tests/evidence/lab.btq")}
+        files |= {"lab.btq": frozen.text(frozen.named("lab.btq"))}
         files |= {"battery.csv": (shared() / "logs" / "lab.battery.csv").read_bytes()}
         return of(
             files,
@@ -277,7 +277,7 @@ def logged(number: int) -> Case:
 def _explained() -> tuple[str, ...]:
     """Words that `btq explain` may know: those of the documentation, and the names of rules."""
     words = {word for path in frozen.pages() for word in WORD.findall(frozen.text(path))}
-    rules = {Path(path).stem for path in frozen.paths("btq_lang/rules")}
+    rules = {Path(path).stem for path in frozen.paths("rules")}
     signs = {"->", "?", "||", "R->", "R?", "M->", "A->", "A?", "All||", "{", "{=}", "#", "0.5 h", "3 %", "on violation"}
     return tuple(sorted(words | rules | signs))
 

@@ -42,15 +42,13 @@ def judged_mission(number: int) -> str:
 
 @cache
 def _strategies() -> SimpleNamespace:
-    return frozen.module("tests/mission_strategies.py", hypothesis=_HYPOTHESIS, btq_lang=SimpleNamespace(quote=_quote))
+    return frozen.module("mission_strategies.py", hypothesis=_HYPOTHESIS, btq_lang=SimpleNamespace(quote=_quote))
 
 
 @cache
 def _random_runs() -> SimpleNamespace:
     """Only what draws texts is used of it."""
-    return frozen.module(
-        "tests/evidence/random_runs.py", engine_simulator=_Nothing(), check_asserts=_Nothing(), btq_lang=_Nothing()
-    )
+    return frozen.module("random_runs.py", engine_simulator=_Nothing(), check_asserts=_Nothing(), btq_lang=_Nothing())
 
 
 class _Nothing:

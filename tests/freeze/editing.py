@@ -1,6 +1,6 @@
 """Sessions of editing, key by key, as a language server hears them: what it says after each is taken down.
 
-The last session is the recording of an hour's work that `tests/typist.py` knows; in the others chance hits the keys.
+The last session is the recording of an hour's work; in the others chance hits the keys.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def session(number: int, command: list[str]) -> Iterator[str]:
 @cache
 def recording() -> str:
     """The keys of an hour."""
-    return frozen.text("tests/recordings/an_hour.keys")
+    return frozen.text(frozen.named("an_hour.keys"))
 
 
 def session_files(number: int) -> dict[str, str]:

@@ -61,10 +61,19 @@ def begin(revision: str, inputs: str | None) -> str:
 
 @cache
 def paths(folder: str) -> tuple[str, ...]:
-    """The files below a folder, in order."""
-    return tuple(
-        git("ls-tree", "-r", "--name-only", "-z", "--full-tree", commit(), f"{folder}/").decode().split("\0")[:-1]
-    )
+    """The files below a folder, or below every folder of a name, in order."""
+    return tuple(path for path in _all() if f"/{folder}/" in f"/{path}")
+
+
+def named(name: str) -> str:
+    """The path of the only file of this name, wherever the commit has it."""
+    (path,) = (path for path in _all() if path.endswith(f"/{name}"))
+    return path
+
+
+@cache
+def _all() -> tuple[str, ...]:
+    return tuple(git("ls-tree", "-r", "--name-only", "-z", "--full-tree", commit()).decode().split("\0")[:-1])
 
 
 @cache
@@ -83,25 +92,25 @@ def blocks(page: str) -> tuple[str, ...]:
 def pages() -> tuple[str, ...]:
     """The pages of the documentation and of the rules."""
     readmes = [path for path in paths("examples") if path.endswith(".md")]
-    rules = [path for path in paths("btq_lang/rules") if path.endswith(".md")]
+    rules = [path for path in paths("rules") if path.endswith(".md")]
     return tuple(path for path in (*paths("docs"), *readmes, *rules) if path.endswith(".md"))
 
 
 def missions() -> tuple[tuple[str, str], ...]:
     """Every mission in one text that the repository has, by a name."""
     whole = [
-        *(path for path in paths("tests/btcpp/golden") if path.endswith(".btq")),
+        *(path for path in paths("golden") if path.endswith(".btq")),
         *(path for path in paths("examples") if path.endswith((".btq", ".qualitybtcpp"))),
-        "tests/every_form.btq",
-        "tests/evidence/lab.btq",
+        named("every_form.btq"),
+        named("lab.btq"),
     ]
     found = [(path, text(path)) for path in whole]
     found += [(f"{page} {number}", block) for page in pages() for number, block in enumerate(blocks(page), 1)]
     return tuple(found)
 
 
-def module(path: str, **stand_ins: object) -> SimpleNamespace:
-    """The names of a module of the frozen commit, which gets stand-ins for what it imports and is not there by itself.
+def module(name: str, **stand_ins: object) -> SimpleNamespace:
+    """The names of the module in a file of this name, with stand-ins for what it imports.
 
     Args:
         stand_ins: by the first word of a module's name.
@@ -114,5 +123,5 @@ def module(path: str, **stand_ins: object) -> SimpleNamespace:
 
     vars(made)["__builtins__"] = {**vars(builtins), "__import__": import_}
     sys.modules[made.__name__] = made  # dataclasses look their module up
-    exec(compile(text(path), path, "exec"), vars(made))
+    exec(compile(text(named(name)), name, "exec"), vars(made))
     return SimpleNamespace(**vars(made))
