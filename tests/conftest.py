@@ -28,6 +28,14 @@ def shared() -> Path:
     return folder
 
 
+# Files that take longest are begun first, so that at the end no core waits for one of them.
+LONGEST = ("test_typing", "test_vscode", "test_damage", "test_server", "test_compiled", "test_neovim", "test_mutations")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update", action="store_true", help="write the golden files as they come out today")
     parser.addoption("--every-key", action="store_true", help="compare after every key of the editing hour")

@@ -14,8 +14,9 @@ PREFIXES = [prefix for prefix in os.environ.get("BTQ_ENGINE", "").split(os.paths
 @pytest.fixture(scope="session", params=PREFIXES or [None], ids=[Path(each).name for each in PREFIXES] or ["installed"])
 def engine(request: pytest.FixtureRequest) -> Engine:
     """An installed BehaviorTree.CPP; every test that asks for it runs once for each of them."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "")  # two at once would build in one folder
     try:
-        return build_engine(request.param, Path(request.config.cache.mkdir("btq-engine")))
+        return build_engine(request.param, Path(request.config.cache.mkdir(f"btq-engine{worker}")))
     except NoEngine as missing:
         if request.param:
             raise  # somebody asked for this one
