@@ -78,12 +78,17 @@ def compare(
         shard: which of how many parts of the work is done.
     """
     golden = read()
+    changed: set[str] = set()  # groups of other inputs
     for index, chunk in enumerate(chunks(names)):
         numbers = [number for number in chunk.numbers if number % every == 0]
         if numbers and index % shard[1] == shard[0]:
             inputs, expected = golden.get(chunk[:2], ("", ""))
             if inputs != digest(_inputs(chunk)):
-                yield Difference(chunk.group, chunk.first, "and those below it: made of other inputs than it was")
+                if chunk.group not in changed:
+                    yield Difference(
+                        chunk.group, chunk.first, "and others of its group are made of other inputs than before"
+                    )
+                changed.add(chunk.group)
             else:
                 yield from _differences(commands, chunk, numbers, expected)
 

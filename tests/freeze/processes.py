@@ -75,11 +75,12 @@ class Commands:
     def _ask(self, cases: Sequence[dict[str, Any]], shows: bool) -> list[str]:
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._process.stdin.write(json.dumps({"cases": cases, "shows": shows}) + "\n")
-        self._process.stdin.flush()
-        answer: list[str] | None = json.loads(self._process.stdout.readline())
-        if answer is not None:
-            return answer
-        if len(cases) == 1:
-            return [DIED if shows else "died"]
-        return [self._ask([case], shows)[0] for case in cases]
+        found: list[str] = []
+        while len(found) < len(cases):
+            self._process.stdin.write(json.dumps({"cases": cases[len(found) :], "shows": shows}) + "\n")
+            self._process.stdin.flush()
+            while (answer := json.loads(self._process.stdout.readline())) is not None:
+                found.append(answer)
+            if len(found) < len(cases):
+                found.append(DIED if shows else "died")
+        return found

@@ -1,6 +1,6 @@
 """The process that runs `btq`, or is `btq-lsp`: all that touches the code under test.  It runs under any Python.
 
-    PYTHON under_test.py btq [TREE]        reads lists of cases, a line of JSON each, and answers with a line
+    PYTHON under_test.py btq [TREE]        reads lists of cases, a line of JSON each, and answers with a line a case
     PYTHON under_test.py btq-lsp [TREE]    becomes the language server
 
 The two programs are found as the installed project names them, or the checkout TREE does.  Each list of cases is run in
@@ -23,6 +23,7 @@ import sys
 import tempfile
 import time
 import traceback
+from collections.abc import Iterator
 from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
@@ -173,19 +174,17 @@ def settle() -> None:
     time.tzset()
 
 
-def answer(command: Command, asked: dict[str, Any], room: str) -> list[str]:
-    """The transcripts of cases, or their digests."""
-    found = []
+def answers(command: Command, asked: dict[str, Any], room: str) -> Iterator[str]:
+    """The transcript of each case, or its digest."""
     for number, case in enumerate(asked["cases"]):
         signal.alarm(MOST_SECONDS)  # ends this process
         text = transcript(command, case, f"{room}/{number:04}")
-        found.append(text if asked["shows"] else digest(text))
-    return found
+        yield text if asked["shows"] else digest(text)
 
 
 def serve(command: Command) -> None:
-    """Answer a line for each line."""
-    lines, answers = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")
+    """Answer each list of cases: a line for each, and `null` at the end, which comes early where the process died."""
+    lines, output = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # nothing that is printed may get between the answers
     room = os.path.realpath(tempfile.mkdtemp(dir=IN_MEMORY if os.path.isdir(IN_MEMORY) else None))
@@ -196,13 +195,16 @@ def serve(command: Command) -> None:
             if child == 0:
                 command.forked()
                 try:
-                    print(json.dumps(answer(command, json.loads(line), room)), file=answers, flush=True)
+                    for answer in answers(command, json.loads(line), room):
+                        print(json.dumps(answer), file=output, flush=True)
                     command.leave(0)
                 finally:
                     traceback.print_exc()
                     command.leave(1)
-            if os.waitpid(child, 0)[1]:
-                print(json.dumps(None), file=answers, flush=True)
+            os.waitpid(child, 0)
+            for left in os.listdir(room):
+                shutil.rmtree(os.path.join(room, left))
+            print("null", file=output, flush=True)
     finally:
         shutil.rmtree(room)
 
