@@ -28,8 +28,9 @@ def shared() -> Path:
     return folder
 
 
-# Files that take longest are begun first, so that at the end no core waits for one of them.
-LONGEST = ("test_typing", "test_vscode", "test_damage", "test_server", "test_compiled", "test_neovim", "test_mutations")
+# Files that take longest are begun first, so that at the end no core waits for one of them; those with a VS Code not at
+# once, for it takes a core by itself.
+LONGEST = ("test_typing", "test_damage", "test_compiled", "test_vscode", "test_server", "test_neovim", "test_mutations")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
