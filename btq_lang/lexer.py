@@ -1,7 +1,7 @@
 """The lexer: text to tokens, one logical line at a time.
 
 One invariant: it takes every string, and moves forward with every step.
-It knows indentation, brackets, strings, numbers with units and comments (language.md §2); it knows no grammar but the
+It knows indentation, brackets, strings, numbers with units and comments (docs/language.md); it knows no grammar but the
 words that begin an item, for these are where a forgotten bracket ends.
 
 The parser pulls: `open_line` finds the next line that says something and compares its indentation, `scan` cuts it into
@@ -519,7 +519,7 @@ class Lexer:
         return end
 
     def _after_operand(self, position: int) -> bool:
-        """Whether a `-` here subtracts: it does behind an operand on the same line (language.md §2, NUMBER)."""
+        """Whether a `-` here subtracts: it does behind an operand on the same line (docs/language.md, NUMBER)."""
         if not self.kinds or self.kinds[-1] not in (NAME, NUMBER, QUANTITY, STRING, CLOSE):
             return False
         return not _has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
@@ -845,7 +845,7 @@ def _shown(blanks: str) -> str:
 
 # ---- patterns ----
 
-# The words that begin an item, and what must follow for a line to end a forgotten bracket (language.md §2, Brackets).
+# The words that begin an item, and what must follow for a line to end a forgotten bracket (docs/language.md, Brackets).
 _TOP_LINE: Final = re.compile(
     r"""(?x)
         BehaviorTree [ \t]+ ID [ \t]* = (?!=)

@@ -1,8 +1,8 @@
-"""The parser: text to tree, one function a production of the grammar (language.md §3), named as it.
+"""The parser: text to tree, one function a production of the grammar (docs/grammar.md), named as it.
 
 One invariant: it takes every string and never raises; what it cannot understand is one diagnostic, and the next
 attribute, line or item is read as if nothing had happened.  It knows the shape of things, not their meaning: `Retry`
-and a misspelt `Rety` parse alike.  The clauses of requirements are in `clauses`, the cursor both use in `cursor`.
+and a misspelt `Rety` parse alike.  Nodes, attributes and requirements are in `grammar`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A file as XML that the engine loads (language.md §6): the document, what was mended and what cannot be written.
+"""A file as XML that the engine loads (docs/language.md): the document, what was mended and what cannot be written.
 
 One invariant: it answers for every workspace and every file in it; without a problem, what is written is well-formed.
 It does not know the disk, nor the enforcement of requirements: `Export.elements` is where a later pass finds the

@@ -1,7 +1,7 @@
 """A BehaviorTree.CPP XML file as a .btq file: the way in, with nothing lost.
 
 One invariant: a .btq file made here has one element for each of the XML, in order, with its attributes in order and its
-comments where they were (language.md §6), and is laid out as the formatter lays it out; what has no words in the
+comments where they were (docs/language.md), and is laid out as the formatter lays it out; what has no words in the
 language stands in it as `xml "…"`, and the little that has no form at all is told.  What the words mean is not looked
 at, save for what version 3 said in other words (`version3`).
 """

@@ -1,4 +1,4 @@
-"""Trees as XML: one element a node, in order (language.md §6).
+"""Trees as XML: one element a node, in order (docs/language.md).
 
 One invariant: what was changed so that the engine takes it is told as a repair, and with `verbatim` nothing is.  It
 does not know what stands around the trees, nor what a requirement asks of the engine.

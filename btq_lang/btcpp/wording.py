@@ -84,7 +84,7 @@ def type_(raw: str) -> str:
 
 
 def comment(text: str) -> str:
-    """A comment, from what stands between `<!--` and `-->` (language.md §6)."""
+    """A comment, from what stands between `<!--` and `-->` (docs/language.md)."""
     if "\n" not in text and "*/" in text:
         return f"#{text.rstrip(_BLANKS)}"
     if "\n" not in text:

@@ -5,7 +5,9 @@ attributes  attributes that are no ports: pre- and post-conditions, and what too
 names       which names the engine refuses
 literals    what the engine reads from a literal
 qualities   look-up of quality names; `quality_model` and `quality_words` hold the rows
+units       which words are units, and how values convert; the lexer asks it
+language    the words of the language, as completion and `btq explain` show them; `name_kinds`, what names can name
+verbs       the verbs of clauses; `measured`, what their numbers measure; `verdicts`, what comes of them
 
-One invariant: tables and look-ups only.  Nothing here knows a file, a tree or a diagnostic; units are in
-`btq_lang.catalog.units`, for the lexer needs them.
+One invariant: tables and look-ups only.  Nothing here knows a file, a tree or a diagnostic.
 """

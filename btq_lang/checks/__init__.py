@@ -1,7 +1,19 @@
 """The checks: what is wrong with a file beyond its syntax.
 
 One invariant: a check is a function of the view of a file and one of its entries, and yields diagnostics whose spans
-count from that entry; it never raises, whatever the file.  A module holds the rules of one subject.
+count from that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below
+says which function looks at which items.  Not known here: what an edit changed, and how findings are printed.
+
+    view.py, seen.py   what a check sees: its file, and the nodes of a tree sorted by what checks look for
+    answers.py, lookups.py   what it asks of other items, kept from one edit to the next
+    kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
+    literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
+    entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
+    statuses.py, results.py, unreachable.py, reactive.py, preconditions.py, swallowing.py   what nodes return, and traps
+    measures.py, clauses.py, conditions.py, bounds.py, limits.py, odds.py   requirements by themselves
+    requirements.py, attached.py, qualities.py, repeated.py, prose.py, unused.py   names of requirements and qualities
+    demanded.py, demands.py, budgets.py, signals.py, renewals.py, unenforced.py   requirements at their nodes
+    calls.py, origins.py, wording.py, placeholders.py, suppressions.py   what these share, XML, and silenced rules
 """
 
 from __future__ import annotations

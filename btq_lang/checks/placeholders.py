@@ -1,4 +1,4 @@
-"""Classic placeholders: script nodes without code, which stand for skills (language.md §4)."""
+"""Classic placeholders: script nodes without code, which stand for skills (docs/language.md)."""
 
 from __future__ import annotations
 

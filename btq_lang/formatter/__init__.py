@@ -23,7 +23,7 @@ The style:
 * at most one blank line anywhere, none at the start of the file or of a block; one before and behind every item that
   has a block; no blanks at a line's end;
 * the line ends that the file has: `\\r\\n` where its first one is that, else `\\n`, in strings and comments too, where
-  they mean the same (language.md §2).
+  they mean the same (docs/language.md).
 """
 
 from __future__ import annotations

@@ -200,7 +200,7 @@ class _Marker:
         """The number behind a `-` that is no part of it.
 
         Where the lexer reads a `-` as a sign of its own because of the word before it, no blank is needed; elsewhere
-        the blank is what keeps it apart (language.md §2, NUMBER).
+        the blank is what keeps it apart (docs/language.md, NUMBER).
         """
         before = self.tokens[at - 1]
         if before.kind in _OPERANDS and not LINE_END.search(self.text, before.end, self.tokens[at].start):

@@ -12,5 +12,4 @@ files, and what names mean.
     conditions.py    what it demands it under
     blocks.py        the lines below a head
     item_words.py    the words that items begin with
-    token_list.py    all tokens of a text, for those who look at text and not at the tree
 """

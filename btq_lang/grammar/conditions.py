@@ -1,6 +1,6 @@
 """The part of the parser that reads conditions: what a context says, and what clauses are about.
 
-Each function is a production of language.md §3 and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The part of the parser that reads requirements, their clauses, and the lists that hold them.
 
-Each function is a production of language.md §3 and named as it; its docstring shows the production.
+Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
 """
 
 from __future__ import annotations

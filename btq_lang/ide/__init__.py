@@ -5,6 +5,16 @@ Offsets are Python indices; no editor, no protocol and no line is known here.
 
 What the server asks is imported when it is asked for the first time: an editor waits for a server to start, and all
 features with the checks they show take a third of that time.
+
+    place.py, meaning.py   where somebody types, and what a word there means: the features below ask these two
+    completion.py          with completion_list, proposals, clause_words, measures, snippets, ports, documentation
+    hover.py, signature.py   with describe and held
+    navigation.py, relations.py, calls.py, node_path.py   from a name to its definition, its uses and its callers
+    rename.py, moves.py    edits in every file that names a thing
+    actions.py             with refactor, block, short_form and unused
+    on_type.py, structure.py, outline.py, hints.py   while one types, folding, outline, inlay hints and lenses
+    semantic_tokens.py     with colours, stretches, looks and legend
+    readiness.py           what is made before it is asked for
 """
 
 from __future__ import annotations

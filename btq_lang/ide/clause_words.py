@@ -1,4 +1,4 @@
-"""What may follow in the clauses of a requirement: the grammar of language.md §3, read backwards from the cursor."""
+"""What may follow in the clauses of a requirement: the grammar of docs/grammar.md, read backwards from the cursor."""
 
 from __future__ import annotations
 

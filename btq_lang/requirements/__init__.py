@@ -11,9 +11,9 @@ the engine can enforce, nor what a run of the robot was like.
     memory.py    what is kept from one edit to the next
     paths.py     the one node that a path names
     resolved.py  what comes out of it for a file
-    reader.py    values and conditions: names, units, what compares with what
+    reader.py    values and conditions: names, units, what compares with what; `reading`, which signals are read
     clauses.py   what each verb asks for
-    classic.py   SuccessIf and FailureIf in classic descriptions
+    classic.py, constraints.py   SuccessIf and FailureIf in classic descriptions
     attach.py    which requirement holds for which node
     durations.py, composition.py, budgets.py   how long nodes take when all that is demanded below them holds
     spans.py     the node whose time a span is

@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in classic descriptions, as claims: they mark a hard constraint (language.md §4).
+"""SuccessIf and FailureIf in classic descriptions, as claims: they mark a hard constraint (docs/language.md).
 
 One invariant: what does not mean something as a whole stays documentation, without a word: `checks` says so.  A claim
 made of a description stands where the description does.

@@ -217,7 +217,7 @@ class Node:
 
 
 def unquote(raw: str) -> str:
-    """What a STRING says (language.md §2): quotes off, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
+    """What a STRING says (docs/language.md): quotes off, `\\" \\' \\\\ \\n \\t` decoded, line ends as `\\n`."""
     text = raw[1:-1] if len(raw) > 1 and raw[-1] == raw[0] and _closes(raw) else raw[1:]
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")

@@ -2,7 +2,7 @@
 
 One invariant: every comment of the file is in exactly one place.  An element is what begins a logical line: an item, a
 node, a port, a line of clauses, a clause in the block of a requirement.  This module knows where comments belong
-(language.md §6) and no grammar: which elements another notation has, and how it writes a comment, is the reader's
+(docs/language.md) and no grammar: which elements another notation has, and how it writes a comment, is the reader's
 business.
 """
 
@@ -115,7 +115,7 @@ def comments(parsed: Parsed) -> Mapping[int, Comments]:
 
 
 def block_of(blanks: str, open_lines: Sequence[L], level: int) -> L | None:
-    """The line at the end of whose block a comment line stands (language.md §6): the last one above it that stands
+    """The line at the end of whose block a comment line stands (docs/language.md): the last one above it that stands
     further left; None where it stands beside the line below, for it is never further out than that.
 
     Args:

@@ -1,4 +1,4 @@
-"""Classic placeholders: the script nodes without code that stand for a skill (language.md §4).
+"""Classic placeholders: the script nodes without code that stand for a skill (docs/language.md).
 
 One invariant: only the unquoted words are placeholders.  The published language has no custom nodes, so its files write
 skills as `ScriptAction (name = "MoveBase")`.

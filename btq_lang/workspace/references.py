@@ -274,7 +274,7 @@ def called(node: Node) -> Word | None:
 
 
 def placeholder(node: Node) -> Word | None:
-    """The skill that a classic placeholder stands for (language.md §4), where its name can be a node's ID as it is."""
+    """The skill that a classic placeholder stands for (docs/language.md), where its name can be a node's ID."""
     is_one = node.category is None and node.kind is not None and node.kind.raw in PLACEHOLDERS
     name = node.name
     if not is_one or name is None or node.attribute("code") is not None or legal_name(name.text) != name.text:

@@ -116,7 +116,7 @@ def asked_for(item: Item) -> frozenset[str]:
 
 
 def same_requirement(first: Requirement, second: Requirement) -> bool:
-    """Whether two definitions say the same (language.md §4): texts compare after folding blanks."""
+    """Whether two definitions say the same (docs/language.md): texts compare after folding blanks."""
     return _saying(first) == _saying(second)
 
 

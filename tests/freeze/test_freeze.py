@@ -12,7 +12,10 @@ from comparing import compare, groups, needs_shared
 from processes import HERE, Commands
 
 EVERY = 20
-HOW = "`python tests/freeze --case GROUP:NUMBER` shows how; `--write main --group GROUP` where that is as it should be"
+HOW = (
+    "`python tests/freeze --case GROUP:NUMBER` shows how; where it is as it should be, commit, then "
+    "`python tests/freeze --write HEAD --group GROUP`"
+)
 
 
 @pytest.fixture(scope="module")
