@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 Message = dict[str, Any]
+MOST_SECONDS = 120  # for an answer
 LINE_END = re.compile(r"\r\n|\r|\n")
 CAPABILITIES: Message = {"textDocument": {"publishDiagnostics": {"relatedInformation": True}}}
 
@@ -28,6 +30,7 @@ class Client:
         self._version = 0  # never the same twice, so that what is told late is told of no other text
         self._count = 0
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._handler = signal.signal(signal.SIGALRM, lambda *_: self._process.kill())
         self.ask("initialize", capabilities=CAPABILITIES, rootUri=root.as_uri(), processId=None)
         self._send(method="initialized", params={})
 
@@ -35,6 +38,8 @@ class Client:
         return self
 
     def __exit__(self, *_: object) -> None:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, self._handler)
         self._process.kill()
         self._process.communicate()
 
@@ -49,6 +54,7 @@ class Client:
     def _receive(self) -> Message:
         """The next message; requests of the server are answered with nothing."""
         assert self._process.stdout is not None
+        signal.alarm(MOST_SECONDS)
         while True:
             length = 0
             while (line := self._process.stdout.readline()) not in (b"\r\n", b""):

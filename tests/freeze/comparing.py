@@ -138,17 +138,15 @@ def replay(one: Code, other: Code, name: str, number: int) -> Iterator[str]:
 
 
 def _unified(before: str, after: str) -> Iterator[str]:
-    lines = difflib.unified_diff(before.split("\n"), after.split("\n"), "before", "after", lineterm="", n=5)
-    yield from lines
+    yield from difflib.unified_diff(before.split("\n"), after.split("\n"), "before", "after", lineterm="", n=5)
 
 
 def _differences(commands: Commands, chunk: Chunk, numbers: list[int], expected: str) -> Iterator[Difference]:
     if chunk.group == MATRIX:
         text = matrix.TABLE.read_text(encoding="utf-8")
         rows, reasons = set(text.splitlines()), matrix.known_reasons(text)
-        for number, transcript in zip(
-            numbers, commands.transcripts([matrix.make(number) for number in numbers]), strict=True
-        ):
+        transcripts = commands.transcripts([matrix.make(number) for number in numbers])
+        for number, transcript in zip(numbers, transcripts, strict=True):
             if (row := matrix.row(number, transcript, reasons)) not in rows:
                 yield Difference(chunk.group, number, row)
         return

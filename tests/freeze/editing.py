@@ -26,23 +26,8 @@ EDITS = 150  # of each other session
 NAME = re.compile(r"[^\W\d]\w*")
 PIECES = (
     *"(){}\"'=:,ä🤖静aex1_-.?#\n\t\u2028",
-    *(
-        "/*",
-        "*/",
-        "->",
-        "R->",
-        "||",
-        "\r\n",
-        " ",
-        "\n    ",
-        "\n        ",
-        "30 s",
-        "3 %",
-        "takes at most 30 s",
-        "on violation fail",
-        "satisfies ",
-        "apply ",
-    ),
+    *("/*", "*/", "->", "R->", "||", "\r\n", " ", "\n    ", "\n        ", "30 s", "3 %", "takes at most 30 s"),
+    *("on violation fail", "satisfies ", "apply "),
     *("SubTree ", "BehaviorTree ", "QualityReq ", "signal ", "context ", "Root ", "Action ", "input ", "include "),
 )
 PROJECTS = (
@@ -92,12 +77,9 @@ def session_files(number: int) -> dict[str, str]:
     files = {path[len(folder) + 1 :]: frozen.text(path) for path in frozen.paths(folder) if not path.endswith(".md")}
     if number != HOUR:
         files |= {"drawn.btq": drawn.mission(number), "judged.btq": drawn.judged_mission(number)}
-        files |= {"damaged.btq": damaged.damaged_mission(number)[1], "classic.btq": _classic()}
+        files |= {"damaged.btq": damaged.damaged_mission(number)[1]}
+        files |= {"classic.btq": frozen.text(frozen.named("inspector.qualitybtcpp"))}
     return files
-
-
-def _classic() -> str:
-    return frozen.text("examples/classic/inspector.qualitybtcpp")
 
 
 class Person:

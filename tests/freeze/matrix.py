@@ -174,7 +174,7 @@ def row(number: int, transcript: str, reasons: dict[str, int]) -> str:
     """
     clause, kind = _what(number)
     names = [f"q{at:02}" for at in range(len(_qualifiers(kind)))]
-    newest, *older = transcript.split("$ btq ")[1:]
+    newest, *older = transcript.split("$ btq ")[1:] or [""]
     cells = [_cell(newest, name, reasons) for name in names]
     cells += [_cell(build, name, reasons) for build in older for name in names[: len(PLAIN)]]
     return "\t".join((str(number), clause, kind, *cells))
