@@ -48,12 +48,7 @@ def _strategies() -> SimpleNamespace:
 @cache
 def _random_runs() -> SimpleNamespace:
     """Only what draws texts is used of it."""
-    return frozen.module("random_runs.py", engine_simulator=_Nothing(), check_asserts=_Nothing(), btq_lang=_Nothing())
-
-
-class _Nothing:
-    def __getattr__(self, name: str) -> type:
-        return object
+    return frozen.module("random_runs.py")
 
 
 def _quote(text: str) -> str:

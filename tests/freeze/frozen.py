@@ -110,18 +110,25 @@ def missions() -> tuple[tuple[str, str], ...]:
 
 
 def module(name: str, **stand_ins: object) -> SimpleNamespace:
-    """The names of the module in a file of this name, with stand-ins for what it imports.
+    """The names of the module in a file of this name, which imports nothing but the standard library.
 
     Args:
-        stand_ins: by the first word of a module's name.
+        stand_ins: for other packages, by their names; any that is not among them has a class of every name.
     """
     made = ModuleType("frozen_module")
 
     def import_(name: str, *rest: Any) -> object:
         first = name.partition(".")[0]
-        return stand_ins[first] if first in stand_ins else builtins.__import__(name, *rest)
+        if first in sys.stdlib_module_names:
+            return builtins.__import__(name, *rest)
+        return stand_ins.get(first, _Anything())
 
     vars(made)["__builtins__"] = {**vars(builtins), "__import__": import_}
     sys.modules[made.__name__] = made  # dataclasses look their module up
     exec(compile(text(named(name)), name, "exec"), vars(made))
     return SimpleNamespace(**vars(made))
+
+
+class _Anything:
+    def __getattr__(self, name: str) -> type:
+        return object
