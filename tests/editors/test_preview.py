@@ -14,6 +14,9 @@ import pytest
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
+# On a busy machine the first picture may come again between a focus and a key: what fails is tried once more.
+pytestmark = pytest.mark.flaky(reruns=1)
+
 MISSION = """\
 QualityReq soon "In time"
     takes at most 30 s
