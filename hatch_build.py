@@ -71,7 +71,9 @@ def compile_package(root: Path, folder: Path) -> list[Path]:
     """
     shutil.copytree(root / PACKAGE, folder / PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
-    options = ("--config-file", str(root / "pyproject.toml"), "--python-version", version)
+    options = ["--config-file", str(root / "pyproject.toml"), "--python-version", version]
+    # What is not compiled is not judged here: the libraries that it imports need not be there.
+    options += ["--no-site-packages", "--follow-imports", "silent"]
     modules = [str(path.relative_to(folder)) for path in compiled_sources(folder / PACKAGE)]
     command = (sys.executable, "-m", "mypyc", *options, *modules)
     environment = DEFAULTS | os.environ | {"MYPYPATH": str(folder), "CFLAGS": _flags()}
