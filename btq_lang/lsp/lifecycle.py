@@ -30,6 +30,7 @@ def register(server: Server) -> None:
         _work_in(session, tuple(map(convert.path, folders)))
         capabilities = server.client_capabilities.workspace
         gc.freeze()  # what was imported stays
+        gc.set_threshold(100_000, 50, 10)  # nearly all that an edit makes stays: looked through less often
         try:
             await _register_watchers(server)
             if capabilities is not None and capabilities.configuration:
