@@ -49,7 +49,7 @@ PROSE = (
     "people are not startled",
     "keep enough for the way back",
     "see ticket 1042",
-    "TODO",
+    "TODO",  # as people write in comments
 )
 PROSE += ("the camera needs a moment after a turn", "nothing is dropped", "measured on the old robot", "50 % of cases")
 PROSE += (

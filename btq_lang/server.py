@@ -1,7 +1,7 @@
 """The language server, for every editor that speaks LSP: over standard input and output, or TCP on this machine alone.
 
-A thin adapter: `handlers` turns requests into calls of features, `editor` knows who is at the other end, `session` what
-is open.
+A thin adapter: the modules of `lsp` turn requests into calls of features; of these `editor` knows who is at the other
+end, and `session` what is open.
 """
 
 from __future__ import annotations

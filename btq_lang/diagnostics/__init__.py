@@ -1,4 +1,4 @@
-"""What is told of a text: diagnostics and their fixes as data, and the rules, each with a page.
+"""Diagnostics and their fixes as data, and the rules, each with a page.
 
 One invariant: these are values.  Who finds something makes one, who prints it reads one; nothing here finds or prints.
 Not known here: files, trees, and which findings a user wants to see.

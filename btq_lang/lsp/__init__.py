@@ -6,7 +6,7 @@ paths, asked of `ide`, and converted back.  Not known here: what a feature answe
     convert.py       positions, ranges, edits: between the protocol and btq
     protocol.py      messages that are written by hand, for their number
     session.py       which files are open, and whose diagnostics an edit may have changed
-    editor.py        one editor: its session, and what is told to it when
+    editor.py        one editor: its session, and when it is sent what
     failures.py      what happens when a handler raises
     lifecycle.py, documents.py, commands.py, progress.py …   which request asks which feature, three to five lines each
 """

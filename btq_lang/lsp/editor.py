@@ -1,6 +1,6 @@
 """The editor at the other end: what it can do, what it has open, and what it has been told.
 
-Every answer is made in the terms of `convert`; which request asks which feature, `handlers` says.
+Every answer is made in the terms of `convert`; which request asks which feature is in the modules beside this one.
 """
 
 from __future__ import annotations

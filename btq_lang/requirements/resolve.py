@@ -123,7 +123,7 @@ def _all(
 def _one(
     table: Table, reader: Reader, owner: object, made_of: object, make: Callable[..., object], *about: object
 ) -> tuple[Any, tuple[Problem, ...]]:
-    """The same of a table for one owner; `make` is told more than the reader."""
+    """The same of a table for one owner; `make` takes more than the reader."""
     return _all(table, reader, (owner,), (made_of,), lambda _: make(reader, *about))[0]
 
 
@@ -250,7 +250,7 @@ def _homes(files: Sequence[File]) -> tuple[list[Symbol], list[str]]:
 
 
 def _ordered_contexts(reader: Reader, files: Sequence[File]) -> Iterator[tuple[File, Symbol, tuple[str, str] | None]]:
-    """Those that a context speaks of come before it; one that speaks of itself means nothing, and comes with what is
+    """Contexts that a context mentions come before it; one that mentions itself means nothing, and comes with what is
     told of it."""
     written = {symbol.name: (file, symbol) for file, symbol in _counting(files, Kind.CONTEXT)}
     depth: dict[str, int] = {}

@@ -1,5 +1,5 @@
-"""Without collecting garbage where there is none: what a parse makes stays, and looking through it again and again is
-a fifth of its time.
+"""Pauses of the garbage collector: what a parse makes stays, and to look through it again and again takes a fifth of
+the time of a parse.
 
 One invariant: whether Python collects by itself is as before afterwards.
 """

@@ -130,7 +130,7 @@ def test_a_build_is_what_the_command_writes(
     mission: str, options: dict[str, object], arguments: list[str], clone: Path
 ) -> None:
     path = (clone / mission).as_posix()
-    built = btq.build(btq.open_workspace(mission), path, **options)  # type: ignore[arg-type]
+    built = btq.build(btq.open_workspace(mission), path, **options)  # type: ignore[arg-type]  # of several types
     assert (built.problems, {*clone.rglob("*.xml")}) == ((), set())
     assert main(["build", mission, *arguments]) == 0
     written = {each.as_posix(): each.read_bytes() for each in clone.rglob("*") if each.suffix in (".xml", ".json")}
