@@ -1,0 +1,298 @@
+"""The one memory: what was asked about a workspace, kept from one revision to the next.
+
+There are two kinds of questions, both plain functions, and an answer is known by its function and its arguments:
+
+* an *input*, `read(state, *key)`, reads the workspace and asks nothing.  It belongs to a topic; `advance` brings a new
+  state and names the topics in which something may differ, and only inputs of these are read again.
+* a *query*, `query(store, *key)`, asks the store for inputs and for other queries, and reads nothing else.
+
+One invariant: an answer is the one that a store without memory would give, in whatever order questions are asked.
+
+*How.*  An answer knows what it asked and what asked it.  When an input differs, the answers that asked it are stale,
+and what rests on these is suspect; nothing is computed yet.  A suspect answer that is asked for looks at what it asked,
+in the same order: if none of it differs, it is kept; the first that differs makes it stale.  A stale one is computed,
+and one that comes out equal to the last keeps that, so what rests on it stays: the wave stops there.  (The "red-green"
+algorithm of salsa and rust-analyzer, with the cone of an edit marked from below.)
+
+*Circles.*  A query that reaches itself gets the answer that its owner declared with `on_circle`, and so does every
+query on that circle: which one was asked first makes no difference.  What was computed inside of a circle that is still
+open is part of it if it asked for any answer that is (Tarjan's strongly connected components).  No chain of queries is
+too long: at the depth `_DEEPEST` its far half is begun anew, with no calls of Python below it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any, Final, Generic, TypeVar
+
+State = TypeVar("State")
+T = TypeVar("T")
+
+_CLEAN, _SUSPECT, _STALE = range(3)
+_DEEPEST: Final = 40  # queries that ask for each other; Python allows some twenty calls for each
+_ON_CIRCLE: dict[Callable[..., Any], object] = {}
+
+
+def on_circle(answer: object) -> Callable[[Callable[..., T]], Callable[..., T]]:
+    """Declares what a query says that reaches itself."""
+
+    def declare(query: Callable[..., T]) -> Callable[..., T]:
+        _ON_CIRCLE[query] = answer
+        return query
+
+    return declare
+
+
+class Cancelled(Exception):  # it is no error: somebody has a newer question
+    """The answer is not wanted any more."""
+
+
+class _Answer:
+    """What is known of one question.
+
+    Attributes:
+        key: the function and its arguments.
+        asked: what it rests on, in the order in which it asked.
+        askers: what rests on it.
+        number: in which order answers were opened; one that is begun anew keeps its number.
+        low: the lowest number that it reaches while it or a circle that it is part of is open; None: neither is.
+        is_circular: it reaches itself.
+    """
+
+    __slots__ = ("asked", "askers", "is_circular", "key", "low", "number", "state", "value")
+
+    def __init__(self, key: tuple[Any, ...]) -> None:
+        self.key = key
+        self.value: Any = _UNKNOWN
+        self.state = _STALE
+        self.asked: tuple[_Answer, ...] = ()
+        self.askers: set[_Answer] = set()
+        self.number = 0
+        self.low: int | None = None
+        self.is_circular = False
+
+
+class _TooDeep(Exception):  # a way back, and no error
+    """The path is longer than Python's calls may be."""
+
+
+class Store(Generic[State]):
+    """The answers about a state, which is any value that inputs read.
+
+    Attributes:
+        is_cancelled: asked before every computation; if it says yes, `Cancelled` is raised, and nothing is lost.
+    """
+
+    def __init__(self, state: State) -> None:
+        self.is_cancelled: Callable[[], bool] = lambda: False
+        self._state = state
+        self._answers: dict[tuple[Any, ...], _Answer] = {}
+        self._inputs: dict[Hashable, list[_Answer]] = {}  # by topic
+        self._pinned: set[tuple[Any, ...]] = set()
+        self._size = 0  # after the last sweep
+        self._asked: dict[_Answer, None] | None = None  # by the query that is being computed
+        self._path: list[_Answer] = []  # the queries that are open, each asked by the one before it
+        self._count = 0  # of numbers
+        self._first = 0  # the last number before the question that is being answered
+        self._start = 0  # where on the path the calls of Python begin
+        self._circles: list[_Answer] = []  # answers in circles of which another part is open
+
+    # ---- what queries use ----
+
+    def ask(self, query: Callable[..., T], *key: Hashable) -> T:
+        """The answer of a query, `query(store, *key)`.
+
+        Raises:
+            LookupError: the query reaches itself, and no answer is declared for that.
+        """
+        name = (query, *key)
+        answer = self._answers.get(name)
+        if answer is None:
+            answer = self._answers[name] = _Answer(name)
+        if self._asked is not None:
+            self._asked[answer] = None
+        if answer.state != _CLEAN and self._settle(answer):
+            return _declared(answer)  # type: ignore[no-any-return]  # its owner declares what the query may return
+        return answer.value  # type: ignore[no-any-return]  # it is what the query returns
+
+    def read(self, topic: Hashable, read: Callable[..., T], *key: Hashable) -> T:
+        """The answer of an input, `read(state, *key)`."""
+        name = (read, *key)
+        answer = self._answers.get(name)
+        if answer is None:
+            answer = self._answers[name] = _Answer(name)
+            answer.value = read(self._state, *key)
+            answer.state = _CLEAN
+            self._inputs.setdefault(topic, []).append(answer)
+        if self._asked is not None:
+            self._asked[answer] = None
+        return answer.value  # type: ignore[no-any-return]  # it is what the function returns
+
+    # ---- what their owner uses ----
+
+    def advance(self, state: State, topics: Iterable[Hashable]) -> None:
+        """There is a new state.
+
+        Args:
+            topics: those in which it may differ from the last one.
+        """
+        self._state = state
+        for topic in topics:
+            inputs = self._inputs.pop(topic, ())
+            kept = [each for each in inputs if each.askers]
+            for answer in inputs:
+                if answer.askers:
+                    self._replace(answer, answer.key[0](state, *answer.key[1:]))
+                else:
+                    del self._answers[answer.key]
+            if kept:
+                self._inputs[topic] = kept
+
+    def pin(self, query: Callable[..., object], *key: Hashable) -> None:
+        """Keep an answer, and all that it rests on, until it is unpinned."""
+        self._pinned.add((query, *key))
+
+    def unpin(self, query: Callable[..., object], *key: Hashable) -> None:
+        self._pinned.discard((query, *key))
+
+    def sweep(self) -> None:
+        """Forget what no pinned answer rests on, if that has become much."""
+        if len(self._answers) <= 2 * self._size:
+            return
+        waiting = [self._answers[key] for key in self._pinned if key in self._answers]
+        used = set(waiting)
+        while waiting:
+            for each in waiting.pop().asked:
+                if each not in used:
+                    used.add(each)
+                    waiting.append(each)
+        self._answers = {key: answer for key, answer in self._answers.items() if answer in used}
+        for answer in used:
+            answer.askers &= used
+        kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
+        self._inputs = {topic: inputs for topic, inputs in kept.items() if inputs}
+        self._size = len(self._answers)
+
+    # ---- how answers are settled ----
+
+    def _settle(self, answer: _Answer) -> bool:
+        """Bring an answer up to date, unless it is part of a circle that is open: whether it is."""
+        if answer.low is None:
+            if self._path:
+                self._open(answer)
+            else:
+                self._open_first(answer)
+        if answer.low is None:
+            return False
+        asker = self._path[-1]
+        asker.is_circular = True
+        asker.low = min(answer.low, asker.low if asker.low is not None else answer.low)
+        return True
+
+    def _open_first(self, answer: _Answer) -> None:
+        """Settle an answer that no query asks for; where a path becomes too long, its far half first."""
+        self._first = self._count
+        waiting = [(answer, 0)]
+        try:
+            while waiting:
+                answer, self._start = waiting[-1]
+                self._close(self._start)
+                try:
+                    self._open(answer)
+                    waiting.pop()
+                except _TooDeep:
+                    middle = self._start + _DEEPEST // 2
+                    waiting.append((self._path[middle], middle))
+        finally:
+            self._close(0)
+            for each in self._circles:  # an exception has left them
+                each.low = None
+            self._circles.clear()
+
+    def _close(self, start: int) -> None:
+        """Leave a path from one place on."""
+        for each in self._path[start:]:
+            each.low = None
+        del self._path[start:]
+
+    def _open(self, answer: _Answer) -> None:
+        """Settle an answer at the end of the path."""
+        place = len(self._path)
+        if place - self._start == _DEEPEST:
+            raise _TooDeep
+        if self.is_cancelled():
+            raise Cancelled
+        if answer.is_circular:  # whatever its parts say now, they may no longer be a circle
+            answer.state = _STALE
+        if answer.number <= self._first:
+            self._count += 1
+            answer.number = self._count
+        answer.low, answer.is_circular = answer.number, False
+        self._path.append(answer)
+        if answer.state == _SUSPECT:
+            self._verify(answer)
+        value = answer.value if answer.state == _SUSPECT else self._compute(answer)
+        self._path.pop()
+        if not answer.is_circular:
+            self._replace(answer, value)
+            return
+        self._circles.append(answer)
+        if answer.low < answer.number:
+            return
+        circle: list[_Answer] = []
+        while self._circles and self._circles[-1].number >= answer.number:
+            circle.append(self._circles.pop())
+        for each in circle:
+            self._replace(each, _declared(each))
+        for each in circle:  # each of which has just found that another one differs
+            each.state = _CLEAN
+
+    def _verify(self, answer: _Answer) -> None:
+        """Look whether what an answer asked is as it was; else it is stale."""
+        for each in answer.asked:
+            if each.state != _CLEAN:
+                self._settle(each)
+                if answer.state == _STALE:
+                    return
+
+    def _compute(self, answer: _Answer) -> object:
+        outer, self._asked = self._asked, {}
+        try:
+            value = answer.key[0](self, *answer.key[1:])
+            asked = self._asked
+        finally:
+            self._asked = outer
+        before = set(answer.asked)
+        for each in before.difference(asked):
+            each.askers.discard(answer)
+        answer.asked = tuple(asked)
+        for each in asked:
+            each.askers.add(answer)
+        return value
+
+    def _replace(self, answer: _Answer, value: object) -> None:
+        """An answer is settled; if it is another one, what asked for it is stale, and what rests on that is suspect."""
+        answer.low = None
+        answer.state = _CLEAN
+        if value is answer.value or value == answer.value:
+            return
+        answer.value = value
+        waiting: list[_Answer] = []
+        for asker in answer.askers:
+            if asker.state == _CLEAN:
+                waiting.append(asker)
+            asker.state = _STALE
+        while waiting:
+            for asker in waiting.pop().askers:
+                if asker.state == _CLEAN:
+                    asker.state = _SUSPECT
+                    waiting.append(asker)
+
+
+def _declared(answer: _Answer) -> Any:
+    if answer.key[0] not in _ON_CIRCLE:
+        raise LookupError(f"{answer.key[0].__qualname__} reaches itself, and declares no answer for that")
+    return _ON_CIRCLE[answer.key[0]]
+
+
+_UNKNOWN: Final = object()
