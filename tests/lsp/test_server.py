@@ -1043,7 +1043,7 @@ def test_a_handler_that_raises_answers_an_error_and_the_server_lives(tmp_path: P
         "features.explain = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor = Editor(tmp_path, program=program)
     editor.open("main.btq", WRONG)
     for _ in range(3):
         answer = editor.ask("textDocument/hover", **editor.at("main.btq", 0, 0))
@@ -1064,7 +1064,7 @@ def test_what_raises_while_somebody_types_is_logged_once(tmp_path: Path, broken:
         f"Session.{broken} = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor = Editor(tmp_path, program=program)
     editor.open("main.btq", WRONG)
     for _ in range(3):
         editor.change("main.btq", RIGHT)
@@ -1094,7 +1094,7 @@ def test_what_is_printed_does_not_get_into_the_protocol(tmp_path: Path) -> None:
         "features.explain = lambda *_: print('Content-Length: 3')\n"
         "from btq_lang.server import main; main([])\n"
     )
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor = Editor(tmp_path, program=program)
     editor.open("main.btq", WRONG)
     assert editor.request("textDocument/hover", **editor.at("main.btq", 0, 0)) is None
     assert editor.diagnostics("main.btq") != []
@@ -1108,7 +1108,7 @@ def test_an_editor_that_traces_is_told_what_the_server_does(tmp_path: Path) -> N
         "features.signature_help = broken\n"
         "from btq_lang.server import main; main([])\n"
     )
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program), trace="messages")
+    editor = Editor(tmp_path, program=program, trace="messages")
     editor.open("main.btq", WRONG)
     editor.wait_for(lambda message: message.get("params", {}).get("message", "").startswith("initialized: "))
     traced = traces(editor, "textDocument/hover")
@@ -1138,7 +1138,7 @@ def test_a_key_leaves_nothing_behind(tmp_path: Path) -> None:
         "server.main([])\n"
         "print(len(made.protocol._request_futures), file=sys.stderr)\n"
     )
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program))
+    editor = Editor(tmp_path, program=program)
     editor.open("main.btq", RIGHT)
     for _ in range(50):
         editor.change("main.btq", RIGHT)
@@ -1262,7 +1262,7 @@ main([])
 
 
 def test_a_completion_does_not_wait_for_the_check_of_the_key_before_it(tmp_path: Path) -> None:
-    editor = Editor(tmp_path, command=(sys.executable, "-c", SLOW))
+    editor = Editor(tmp_path, program=SLOW)
     editor.open("main.btq", RIGHT)
     assert editor.diagnostics("main.btq") == []
     for _ in range(5):
@@ -1274,7 +1274,7 @@ def test_a_completion_does_not_wait_for_the_check_of_the_key_before_it(tmp_path:
 
 
 def test_nor_does_it_where_the_editor_asks_for_diagnostics(tmp_path: Path) -> None:
-    editor = Editor(tmp_path, capabilities=PULLS, command=(sys.executable, "-c", SLOW))
+    editor = Editor(tmp_path, capabilities=PULLS, program=SLOW)
     editor.open("main.btq", RIGHT)
     editor.request("textDocument/diagnostic", **editor.document("main.btq"))
     for number in range(5):

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from forked_server import Forked
 from lsp_editor import SERVER, Editor, Message
 
 from btq_lang.lsp import editor as btq_editor
@@ -134,7 +135,7 @@ def test_it_ends_after_the_process_of_its_editor(tmp_path: Path) -> None:
 
 def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
     program = "import btq_lang.lsp.editor as editor; editor.A_LOOK = 0; from btq_lang.server import main; main([])"
-    editor = Editor(tmp_path, command=(sys.executable, "-c", program), processId=os.getpid())
+    editor = Editor(tmp_path, program=program, processId=os.getpid())
     for number in range(20):
         editor.open(f"main{number}.btq", "")
         assert editor.diagnostics(f"main{number}.btq") == []
@@ -143,11 +144,20 @@ def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("port", ["99999", "-1", "port", "example.invalid:5007", ""])
+def test_what_is_no_port_is_a_usage_error(port: str) -> None:
+    with Forked(f"import sys; from btq_lang.server import main; sys.exit(main(['--tcp={port}']))") as server:
+        said = server.communicate(timeout=60)
+    assert (server.returncode, *said) == (2, b"", f"btq-lsp: {no_port(port)}".encode())
+
+
 @pytest.mark.parametrize("command", [SERVER[:-1], (sys.executable, "-m", "btq_lang", "lsp")])
-def test_what_is_no_port_is_a_usage_error(port: str, command: tuple[str, ...]) -> None:
-    done = subprocess.run((*command, f"--tcp={port}"), capture_output=True, text=True, timeout=60, check=False)
-    why = f"btq-lsp: cannot serve on `--tcp {port}`: expected a port of this machine, 0 to 65535\n"
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", why)
+def test_so_it_is_with_either_command(command: tuple[str, ...]) -> None:
+    done = subprocess.run((*command, "--tcp=-1"), capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"btq-lsp: {no_port('-1')}")
+
+
+def no_port(port: str) -> str:
+    return f"cannot serve on `--tcp {port}`: expected a port of this machine, 0 to 65535\n"
 
 
 def test_a_port_that_is_taken_is_a_usage_error() -> None:
