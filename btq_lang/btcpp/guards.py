@@ -21,6 +21,7 @@ from btq_lang.btcpp.conditions import (
 )
 from btq_lang.btcpp.keys import legal
 from btq_lang.catalog.units import Unit
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import (
     Bounded,
     Claim,
@@ -77,6 +78,8 @@ def guarded(requirement: Requirement, claim: Claim, node: SourceNode, name: str,
     """
     draft = _Draft(requirement, claim, node, name, stop, shared)
     try:
+        if claim.verb not in _BY_VERB:
+            raise NotEnforced(VERBS[claim.verb].why_monitored)
         _BY_VERB[claim.verb](draft)
         return draft.done()
     except NoScript as reason:
@@ -345,10 +348,6 @@ def _follows(draft: _Draft) -> None:
         draft.around(INSIDE, "Sequence", "event", attributes=((attribute, note),), node=subject.node)
 
 
-def _only_monitored(draft: _Draft) -> None:
-    raise NotEnforced("BehaviorTree.CPP has no node that makes another one start in time")
-
-
 def _upper(draft: _Draft) -> Limit:
     """The upper bound of a clause."""
     limit = draft.claim.limit
@@ -391,7 +390,4 @@ _BY_VERB: Final[dict[str, Callable[[_Draft], None]]] = {
     "uses": _uses,
     "tries": _tries,
     "follows": _follows,
-    "runs": _only_monitored,
-    "starts": _only_monitored,
-    "ends": _only_monitored,
 }

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, Protocol
 from btq_lang.btcpp.around import may_be_skipped
 from btq_lang.btcpp.conditions import NoScript, first_value_script, signal_script
 from btq_lang.btcpp.guards import Guarded, NotEnforced, guarded
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
 
 if TYPE_CHECKING:
@@ -88,7 +89,11 @@ class Judge:
             raise NotEnforced("a window is evaluated in the logs of many runs")
         if isinstance(subject, Target) and subject.through:
             raise NotEnforced("its path names only some instances of a node")
-        if isinstance(subject, Span) and claim.verb == "takes" and (node := self._looks.of_span(subject)) is not None:
+        if (
+            isinstance(subject, Span)
+            and VERBS[claim.verb].limits == "completion"
+            and (node := self._looks.of_span(subject)) is not None
+        ):
             return node
         if not isinstance(subject, Target | Mission):
             raise NotEnforced("it limits the time between nodes, and no node encloses that time")
@@ -108,7 +113,7 @@ class Judge:
             NotEnforced: the engine cannot do it.
         """
         made = guarded(requirement, claim, node, name, stop, self._is_shared)
-        if claim.verb in ("takes", "succeeds") and claim.limit is not None and not self._looks.waits(node):
+        if VERBS[claim.verb].limits and claim.limit is not None and not self._looks.waits(node):
             raise NotEnforced(f"{node.shown} completes within one tick")
         for each in dict.fromkeys(each for each, _ in made.wrappers):
             if self._files is not None and each.path not in self._files:

@@ -10,6 +10,7 @@ import re
 from functools import cache
 from typing import Final
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.util.record import Record
 
 
@@ -243,51 +244,7 @@ _TABLE: Final[dict[str, tuple[tuple[str, str, str, str], ...]]] = {
             "the durations of several nodes in one run, added up",
         ),
     ),
-    "claim": (
-        ("takes", "takes at most 30 s", "duration", "the node takes longer"),
-        ("succeeds", "succeeds within 30 s", "result, and when", "it fails, or succeeds later"),
-        ("needs", "needs rear_is_clear", "a condition when it starts", "the condition is false when the node starts"),
-        ("keeps", "keeps battery >= 15 %", "a condition while it runs", "it is false at any time while the node runs"),
-        (
-            "never",
-            "never lamp_on and humans_near",
-            "what must not hold while it runs",
-            "it is true at any time while the node runs",
-        ),
-        (
-            "leaves",
-            "leaves battery >= 3 %",
-            "a condition when it has succeeded",
-            "it is false when the node has succeeded",
-        ),
-        ("uses", "uses at most 20 Wh of energy", "a resource", "the use while the node runs is higher"),
-        (
-            "tries",
-            "tries at most 3 per PickTray",
-            "attempts",
-            "the node starts more often within one activation of the other; without `per`, in the whole run",
-        ),
-        ("runs every", "runs every 500 ms", "period", "two starts are further apart"),
-        ("runs", "runs at least 9 per 10 s", "rate", "any period of that length contains fewer starts"),
-        (
-            "starts",
-            "starts within 2 s after Batch succeeds",
-            "reaction",
-            "it starts (ends) later than that, or not at all",
-        ),
-        (
-            "ends",
-            "ends within 2 s after Batch succeeds",
-            "reaction",
-            "it starts (ends) later than that, or not at all",
-        ),
-        (
-            "follows",
-            "follows SlotFree succeeds",
-            "order",
-            "it starts, but the event has not happened since its previous start",
-        ),
-    ),
+    "claim": tuple(phrase for verb in VERBS.values() for phrase in verb.phrases),
     "bound": (
         ("at most", "takes at most 30 s", "an upper bound", "this or less"),
         ("at least", "takes at least 1 s", "a lower bound", "this or more"),

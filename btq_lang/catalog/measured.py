@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from btq_lang.catalog.verbs import words
 
-def measured(words: Sequence[str]) -> str | None:
+
+def measured(line: Sequence[str]) -> str | None:
     """The unit of what follows some words of a line, or one of its dimension; None: they do not say."""
     is_behind_case = False
-    for word in reversed(words):
+    for word in reversed(line):
         if word in ("else", ","):
             is_behind_case = True  # `20 s if near, 30 s if slow else …`: what it is about stands before all of them
         elif word in _UNITS and not (word == "if" and is_behind_case):
@@ -22,8 +24,8 @@ def measured(words: Sequence[str]) -> str | None:
 
 
 _UNITS: Final[dict[str, str | None]] = {
-    **dict.fromkeys(("takes", "within", "every", "per"), "s"),
+    **dict.fromkeys((*words(operands=("duration",)), "within", "every", "per"), "s"),
     **dict.fromkeys(("in", "probability", "confidence"), "%"),
-    **dict.fromkeys(("needs", "keeps", "never", "leaves", "uses", "tries", "runs"), None),
-    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially"), None),
+    **dict.fromkeys(words(operands=("condition", "use", "count", "rate"))),
+    **dict.fromkeys(("while", "when", "if", "context", "over", "goal", "initially")),
 }

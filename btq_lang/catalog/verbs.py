@@ -1,30 +1,38 @@
-"""The verbs of clauses, one row each: what a clause with it measures, when it is judged, and how that is said.
+"""The verbs of clauses, one row each: what a clause with it demands, how it is judged, enforced, completed and said.
 
-One invariant: every verb of the grammar has a row, and a row's example is a clause that parses.  What a clause means
-for an activation is not known here; `evidence/verbs` has a module for each verb that is judged from logs, found by the
-row's word.
+One invariant: whatever differs from verb to verb is in its row, or in what is found by the row's word: its production
+in `grammar/claims`, its module in `evidence/verbs`, and, if it can be enforced, its function in `btcpp/guards`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    Operand: TypeAlias = Literal["duration", "condition", "use", "count", "rate", "event", "reaction"]
+    Operand: TypeAlias = Literal["duration", "deadline", "condition", "use", "count", "rate", "reaction", "event"]
     Judged: TypeAlias = Literal["at its start", "while it runs", "at its end", "over the run"]
+    Limits: TypeAlias = Literal["", "completion", "success"]
+    Enforced: TypeAlias = Literal["", "limit", "refusal", "guard", "check"]
 
 
 class Verb(Record):
     """A verb.
 
     Attributes:
-        operand: what it is followed by.
+        operand: what it is followed by: a bound of a duration, perhaps a deadline, a condition, a bound of the use of a
+            signal, a bound of a count, a period or a rate, a deadline after an event, an event.
         measures: what is compared with the bound, or asked.
         judged: when an activation, or a run, is known to keep it or to break it.
         said: a measure in a sentence about one activation; `{}` is the measure.
-        example: a clause.
+        phrases: for each way to go on: its words, an example, what it is about, and when a clause is violated.
+        forms: how a clause begins, each with what an editor inserts, where that is more.
+        limits: which end of an activation a bound is on: any, or only its success.
+        enforced: how the engine enforces it: a Timeout, a condition before the node that refuses its start, one that is
+            asked while the node runs, one after it.
+        why_monitored: why the engine enforces none of its clauses.
     """
 
     word: str
@@ -32,36 +40,220 @@ class Verb(Record):
     measures: str
     judged: Judged
     said: str
-    example: str
+    phrases: tuple[tuple[str, str, str, str], ...]
+    forms: tuple[tuple[str, str | None], ...]
+    limits: Limits = ""
+    enforced: Enforced = ""
+    why_monitored: str = ""
+
+    @property
+    def example(self) -> str:
+        """A clause without a subject."""
+        return self.phrases[0][1]
+
+
+def words(
+    *, operands: Iterable[Operand] = (), limits: Iterable[Limits] = (), enforced: Enforced = ""
+) -> frozenset[str]:
+    """The verbs with one of these operands, of these limits, or that are enforced so."""
+    return frozenset(
+        [
+            verb.word
+            for verb in VERBS.values()
+            if verb.operand in operands or verb.limits in limits or (enforced and verb.enforced == enforced)
+        ]
+    )
 
 
 _START: Final = "at its start"
 _MEANWHILE: Final = "while it runs"
 _END: Final = "at its end"
 _RUN: Final = "over the run"
-_SINCE: Final = "the time since an event"
+_NOTHING_STARTS_NODES: Final = "BehaviorTree.CPP has no node that makes another one start in time"
 
 VERBS: Final = {
     verb.word: verb
     for verb in (
-        Verb("takes", "duration", "the time from its start to its end", _END, "took {}", "takes at most 30 s"),
-        Verb("succeeds", "duration", "its result, and the time", _END, "{}", "succeeds within 30 s"),
-        Verb("needs", "condition", "a condition", _START, "{} at the start", "needs battery >= 15 %"),
-        Verb("keeps", "condition", "a condition", _MEANWHILE, "{}", "keeps battery >= 15 %"),
-        Verb("never", "condition", "a condition", _MEANWHILE, "{}", "never speed > 1 m/s"),
-        Verb("leaves", "condition", "a condition", _END, "{} at the end", "leaves battery >= 3 %"),
-        Verb("uses", "use", "the change of a signal", _END, "used {}", "uses at most 20 Wh of energy"),
-        Verb("tries", "count", "the number of its starts", _RUN, "started {}", "tries at most 3 per PickTray"),
         Verb(
-            "runs",
-            "rate",
-            "the time between two starts, or their number in a time",
-            _RUN,
-            "ran {}",
-            "runs every 500 ms",
+            word="takes",
+            operand="duration",
+            measures="the time from its start to its end",
+            judged=_END,
+            said="took {}",
+            phrases=(("takes", "takes at most 30 s", "duration", "the node takes longer"),),
+            forms=(("takes at most", "takes at most ${0:30 s}"), ("takes at least", "takes at least ${0:1 s}")),
+            limits="completion",
+            enforced="limit",
         ),
-        Verb("starts", "reaction", _SINCE, _RUN, "started after {}", "starts within 2 s after Dock succeeds"),
-        Verb("ends", "reaction", _SINCE, _RUN, "ended after {}", "ends within 2 s after Dock succeeds"),
-        Verb("follows", "event", "an event since its last start", _START, "{}", "follows Dock succeeds"),
+        Verb(
+            word="succeeds",
+            operand="deadline",
+            measures="its result, and the time",
+            judged=_END,
+            said="{}",
+            phrases=(("succeeds", "succeeds within 30 s", "result, and when", "it fails, or succeeds later"),),
+            forms=(("succeeds", None), ("succeeds within", "succeeds within ${0:30 s}")),
+            limits="success",
+            enforced="limit",
+        ),
+        Verb(
+            word="needs",
+            operand="condition",
+            measures="a condition",
+            judged=_START,
+            said="{} at the start",
+            phrases=(
+                (
+                    "needs",
+                    "needs rear_is_clear",
+                    "a condition when it starts",
+                    "the condition is false when the node starts",
+                ),
+            ),
+            forms=(("needs", None),),
+            enforced="refusal",
+        ),
+        Verb(
+            word="keeps",
+            operand="condition",
+            measures="a condition",
+            judged=_MEANWHILE,
+            said="{}",
+            phrases=(
+                (
+                    "keeps",
+                    "keeps battery >= 15 %",
+                    "a condition while it runs",
+                    "it is false at any time while the node runs",
+                ),
+            ),
+            forms=(("keeps", None),),
+            enforced="guard",
+        ),
+        Verb(
+            word="never",
+            operand="condition",
+            measures="a condition",
+            judged=_MEANWHILE,
+            said="{}",
+            phrases=(
+                (
+                    "never",
+                    "never lamp_on and humans_near",
+                    "what must not hold while it runs",
+                    "it is true at any time while the node runs",
+                ),
+            ),
+            forms=(("never", None),),
+            enforced="guard",
+        ),
+        Verb(
+            word="leaves",
+            operand="condition",
+            measures="a condition",
+            judged=_END,
+            said="{} at the end",
+            phrases=(
+                (
+                    "leaves",
+                    "leaves battery >= 3 %",
+                    "a condition when it has succeeded",
+                    "it is false when the node has succeeded",
+                ),
+            ),
+            forms=(("leaves", None),),
+            enforced="check",
+        ),
+        Verb(
+            word="uses",
+            operand="use",
+            measures="the change of a signal",
+            judged=_END,
+            said="used {}",
+            phrases=(("uses", "uses at most 20 Wh of energy", "a resource", "the use while the node runs is higher"),),
+            forms=(("uses at most", "uses at most ${1:1 Wh} of ${0:signal}"),),
+            enforced="guard",
+        ),
+        Verb(
+            word="tries",
+            operand="count",
+            measures="the number of its starts",
+            judged=_RUN,
+            said="started {}",
+            phrases=(
+                (
+                    "tries",
+                    "tries at most 3 per PickTray",
+                    "attempts",
+                    "the node starts more often within one activation of the other; without `per`, in the whole run",
+                ),
+            ),
+            forms=(("tries at most", "tries at most ${0:3}"),),
+            enforced="refusal",
+        ),
+        Verb(
+            word="runs",
+            operand="rate",
+            measures="the time between two starts, or their number in a time",
+            judged=_RUN,
+            said="ran {}",
+            phrases=(
+                ("runs every", "runs every 500 ms", "period", "two starts are further apart"),
+                ("runs", "runs at least 9 per 10 s", "rate", "any period of that length contains fewer starts"),
+            ),
+            forms=(("runs every", "runs every ${0:1 s}"), ("runs at least", "runs at least ${1:1} per ${0:1 s}")),
+            why_monitored=_NOTHING_STARTS_NODES,
+        ),
+        Verb(
+            word="starts",
+            operand="reaction",
+            measures="the time since an event",
+            judged=_RUN,
+            said="started after {}",
+            phrases=(
+                (
+                    "starts",
+                    "starts within 2 s after Batch succeeds",
+                    "reaction",
+                    "it starts (ends) later than that, or not at all",
+                ),
+            ),
+            forms=(("starts within", "starts within ${1:1 s} after $0"),),
+            why_monitored=_NOTHING_STARTS_NODES,
+        ),
+        Verb(
+            word="ends",
+            operand="reaction",
+            measures="the time since an event",
+            judged=_RUN,
+            said="ended after {}",
+            phrases=(
+                (
+                    "ends",
+                    "ends within 2 s after Batch succeeds",
+                    "reaction",
+                    "it starts (ends) later than that, or not at all",
+                ),
+            ),
+            forms=(("ends within", "ends within ${1:1 s} after $0"),),
+            why_monitored=_NOTHING_STARTS_NODES,
+        ),
+        Verb(
+            word="follows",
+            operand="event",
+            measures="an event since its last start",
+            judged=_START,
+            said="{}",
+            phrases=(
+                (
+                    "follows",
+                    "follows SlotFree succeeds",
+                    "order",
+                    "it starts, but the event has not happened since its previous start",
+                ),
+            ),
+            forms=(("follows", None),),
+            enforced="refusal",
+        ),
     )
 }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
@@ -36,7 +37,8 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
     limits: dict[int, bool] = {}  # by the `id` of the requirement, which may have thousands of claims
     for requirement, claim in _claims(view, entry):
         bound, verb = claim.bound, claim.verb.raw
-        is_count = verb in _COUNTED
+        operand = VERBS[verb].operand
+        is_count = operand in _COUNTED
         if is_count and isinstance(claim.subject, Mission):
             span = Span(claim.start, claim.end)
             message = f"a mission starts only once in a run, so `{verb}` does not apply to it"
@@ -50,10 +52,10 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
                 is_lower = bound.relation in (">=", ">") or (bound.relation == "between" and amount is bound.value)
                 if what == "count" and is_count and not claim.every:
                     yield from _count(requirement, claim, amount, number, is_lower)
-                elif what == "time" and verb in _TIMED:
+                elif what == "time" and operand in _TIMED:
                     if id(requirement) not in limits:
                         limits[id(requirement)] = _has_limits(requirement)
-                    if not (limits[id(requirement)] and verb in ("takes", "succeeds")):
+                    if not (limits[id(requirement)] and VERBS[verb].limits):
                         yield from _time(amount, number, is_lower)
 
 
@@ -104,7 +106,7 @@ def _value(amount: Amount) -> tuple[float, str]:
 def _count(
     requirement: Requirement, claim: Claim, amount: Amount, number: float, is_lower: bool
 ) -> Iterator[Diagnostic]:
-    what = "attempts" if claim.verb.raw == "tries" else "starts"
+    what = "attempts" if VERBS[claim.verb.raw].operand == "count" else "starts"
     notes: tuple[str, ...] = ()
     if number < 0 or number != int(number):
         message = f"expected a whole number of {what}, found `{_shown(amount)}`"
@@ -150,5 +152,5 @@ def _dimensions() -> dict[Dimension, str]:
     return {unit.dimension: what for symbol, what in units if (unit := parse_unit(symbol)) is not None}
 
 
-_COUNTED: Final = frozenset(("tries", "runs"))
-_TIMED: Final = frozenset(("takes", "succeeds", "runs", "starts", "ends"))
+_COUNTED: Final = ("count", "rate")
+_TIMED: Final = ("duration", "deadline", "rate", "reaction")

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, seconds, summed
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_seconds
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 def budget_exceeded(demanded: Demanded) -> Iterator[Found]:
     """What the children may take is more than their parent may: in the worst case, or always."""
     for applied, claim, node, place in demanded.claims:
-        most = highest(claim) if claim.verb in ("takes", "succeeds") else None
+        most = highest(claim) if VERBS[claim.verb].limits else None
         if most is None or not (node.children or node.category == "SubTree"):
             continue
         allowed = _held_against(claim, demanded.budgets.composed(node))
@@ -60,7 +61,7 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
 
 def _held_against(claim: Claim, budget: Budget) -> Range | None:
     """What of a budget a claim speaks of."""
-    return budget.success if claim.verb == "succeeds" else budget.completes
+    return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
 
 
 def _share(term: Term) -> str:

@@ -7,6 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.requirements.memory import Asker
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
@@ -232,7 +233,7 @@ def _claims(
 
 def _node(applied: Applied, claim: Claim, budgets: Budgets) -> SourceNode | None:
     """The node that a claim is about; of a span the one that takes as long."""
-    if isinstance(applied.subject, Span) and claim.verb == "takes":
+    if isinstance(applied.subject, Span) and VERBS[claim.verb].limits == "completion":
         from btq_lang.requirements.spans import node_of  # few claims speak of a way between two nodes
 
         return node_of(applied.subject, budgets)

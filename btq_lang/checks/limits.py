@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -19,13 +20,11 @@ if TYPE_CHECKING:
     from btq_lang.catalog.units import Dimension
     from btq_lang.checks.view import View
 
-_OF_TIME = frozenset(("takes", "succeeds"))
-
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
     """A limit that the engine takes for none: it counts whole milliseconds, and 0 is no limit to it."""
     for applied, claim, _, place in demanded.claims:
-        most = highest(claim) if claim.verb in _OF_TIME and is_enforced(applied) else None
+        most = highest(claim) if VERBS[claim.verb].limits and is_enforced(applied) else None
         if most is None or most[0] >= 0.001:
             continue
         yield (
@@ -42,7 +41,7 @@ def limit_too_small(demanded: Demanded) -> Iterator[Found]:
 def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
     """A limit on a node that completes within one tick: nobody looks at the clock while it runs."""
     for applied, claim, node, place in demanded.claims:
-        if claim.verb not in _OF_TIME or not is_enforced(applied) or highest(claim) is None:
+        if not VERBS[claim.verb].limits or not is_enforced(applied) or highest(claim) is None:
             continue
         if demanded.budgets.composed(node).waits:
             continue
@@ -65,7 +64,7 @@ def dead_bound(demanded: Demanded) -> Iterator[Found]:
     """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is told
     for that."""
     for _, claim, node, place in demanded.claims:
-        most = highest(claim) if claim.verb in _OF_TIME else None
+        most = highest(claim) if VERBS[claim.verb].limits else None
         timeout = next(_timeouts(node), None) if most is not None else None
         if most is None or timeout is None or most[0] <= timeout[1]:
             continue
@@ -84,7 +83,8 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
     for applied, claim, node, place in demanded.claims:
         if claim.limit is not None and Table in (type(claim.limit.value), type(claim.limit.upper)):
             continue  # each of its values is for a situation of its own
-        for limit in _limits(claim) if claim.verb != "tries" else [((claim.per,), lowest(claim), highest(claim))]:
+        is_counted = VERBS[claim.verb].operand == "count"
+        for limit in [((claim.per,), lowest(claim), highest(claim))] if is_counted else _limits(claim):
             kinds.setdefault((id(node), applied.requirement.name, claim.verb, limit[0]), []).append(
                 (claim, limit, place)
             )
@@ -135,7 +135,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
 def attempts_mismatch(demanded: Demanded) -> Iterator[Found]:
     """`tries at most` against the number of attempts that Retry and Repeat make."""
     for _, claim, node, place in demanded.claims:
-        most = highest(claim) if claim.verb == "tries" else None
+        most = highest(claim) if VERBS[claim.verb].operand == "count" else None
         if most is None or most[0] == inf or not isinstance(claim.per, Target):
             continue
         loops = _loops(node, claim.per.node)
@@ -184,12 +184,12 @@ _Limit = tuple[tuple[object, ...], tuple[float, str] | None, tuple[float, str] |
 
 def _limits(claim: Claim) -> Iterator[_Limit]:
     """What a claim bounds, with its lower and its upper limit."""
-    if claim.verb in _OF_TIME:
+    if VERBS[claim.verb].limits:
         # Of a table every value would have to contradict: the most lenient one is held against the other bound.
-        yield ("takes",), lowest(claim), highest(claim)
-    elif claim.verb == "uses" and claim.signal is not None:
-        yield ("uses", claim.signal.name), lowest(claim), highest(claim)
-    elif claim.verb in ("keeps", "needs", "leaves") and isinstance(claim.condition, Compare):
+        yield ("duration",), lowest(claim), highest(claim)
+    elif claim.signal is not None:
+        yield (claim.verb, claim.signal.name), lowest(claim), highest(claim)
+    elif claim.verb != "never" and isinstance(claim.condition, Compare):  # that says what must not hold
         yield from _compared(claim.verb, claim.condition)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Entry, Requirement
 
@@ -45,7 +46,7 @@ def _all_without_subject(view: View) -> dict[int, list[Diagnostic]]:
         is_attached = requirement.name in requirements.attached
         is_about_nothing = all(claim.subject is None for claim in requirement.claims)
         for claim in requirement.claims:
-            if isinstance(claim.subject, Span | Total) and claim.verb != "takes":
+            if isinstance(claim.subject, Span | Total) and VERBS[claim.verb].limits != "completion":
                 of = "the time from one event to another" if isinstance(claim.subject, Span) else "a sum of durations"
                 message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
                 note = "write `takes` after it, or a node before the verb"

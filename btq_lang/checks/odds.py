@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import ceil, inf, log
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, SourceNode
@@ -23,7 +24,7 @@ def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
         odds = applied.requirement.odds
         if (odds is not None and odds.experiments == "runs") or not (node.children or node.category == "SubTree"):
             continue
-        if odds is None and claim.verb != "succeeds":
+        if odds is None and VERBS[claim.verb].limits != "success":
             continue
         wanted = odds.probability if odds is not None else 1.0
         ensured = _ensured(demanded.budgets, claim, node)
@@ -67,14 +68,15 @@ def _ensured(
     None: nobody says, or it takes too long anyway."""
     most = highest(claim)
     limit = most[0] if most is not None else inf
-    if claim.verb == "succeeds":
+    limits = VERBS[claim.verb].limits
+    if limits == "success":
         success = budgets.success(node)
         rest = "" if success is not None else ", even if every other step succeeds"
         success = success or budgets.success_of_known(node)
         if success is None or success.seconds > limit:
             return None
         return success.probability, list(success.parts), rest
-    if claim.verb == "takes" and most is not None:
+    if limits == "completion" and most is not None:
         budget = budgets.composed(node)
         if not budget.is_bounded or budget.running.high > limit:
             return None

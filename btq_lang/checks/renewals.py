@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found
 from btq_lang.checks.writers import isolated, key_of
 from btq_lang.diagnostics.model import Diagnostic, Related
@@ -64,10 +65,11 @@ def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
     """The signals that are read again after the node has started; none where nobody can say which."""
     if requirement.classic:
         return ()
-    if claim.verb in ("keeps", "never"):
+    judged = VERBS[claim.verb].judged
+    if judged == "while it runs":
         scopes = tuple([scope.condition for scope in requirement.scopes if scope.word == "while"])
         return signals_in((claim.condition, scopes))
-    return signals_in({"leaves": claim.condition, "uses": claim.signal}.get(claim.verb))
+    return signals_in((claim.condition, claim.signal)) if judged == "at its end" else ()
 
 
 def _is_fixed(demanded: Demanded, node: SourceNode, key: str) -> bool:

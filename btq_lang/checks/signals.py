@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import words
 from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
 from btq_lang.checks.writers import declared_port, isolated
 from btq_lang.diagnostics.model import Diagnostic, Related
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.model import Signal
 
-_GUARDS = frozenset(("needs", "keeps", "never", "leaves", "uses"))
+_READING = words(operands=("condition", "use"))
 
 
 def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> Iterator[Found]:
@@ -41,7 +42,7 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
     """The signals that the engine reads to enforce a claim, each once, and where to tell of it."""
     known: dict[tuple[int, ...], tuple[Signal, ...]] = {}
     for applied, claim, _, place in demanded.claims:
-        if claim.verb not in _GUARDS or not is_enforced(applied):
+        if claim.verb not in _READING or not is_enforced(applied):
             continue
         parts = (claim.condition, claim.signal, *(scope.condition for scope in applied.requirement.scopes))
         key = tuple(map(id, parts))  # one claim may hold for many nodes

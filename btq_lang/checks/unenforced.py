@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, told_at
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -65,9 +66,9 @@ def _found(
 
 def _is_told_otherwise(demanded: Demanded, claim: Claim, node: SourceNode, place: Place) -> bool:
     """Whether a rule of its own says why the engine does not hold it."""
-    if claim.verb == "uses":
-        return claim.signal is not None and claim.signal.behaviour == "gauge"
-    most = highest(claim) if claim.verb in ("takes", "succeeds") and place != node.place else None
+    if claim.signal is not None:
+        return claim.signal.behaviour == "gauge"
+    most = highest(claim) if VERBS[claim.verb].limits and place != node.place else None
     return most is not None and (most[0] < 0.001 or not demanded.budgets.composed(node).waits)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.evidence.history import Nearby, near
 from btq_lang.evidence.model import CLOCK_SET_BACK, ROOT
 from btq_lang.evidence.observed import Observed, parts_in
@@ -126,7 +127,7 @@ class JudgedClause:
         """Count a start that was refused for what a requirement demands: that breaks the demand, and no node succeeds
         that does not start for what it needs."""
         own = self.claim.verb == refusal.verb and self.requirement.name == refusal.requirement
-        if own or (self.claim.verb == "succeeds" and refusal.verb == "needs"):
+        if own or (VERBS[self.claim.verb].limits == "success" and VERBS[refusal.verb].operand == "condition"):
             self._has_run = True
             self._add(
                 Judgement(False, refusal.time, f"its start was refused by {refusal.requirement}"), path, refusal.time
@@ -248,7 +249,7 @@ class JudgedClause:
             keeping: as of a `Session`.
         """
         for uid in self._nodes:
-            if self.claim.verb in ("tries", "runs") and not self._waits and tree.parent[uid] in keeping:
+            if VERBS[self.claim.verb].operand in ("count", "rate") and not self._waits and tree.parent[uid] in keeping:
                 path = tree.nodes[uid].path
                 return f"{path} is not reset between its starts, so {self.requirement.name} may count too few of them"
         return None
@@ -278,7 +279,7 @@ class JudgedClause:
             if not tally.cut_off and self._has_run:
                 why = "nothing that it is about happened in any run"
         goal = self.requirement.goal
-        is_of_run = self.claim.verb == "tries" and self.claim.per is None
+        is_of_run = VERBS[self.claim.verb].operand == "count" and self.claim.per is None
         is_once_a_run = isinstance(self._subject, Total) or (is_of_run and len(self._paths) == 1)
         said = [self.claim.text, *(scope.text for scope in self.requirement.scopes)]
         said += [self.requirement.odds.text] if self.requirement.odds is not None else []
@@ -327,6 +328,6 @@ def _clocked(judgement: Judgement | None, root: Activation | None) -> Judgement 
 
 # The guards that stop a node for a clause; the others around it belong to other clauses.
 _STOPPED_BY: Final = {
-    "Timeout": frozenset(("takes", "succeeds")),
-    "ReactiveSequence": frozenset(("keeps", "never", "uses", "succeeds")),
+    "Timeout": words(enforced="limit"),
+    "ReactiveSequence": words(limits=("success",), enforced="guard"),
 }

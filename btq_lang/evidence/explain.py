@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.explain_run import RunExplainer, ago, part
 from btq_lang.evidence.model import ROOT
 from btq_lang.evidence.observed import signals_in
@@ -103,9 +104,9 @@ class Explainer:
                 parts = tuple(self._parts(activation, sums))
                 if judgement.measure is None and origin is not None:
                     return (self._origin(activation, sums, origin), *parts)
-                if claim.verb == "uses" and judgement.measure is not None:
+                if claim.signal is not None and judgement.measure is not None:
                     return (self._levels(claim.signal, judgement.measure.unit, activation), *parts)
-                if parts or claim.verb not in ("takes", "succeeds"):
+                if parts or not VERBS[claim.verb].limits:
                     return parts
                 text = f"it ran {duration(activation.seconds)}"
                 return (Link("self", path, text, activation.seconds, 1, int(activation.outcome == "F")),)

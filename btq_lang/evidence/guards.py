@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.verbs import words
 from btq_lang.evidence.model import ROOT
 from btq_lang.util.record import Record
 
@@ -32,7 +33,7 @@ class Refusal(Record):
     """A node was not started, for that would have broken a requirement.
 
     Attributes:
-        verb: of the clause that refused it: `needs`, `tries` or `follows`.
+        verb: of the clause that refused it.
     """
 
     uid: int
@@ -104,4 +105,4 @@ class Guards:
         return [Refusal(uid, activation.end, requirement, verb) for uid in refused]
 
 
-_REFUSING: Final = ("needs", "tries", "follows")  # what the names end in of the Sequences that refuse a start
+_REFUSING: Final = words(enforced="refusal")  # what the names end in of the Sequences that refuse a start

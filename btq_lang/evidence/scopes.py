@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.evidence.conditions import truth
 from btq_lang.evidence.model import UNKNOWN_END
 from btq_lang.evidence.signals import Unknown
@@ -34,11 +35,11 @@ def in_scope(scopes: Sequence[Scope], verb: str, observed: Observed) -> bool | U
     """Whether what was observed counts: an activation, or the time between two events."""
     result: bool | Unknown = True
     for scope in scopes:
-        if scope.word == "while" and verb == "runs":  # time counts, whatever runs in it
+        if scope.word == "while" and VERBS[verb].operand == "rate":  # time counts, whatever runs in it
             continue
         moments = [observed.begin] if scope.word == "when" else observed.moments(scope.condition)
         found = [truth(scope.condition, observed, moment) for moment in moments]
-        is_some_enough = scope.word == "while" and verb in ("keeps", "never")  # some of its time counts
+        is_some_enough = scope.word == "while" and VERBS[verb].judged == "while it runs"  # some of its time counts
         if not observed.is_end_known:  # at any moment but its start it may have been halted already
             found[1:] = [Unknown(UNKNOWN_END) if each is is_some_enough else each for each in found[1:]]
         unknown = next((each for each in found if isinstance(each, Unknown)), None)

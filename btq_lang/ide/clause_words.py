@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btq_lang.catalog.verbs import VERBS
+from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
 from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
@@ -44,7 +46,7 @@ def expected(words: Sequence[Token]) -> Expected:
     before = words[-2].text if len(words) > 1 else ""
     earlier = [word.text for word in words]
     text = last.text if last.kind not in (STRING, BRACED) else ""
-    if text == "of" and _begins_last(earlier, ("uses", "sum", "in", "with")) == "uses":
+    if text == "of" and _begins_last(earlier, (*_USES, "sum", "in", "with")) in _USES:
         return Expected(signal=True)
     if text == "of":
         return Expected(node=True) if before == "sum" else Expected(sorted_words(EXPERIMENTS))
@@ -80,7 +82,7 @@ def opens_condition(words: Sequence[Token]) -> bool:
 def is_count(words: Sequence[str]) -> bool:
     """Whether a number at the end of these words says how often: `tries at most 3`, `runs at least 9`."""
     head = _begins_last(words, _CLAUSES)
-    if head not in ("tries", "runs"):
+    if head not in _COUNTED:
         return False
     behind = words[_last_index(words, head) + 1 :]
     return not {"per", "every"} & set(behind) and _begins_last(behind, ("if", "else", ",")) != "if"
@@ -127,11 +129,11 @@ def _begins_last(words: Sequence[str], heads: Sequence[str]) -> str:
 
 def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
     head = _begins_last(words, _CLAUSES)
-    if head == "uses" and "of" not in words[_last_index(words, head) :]:
+    if head in _USES and "of" not in words[_last_index(words, head) :]:
         return ("of",)
     if is_count(words):
         return ("per", "if")
-    if head in ("starts", "ends") and "after" not in words[_last_index(words, head) :]:
+    if head in _REACTIONS and "after" not in words[_last_index(words, head) :]:
         return ("after", "if")
     if head in ("in", "with"):
         return ("of runs", "of activations")
@@ -141,7 +143,7 @@ def _behind_value(words: Sequence[str]) -> tuple[str, ...]:
         return _BEHIND_OPERAND
     if "if" in words:
         return ("and", "or", "else")
-    return ("if",) if head in ("takes", "succeeds", "goal") else ()
+    return ("if",) if head in _TIMED or head == "goal" else ()
 
 
 def _last_index(words: Sequence[str], word: str) -> int:
@@ -149,25 +151,33 @@ def _last_index(words: Sequence[str], word: str) -> int:
 
 
 _BOUNDS = ("at most", "at least", "less than", "more than", "between")
-_CONDITIONS = ("needs", "keeps", "never", "leaves", "while", "when", "context")
+_COUNTED = words_of(operands=("count", "rate"))
+_REACTIONS = words_of(operands=("reaction",))
+_TIMED = words_of(operands=("duration", "deadline"))
+_USES = words_of(operands=("use",))
+_CONDITIONS = (*words_of(operands=("condition",)), "while", "when", "context")
 _BEFORE_CONDITIONS = frozenset((*_CONDITIONS, "if"))
 _BEHIND_OPERAND = ("and", "or", "<=", ">=", "<", ">", "==", "!=")
-_EVENTS = ("follows", "after", "from", "to")
+_EVENTS = (*words_of(operands=("event",)), "after", "from", "to")
 _CLAUSES = (
-    *("takes", "succeeds", "uses", "tries", "runs", "starts", "ends", "follows", "in", "with", "confidence", "over"),
-    *("on", "goal", "because", "verified", "from", *_CONDITIONS),
+    *VERBS,
+    *("in", "with", "confidence", "over", "on", "goal", "because", "verified", "from", "while", "when", "context"),
 )
 _CONDITION = Expected(condition=True)
 _VALUE = Expected(value=True)
 _EVENT = Expected(("mission", "when"), node=True)
+_OPERANDS = {
+    **dict.fromkeys(("duration", "use", "count"), Expected(_BOUNDS)),
+    "rate": Expected(("every", *_BOUNDS)),
+    "deadline": Expected(("within",), clause=True),
+    "reaction": Expected(("within",)),
+    "condition": _CONDITION,
+    "event": _EVENT,
+}
+# What a mission does once, from its start to its end.
+_OF_MISSIONS = [verb.word for verb in VERBS.values() if verb.judged in ("at its end", "while it runs")]
 _AFTER = {
-    "takes": Expected(_BOUNDS),
-    "uses": Expected(_BOUNDS),
-    "tries": Expected(_BOUNDS),
-    "runs": Expected(("every", *_BOUNDS)),
-    "succeeds": Expected(("within",), clause=True),
-    "starts": Expected(("within",)),
-    "ends": Expected(("within",)),
+    **{verb.word: _OPERANDS[verb.operand] for verb in VERBS.values()},
     "within": _VALUE,
     "goal": _VALUE,
     "at": Expected(("most", "least")),
@@ -178,7 +188,7 @@ _AFTER = {
     "than": _VALUE,
     "between": _VALUE,
     "else": _VALUE,
-    **dict.fromkeys(("needs", "keeps", "never", "leaves", "while", "when", "if", "and", "or", "not"), _CONDITION),
+    **dict.fromkeys(("while", "when", "if", "and", "or", "not"), _CONDITION),
     "on": Expected(("violation",)),
     "violation": Expected(ACTIONS),
     "verified": Expected(("by",)),
@@ -189,10 +199,9 @@ _AFTER = {
     "over": Expected(("last",)),
     "sum": Expected(("of",)),
     "after": _EVENT,
-    "follows": _EVENT,
     "from": _EVENT,
     "to": _EVENT,
-    "mission": Expected(("takes", "succeeds", "uses", "leaves", "keeps", "never", *sorted_words(HAPPENINGS))),
+    "mission": Expected((*_OF_MISSIONS, *sorted_words(HAPPENINGS))),
     "per": Expected(node=True),
     "every": Expected(value=True, node=True),
     "node": Expected(node=True),

@@ -14,6 +14,7 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import lookup
 from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.ide import proposals as offer
 from btq_lang.ide.clause_words import Expected, expected, is_count, is_window
 from btq_lang.ide.completion_list import listed
@@ -343,7 +344,7 @@ def _in_requirement(workspace: Workspace, path: str, place: Place) -> Iterator[P
             yield from offer.words(('ID = "" description = ""',), "keyword") if place.depth else ()
             yield from offer.undeclared(workspace, path, *_DECLARED["QualityReq"])
             return
-        if behind[-1] in (":", ".") and "takes" not in behind:
+        if behind[-1] in (":", ".") and VERBS.keys().isdisjoint(behind):
             yield from offer.qualities(workspace, path, place)
             return
         if behind == ["ID", "="]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from btq_lang.catalog.measured import measured
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import parse_unit
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.ide.clause_words import is_window
 from btq_lang.ide.meaning import entry_at
 from btq_lang.ide.place import Place
@@ -100,7 +101,8 @@ def _of_goal(workspace: Workspace, path: str, place: Place) -> Measured:
     entry = entry_at(workspace, path, place.span.start)
     clauses = entry.item.clauses if entry is not None and isinstance(entry.item, Requirement) else ()
     verbs = {clause.verb.raw for clause in clauses if isinstance(clause, Claim)} | {word.text for word in place.words}
-    return Measured("s", is_certain=True) if verbs & {"takes", "succeeds"} else Measured()
+    is_of_time = any(verb in VERBS and VERBS[verb].limits for verb in verbs)
+    return Measured("s", is_certain=True) if is_of_time else Measured()
 
 
 def _signal_unit(workspace: Workspace, path: str, name: str) -> str | None:

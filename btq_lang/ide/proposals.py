@@ -16,6 +16,7 @@ from btq_lang.catalog.qualities import find as find_quality
 from btq_lang.catalog.qualities import parts as quality_parts
 from btq_lang.catalog.qualities import qualities as standard_qualities
 from btq_lang.catalog.units import dimension_name, parse_unit, symbols
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.diagnostics.rules import RULES
 from btq_lang.ide.meaning import Found, edition, is_main, match_of, subject
 from btq_lang.ide.measures import Measured, parameters_at
@@ -602,21 +603,7 @@ _ITEMS = (
 )
 _ONCE = frozenset(("in", "with", "confidence", "over", "on", "goal", "because", "verified"))
 _CLAUSES = (
-    ("takes at most", "takes at most ${0:30 s}"),
-    ("takes at least", "takes at least ${0:1 s}"),
-    ("succeeds", None),
-    ("succeeds within", "succeeds within ${0:30 s}"),
-    ("needs", None),
-    ("keeps", None),
-    ("never", None),
-    ("leaves", None),
-    ("uses at most", "uses at most ${1:1 Wh} of ${0:signal}"),
-    ("tries at most", "tries at most ${0:3}"),
-    ("runs every", "runs every ${0:1 s}"),
-    ("runs at least", "runs at least ${1:1} per ${0:1 s}"),
-    ("starts within", "starts within ${1:1 s} after $0"),
-    ("ends within", "ends within ${1:1 s} after $0"),
-    ("follows", None),
+    *(form for verb in VERBS.values() for form in verb.forms),
     ("mission", None),
     ("every", None),
     ("from", "from ${1:A} starts to ${2:B} succeeds $0"),

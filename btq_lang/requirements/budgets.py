@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from math import fsum, inf
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
 from btq_lang.requirements.memory import Memory, is_same
@@ -290,7 +291,7 @@ class Budgets:
         """What a node's own claims say of its success, else what its children's do."""
         found: list[Success] = []
         for applied, claim in at.claims.get(id(node), ()):
-            if claim.verb == "succeeds":
+            if VERBS[claim.verb].limits == "success":
                 odds = applied.requirement.odds
                 high = _range(claim.limit).high if claim.limit is not None else inf
                 found.append(Success(high, odds.probability if odds is not None else 1.0))
@@ -390,7 +391,7 @@ def _with_claims(composed: Budget, claims: list[tuple[Applied, Claim]]) -> Budge
     choices = [_all_narrowed(composed, sure)] if composed.probability < 1.0 else []
     for applied, claim in claims:
         odds = applied.requirement.odds
-        if odds is not None and claim.verb == "takes":
+        if odds is not None and VERBS[claim.verb].limits == "completion":
             choices.append(replace(_narrowed(held, claim), probability=odds.probability))
     choices = [each for each in choices if each.is_bounded]
     return max(choices, key=lambda each: each.probability, default=held)
@@ -426,10 +427,11 @@ def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:
 
 def _narrowed(budget: Budget, claim: Claim) -> Budget:
     """A budget, if a claim holds, too.  Where both cannot hold, the claim counts: the other is told at its place."""
-    if claim.limit is None or claim.verb not in ("takes", "succeeds"):
+    limits = VERBS[claim.verb].limits
+    if claim.limit is None or not limits:
         return budget
     allowed = _range(claim.limit)
-    if claim.verb == "succeeds":
+    if limits == "success":
         return replace(budget, success=_within(budget.success, allowed))
     skip = budget.skip
     if skip is not None and skip.high > allowed.high:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.clauses import with_clauses
 from btq_lang.requirements.constraints import Constraint, can_be_checked, clauses_of, constraints, is_script
 from btq_lang.requirements.model import Claim, Limit, Not, Requirement, Script
@@ -38,7 +39,7 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
         keyword = "FailureIf" if constraint.violates else "SuccessIf"
         text = f"{keyword} {constraint.text}"
         verb = "never" if constraint.violates else "keeps"
-        claim = Claim(verb, text, reader.place(span), condition=Script(constraint.text))  # type: ignore[arg-type]  # verbs
+        claim = Claim(verb, text, reader.place(span), condition=Script(constraint.text))
         return replace(requirement, claims=(*requirement.claims, claim))
     found = clauses_of(constraint.text)
     assert found is not None, "what can be checked is a script or has clauses"
@@ -65,9 +66,10 @@ def _turned(claim: Claim) -> Claim | None:
         return replace(claim, verb="never" if claim.verb == "keeps" else "keeps")
     if claim.condition is not None:
         return replace(claim, condition=Not(claim.condition))
-    if claim.verb in ("takes", "uses", "tries") and claim.limit is not None and claim.limit.relation in _OPPOSITE:
+    if claim.limit is not None and claim.limit.relation in _OPPOSITE and VERBS[claim.verb].operand in _BOUNDS:
         return replace(claim, limit=Limit(_OPPOSITE[claim.limit.relation], claim.limit.value))
     return None
 
 
+_BOUNDS: Final = ("duration", "use", "count")
 _OPPOSITE: Final[dict[str, Relation]] = {"<=": ">", "<": ">=", ">": "<=", ">=": "<"}

@@ -11,6 +11,7 @@ from math import inf
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Bounded,
@@ -141,29 +142,29 @@ def claim_of(reader: Reader, written: WrittenClaim) -> Claim | None:
 
 def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
     place = reader.place(TextSpan(written.start, written.end))
-    claim = Claim(written.verb.raw, reader.text(written.start, written.end), place)  # type: ignore[arg-type]  # the parser's verbs
-    verb = written.verb.raw
-    if verb in ("needs", "keeps", "never", "leaves"):
+    claim = Claim(written.verb.raw, reader.text(written.start, written.end), place)
+    operand = VERBS[claim.verb].operand
+    if operand == "condition":
         condition = reader.condition(written.condition)
         return replace(claim, condition=condition) if condition is not None else None
-    if verb == "follows":
+    if operand == "event":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
-    if verb == "succeeds" and written.bound is None:
+    if operand == "deadline" and written.bound is None:
         return claim
     signal: Signal | None = None
-    wanted: Wanted | None = _DURATION if verb in _TIMED or written.every else _COUNTED
-    if verb == "uses":
+    wanted: Wanted | None = _DURATION if operand in _TIMED or written.every else _COUNTED
+    if operand == "use":
         signal, wanted = _resource(reader, written.resource)
     limit = _limit(reader, written.bound, wanted) if wanted is not None else None
     if limit is None:
         return None
     claim = replace(claim, limit=limit, signal=signal, every=written.every)
-    if verb in ("starts", "ends"):
+    if operand == "reaction":
         event = _event(reader, written.event)
         return replace(claim, event=event) if event is not None else None
     per = _per(reader, written.per)
-    if per is None and (written.per is not None or (verb == "runs" and not written.every)):
+    if per is None and (written.per is not None or (operand == "rate" and not written.every)):
         return None
     return claim if per is None else replace(claim, per=per)
 
@@ -286,7 +287,7 @@ def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
     for claim in claims:
         if claim.limit is None:
             return None
-        if claim.verb in _TIMED or claim.every:
+        if VERBS[claim.verb].operand in _TIMED or claim.every:
             dimensions[TIME] = "s"
         elif claim.signal is not None and claim.signal.unit is not None:
             dimensions[claim.signal.unit.dimension] = claim.signal.unit.symbol
@@ -336,7 +337,7 @@ def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
     return "number", parse_unit(written.text) if written is not None else None
 
 
-_TIMED: Final = frozenset(("takes", "succeeds", "starts", "ends"))
+_TIMED: Final = ("duration", "deadline", "reaction")
 _DURATION: Final = Wanted("a time", (TIME,), "s")
 _COUNTED: Final = Wanted("a number", (NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

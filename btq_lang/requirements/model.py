@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from btq_lang.syntax.tree import Item, Node, Tree
     from btq_lang.util.text import Span as TextSpan
 
-    Verb: TypeAlias = Literal[
-        "takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows"
-    ]
     Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
     Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
     Action: TypeAlias = Literal["fail", "halt", "warn", "log"]
@@ -350,7 +347,7 @@ class Claim(Record):
         text: the clause as typed, blanks folded.
     """
 
-    verb: Verb
+    verb: str
     text: str
     place: Place
     subject: Subject | None = None

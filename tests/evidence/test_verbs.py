@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import Any
 
@@ -554,15 +555,18 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
 
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
-    "signal battery : % from {battery}\nsignal speed : m/s from {speed}\nsignal energy : Wh from {energy} counter\n"
+    "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\n"
+    "signal rear_is_clear : bool from {rear_is_clear}\nsignal lamp_on : bool from {lamp_on}\n"
+    "signal humans_near : bool from {humans_near}\n"
 )
 
 
 @pytest.mark.parametrize("word", VERBS)
 def test_every_verb_is_judged(word: str, verify: Verify) -> None:
-    example = VERBS[word].example.replace("Dock", "Pick").replace("PickTray", "Pick")
+    example = re.sub("Batch|PickTray|SlotFree", "Pick", VERBS[word].example)
     found = verify.clause(f"Move {example}", LONG, samples("battery", {-1: 50}), before=SIGNALS)
-    lacks = {"never": "no samples of `speed`", "uses": "no samples of `energy`"}
+    lacks = {"needs": "no samples of `rear_is_clear`", "never": "no samples of `lamp_on`"}
+    lacks["uses"] = "no samples of `energy`"
     assert found["why"] in (lacks.get(word, ""), "nothing that it is about happened in any run", TOO_SHORT)
 
 

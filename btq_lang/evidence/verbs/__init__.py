@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeAlias
 
+from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import Span, Total
 from btq_lang.util.record import Record
 
@@ -70,7 +71,7 @@ def judges_of(claim: Claim, subject: Subject | None) -> tuple[Judge | None, RunJ
     """
     name: str = claim.verb
     if isinstance(subject, Span | Total):
-        if claim.verb != "takes":
+        if VERBS[claim.verb].limits != "completion":
             return None, None
         name = "span" if isinstance(subject, Span) else "total"
     module = import_module(f"{__name__}.{name}")
