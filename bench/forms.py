@@ -35,15 +35,14 @@ class Form:
         return started
 
 
-def forms(checkout: Path, folder: Path, compiled: bool, commit: str = "") -> list[Form]:
+def forms(checkout: Path, folder: Path, compiled: bool) -> list[Form]:
     """The forms of a checkout; what is compiled goes into a folder."""
-    named = f"{commit} " if commit else ""
-    made = [Form(f"{named}interpreted", checkout)]
+    made = [Form("interpreted", checkout)]
     if compiled:
-        progress(f"{named}is being compiled")
-        target = folder / f"compiled-{commit}"
+        progress("btq is being compiled")
+        target = folder / "compiled"
         install(checkout, target, {"BTQ_COMPILE": "1"})
-        made.append(Form(f"{named}compiled", target))
+        made.append(Form("compiled", target))
     return made
 
 

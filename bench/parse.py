@@ -17,7 +17,7 @@ import inputs
 import peers
 import rates
 import report
-from forms import checkout_of, forms
+from forms import Form, checkout_of, forms
 from turns import ROOT
 
 
@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         three = list(inputs.three(folder, options.seed))
         if options.against:
             with checkout_of(options.against, folder) as other:
-                both = own + forms(other, folder, options.compiled, options.against)
+                both = [*own, Form(f"{options.against} interpreted", other)]
                 measured = rates.measure(both, three, options.rounds)
             results, missing, goals = [], {}, rates.compare(measured, options.against)
         else:
