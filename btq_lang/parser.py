@@ -500,6 +500,7 @@ class Parser(NodeParser):
     def req_item(self, level: int) -> Requirement:
         """ReqHead { Clause } NL [ INDENT { Clause { Clause } NL } DEDENT ]"""
         requirement = self.requirement()
+        self.second_quality(requirement)
         self.end_line()
         return self.clause_block(requirement, level)
 

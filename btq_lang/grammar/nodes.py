@@ -374,6 +374,7 @@ class NodeParser(AttributeParser):
         note = "to share it between nodes, write it outside the tree"
         self.complain("syntax-error", at, "a requirement at a node begins with `satisfies`", (note,), (fix,))
         requirement = self.requirement()
+        self.second_quality(requirement)
         self.end_line()
         requirement = self.clause_block(requirement, level)
         self.no_block(level)

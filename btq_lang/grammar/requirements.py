@@ -69,8 +69,6 @@ class ClauseParser(ClaimParser):
             self.complain("syntax-error", self.here(), "a requirement's quality goes before its title")
             self.advance()
             quality = self.quality_path()
-        elif quality is not None and self.at(","):
-            self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
         clauses = self.clauses()
         return Requirement(start, self.last_end(), name, False, parameters, quality, title, clauses)
 
@@ -143,6 +141,11 @@ class ClauseParser(ClaimParser):
             span = Span(last.start + self.base, self.here().end)
             self.complain("syntax-error", span, "a quality's name has no spaces", (), (fix,))
             self.advance()
+
+    def second_quality(self, requirement: Requirement) -> None:
+        """Complain of a comma behind a requirement that is no element of a list: `QualityReq r : safety, usability`."""
+        if requirement.quality is not None and not requirement.clauses and self.at(","):
+            self.expected("the requirement's title, or its clauses", ("a requirement has one quality",))
 
     def bare_title(self, has_quality: bool) -> Word | None:
         """Complain of a title without its quotes, and take it; or of a quality without its `:`."""

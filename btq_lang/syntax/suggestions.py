@@ -133,7 +133,8 @@ def _look_alikes(text: str, start: int) -> tuple[Fix, ...]:
     changes: list[Change] = []
     for at in range(start, line_end(text, start)):
         other = text[at]
-        if not is_quote and other in "\"'#":
+        in_text = is_quote and len(changes) % 2 == 1
+        if (not is_quote and other in "\"'") or (not in_text and text.startswith(("#", "//", "/*"), at)):
             break  # texts and comments have the characters that they have
         plain = _LOOKS_LIKE.get(other) or normalize("NFKC", other)
         if plain != other and plain.isascii() and (other in _OTHER_QUOTES) == is_quote:

@@ -876,6 +876,9 @@ def test_there_are_no_reserved_words_for_the_lexer() -> None:
         *((f"include {sign}b.btq{sign}", 'include "b.btq"') for sign in "“”„‟«»"),
         *((f"include {sign}b.btq{sign}", "include 'b.btq'") for sign in "‘’"),
         ("include “b≤.btq”", 'include "b≤.btq"'),
+        ("include “b.btq”  # “the” stations", 'include "b.btq"  # “the” stations'),
+        ("include “b #2.btq”  // “the” stations", 'include "b #2.btq"  // “the” stations'),
+        ("context a : b ≤ 3 /* ≥ */", "context a : b <= 3 /* ≥ */"),
     ],
 )
 def test_characters_that_look_like_others(text: str, fixed: str) -> None:

@@ -312,6 +312,11 @@ def test_a_type_of_several_words_is_one() -> None:
         ),
         ("input a b", "input a", "2:11 syntax-error «b» expected `:` and the port's type, found `b`"),
         ("input a = 1 : int", "input a = 1", "2:15 syntax-error «:» expected the end of the line, found `:`"),
+        (
+            "input a : b = 30 s (c = 2)",
+            "input a : b = 30",
+            "2:20 syntax-error «s» expected the end of the line, found `s`",
+        ),
         ("input 'a' : int", "input 'a' : int", "2:9 syntax-error «'a'» a port's name takes no quotes"),
         *(
             (f"input a : {type_} = 1", f"input a : {type_} = 1", f"2:13 syntax-error «{type_}» this type needs quotes")

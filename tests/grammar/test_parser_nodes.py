@@ -498,6 +498,9 @@ def test_forgotten_brackets_are_one_diagnostic_whatever_they_swallow() -> None:
         ("satisfies QualityReq a, b", "satisfies {a}, b"),
         ("satisfies QualityReq a QualityReq b", "satisfies {a}, {b}"),
         ("satisfies QualityReq a keeps b, c", "satisfies {a; keeps b}, c"),
+        ("satisfies QualityReq a : b, c", "satisfies {a : b}, c"),
+        ("satisfies QualityReq a : b 'd', c", "satisfies {a : b 'd'}, c"),
+        ("satisfies QualityReq a : b 'd', QualityReq c : b", "satisfies {a : b 'd'}, {c : b}"),
         (
             "satisfies QualityReq a : b.c 'd' keeps e in at least 9 % of runs",
             "satisfies {a : b.c 'd'; keeps e; odds >= 9% of runs}",
