@@ -33,7 +33,6 @@ from btq_lang.syntax.scan import (
     SMALL_A,
     SMALL_Z,
     SPACE,
-    TAB,
     ZERO,
     begins_name,
     blanks_end,
@@ -269,14 +268,8 @@ class Lexer:
 
     def scan(self) -> None:
         """Cut the opened line into tokens, through all lines that its brackets join."""
-        kinds: list[int] = []
-        starts: list[int] = []
-        raws: list[str] = []
-        self.kinds, self.starts, self.raws = kinds, starts, raws
-        brackets = self._brackets
-        self._strange = False
-        self._wrong_units = 0
-        self._line_blanks = self.blanks
+        self._begin_line()
+        kinds, starts, raws, brackets = self.kinds, self.starts, self.raws, self._brackets
         text, words = self.text, self.words
         size: i64 = self.size
         position: i64 = self.position
@@ -311,26 +304,28 @@ class Lexer:
                 brackets.pop()
             elif code == COMMA:
                 kind = OPERATOR
-            elif code == TAB:
-                position += 1
-                continue
             elif code in (LINE_FEED, RETURN):
-                if brackets:
-                    position = self._continue(position)
+                position = self._continue(position) if brackets else position
                 if not brackets:
                     break
                 continue
-            elif ZERO <= code <= NINE:
-                position = self._number(position)
-                continue
             else:
-                position = self._other(position, text[position])
+                is_digit = ZERO <= code <= NINE
+                position = self._number(position) if is_digit else self._other(position, text[position])
                 continue
             kinds.append(kind)
             starts.append(position)
             raws.append(text[position:end])
             position = end
         self._end_line(position)
+
+    def _begin_line(self) -> None:
+        self.kinds = []
+        self.starts = []
+        self.raws = []
+        self._strange = False
+        self._wrong_units = 0
+        self._line_blanks = self.blanks
 
     def _end_line(self, position: i64) -> None:
         """NEWLINE, and what is remembered of the line"""
@@ -369,7 +364,9 @@ class Lexer:
         return end
 
     def _other(self, start: i64, character: str) -> i64:
-        """Symbols, signs, braces and comments."""
+        """Symbols, signs, braces and comments; a tab is passed over."""
+        if character == "\t":
+            return start + 1
         text = self.text
         if character == "#" or character == "/":
             behind = self._comment(start)

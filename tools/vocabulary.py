@@ -15,8 +15,8 @@ from btq_lang.catalog.qualities import EDITIONS, qualities
 from btq_lang.catalog.quality_words import ALIASES, AMBIGUOUS, PAPER_NAMES
 from btq_lang.catalog.units import SYMBOLS as UNITS
 from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
-from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 # Words that open an item of a file; what stands behind them differs, so each grammar treats them one by one.

@@ -5,9 +5,11 @@ mistake gives one diagnostic.  Logical lines come in, trees of `syntax` go out. 
 files, and what names mean.
 
     cursor.py        where the parser is: the next token, what is expected, recovery
-    nodes.py         nodes and their children
-    attributes.py    what stands in brackets
-    requirements.py  requirements and their clauses
+    items.py         the items of a file
+    nodes.py         trees' blocks: nodes, their children, ports
+    attributes.py    attributes in brackets, and what is attached to nodes
+    requirements.py  requirements, their parameters and units
+    clauses.py       the clauses of a requirement
     claims.py        what a clause demands
     conditions.py    what it demands it under
     blocks.py        the lines below a head

@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.grammar.cursor import VALUES, shown
-from btq_lang.grammar.requirements import ClauseParser
+from btq_lang.grammar.requirements import RequirementParser
 from btq_lang.syntax.suggestions import CHILDREN, value_meant
 from btq_lang.syntax.tokens import (
     BRACED,
@@ -40,13 +40,13 @@ from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
 
-class AttributeParser(ClauseParser):
+class AttributeParser(RequirementParser):
     """A cursor that can read what stands at a node."""
 
     # ---- attributes ----
 
-    def pairs_only(self) -> tuple[Pair, ...]:
-        """Attributes of something that takes no qualities."""
+    def pairs(self) -> tuple[Pair, ...]:
+        """Pairs = "(" { ( "parameters" Pair { "," Pair } | Pair ) [ "," ] } ")";  none where no bracket opens"""
         if self.kind != OPEN:
             return ()
         clauses: list[NodeClause] = []
@@ -297,22 +297,23 @@ class AttributeParser(ClauseParser):
             self.advance()  # `satisfied by r`, reported at its first word
         if not self.group:
             self.skip_brackets("requirements of a node need no brackets")
-        while True:
-            if self.at_word("QualityReq"):
-                found.append(self.requirement())
-            else:
-                if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
-                    at = self.last_end() + self.base
-                    fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
-                    self.expected("another requirement after the comma", (), (fix,))
-                    break
-                name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
-                if name is None:
-                    break
-                found.append(self.req_ref(name))
+        while (use := self.req_use()) is not None:
+            found.append(use)
             if not (self.at_word("QualityReq") or self.list_goes_on()):
                 break
         return tuple(found)
+
+    def req_use(self) -> Requirement | ReqRef | None:
+        """ReqUse = Requirement | ReqRef"""
+        if self.at_word("QualityReq"):
+            return self.requirement()
+        if self.kind == NEWLINE and self.index and self.raws[self.index - 1] == ",":
+            at = self.last_end() + self.base
+            fix = replace_fix("Remove `,`", Span(at - 1, at), "", safe=True)
+            self.expected("another requirement after the comma", (), (fix,))
+            return None
+        name = self.requirement_id("a requirement: its ID, or QualityReq and a definition")
+        return self.req_ref(name) if name is not None else None
 
     def list_goes_on(self, qualities: bool = False) -> bool:
         """Pass a comma if another element follows it; in brackets an attribute may follow it instead."""

@@ -57,6 +57,14 @@ class ClaimParser(ConditionParser):
             if subject is not None:
                 self.no_verb(subject)
             return None
+        return self.verb(start, subject)
+
+    def verb(self, start: int, subject: Subject | None) -> Claim:
+        """Verb = "takes" Bound | "succeeds" [ "within" Bounded ] | "needs" Cond | …;  what it claims of the subject
+
+        Args:
+            start: of the claim.
+        """
         verb = self.take()
         bound: Bound | None = None
         condition: Condition | None = None
@@ -71,10 +79,7 @@ class ClaimParser(ConditionParser):
             bound = self.within() if self.accept_word("within") else None
         elif word in _OF_CONDITIONS:
             if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
-                note = (
-                    "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
-                )
-                self.expected("a condition", (note,))
+                self.expected("a condition", (_NEVER_FAILS,))
             else:
                 condition = self.cond()
         elif word == "uses":
@@ -249,8 +254,8 @@ class ClaimParser(ConditionParser):
         self.skip_sign(":")
         start = self.start()
         if self.accept_word("between"):
-            lower = self.amount()
-            upper = self.amount() if self.expect_word("and") else None
+            lower = self.simple()
+            upper = self.simple() if self.expect_word("and") else None
             return Bound(start, self.last_end(), "between", lower, upper)
         relation = None
         if self.kind == NAME and self.kinds[self.index + 1] == NAME:
@@ -305,7 +310,7 @@ class ClaimParser(ConditionParser):
 
     def bounded(self) -> Bounded | None:
         """Bounded = Simple | Simple "if" Cond { "," Simple "if" Cond } "else" Simple"""
-        value = self.amount()
+        value = self.simple()
         if value is None or not self.at_word("if"):
             return value
         cases: list[Case] = []
@@ -318,16 +323,16 @@ class ClaimParser(ConditionParser):
                 self.complain("nested-too-deep", self.here(), f"more than {MAX_CASES} cases in one value", (note,))
                 self.recover()
                 return Table(tuple(cases))
-            value = self.amount()
+            value = self.simple()
             if value is None:
                 return Table(tuple(cases))
             if not self.at_word("if"):
                 self.expected("`if` and a condition, or `else` instead of the comma")
                 return Table(tuple(cases))
-        otherwise = self.amount() if self.expect_word("else") else None
+        otherwise = self.simple() if self.expect_word("else") else None
         return Table(tuple(cases), otherwise)
 
-    def amount(self, strings: bool = False) -> Amount | None:
+    def simple(self, strings: bool = False) -> Amount | None:
         """Simple = [ "-" ] ( QUANTITY | NUMBER ) | NAME;  with `strings` a STRING too"""
         self.skip_sign(":")
         negative = self.accept("-")
@@ -373,6 +378,9 @@ MODALS: Final = frozenset(("must", "shall", "should", "will", "may"))
 _NO_NAMES: Final = HEADS | {"and", "or", "not", "if", "else", "is", "to", "of", "by", "per", "at", "within", "after"}
 _COMPARISONS: Final = frozenset(("<=", "<", ">=", ">", "==", "!="))
 _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
+_NEVER_FAILS: Final = (
+    "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
+)
 _OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
 _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(

@@ -430,22 +430,25 @@ class NodeParser(AttributeParser):
             self.complain("syntax-error", self.here(), "a port's name takes no quotes", (), fixes)
             name = self.take()
         if self.accept(":"):
-            type_ = self.name("the port's type")
-            while type_ is not None and self.at("::"):
-                self.advance()
-                last = self.name("the rest of the type")
-                if last is not None:
-                    type_ = TypeWord(NAME, type_.start, self.text[self.base + type_.start : self.base + last.end])
-            if type_ is not None and self.goes_on(type_):
-                type_ = self.unquoted_type(type_)
+            type_ = self.type_()
         elif name is not None and self.kind == NAME:
             fix = replace_fix("Put `:` before it", Span(self.here().start, self.here().start), ": ")
             self.expected("`:` and the port's type", ("a port is written `input name : type`",), (fix,))
         default = self.value() if self.accept("=") else None
-        attributes = self.pairs_only()
+        attributes = self.pairs()
         text = self.take() if self.kind == STRING else None
         notes = ("write a port's type after `:`, and its text in quotes",)
         return Port(direction.start, self.end_line(notes), direction, name, type_, default, attributes, text)
+
+    def type_(self) -> Word | None:
+        """Type = Name { "::" Name };  its words are one"""
+        found = self.name("the port's type")
+        while found is not None and self.at("::"):
+            self.advance()
+            last = self.name("the rest of the type")
+            if last is not None:
+                found = TypeWord(NAME, found.start, self.text[self.base + found.start : self.base + last.end])
+        return self.unquoted_type(found) if found is not None and self.goes_on(found) else found
 
     def goes_on(self, type_: Word) -> bool:
         """Whether more than a name of C++ stands behind `:`: `vector<int>`, `unsigned int`, `Pose*`."""

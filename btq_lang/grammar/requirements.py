@@ -1,4 +1,4 @@
-"""The part of the parser that reads requirements, their clauses, and the lists that hold them.
+"""The part of the parser that reads requirements but for their clauses, and the units of what is declared.
 
 Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
 """
@@ -7,28 +7,19 @@ from __future__ import annotations
 
 from typing import Final
 
-from btq_lang.catalog.measured import measured
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.grammar.claims import MEANT, MODALS, QUALITY_IN_HEAD, RELATIONS, VERBS, ClaimParser, is_time
-from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
-from btq_lang.syntax.scan import is_unit, line_end, path_end, unit_run
+from btq_lang.grammar.claims import MEANT, MODALS, RELATIONS, VERBS
+from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
+from btq_lang.grammar.conditions import HEADS
+from btq_lang.syntax.scan import is_unit, path_end, unit_run
 from btq_lang.syntax.suggestions import unknown_unit
-from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPEN, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Argument,
-    Because,
-    Clause,
-    Confidence,
-    Goal,
-    How,
-    Odds,
-    OnViolation,
     Parameter,
     QualityPath,
     ReqRef,
     Requirement,
-    Scope,
-    Window,
     Word,
     quote,
     unquote,
@@ -36,13 +27,10 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-EXPERIMENTS: Final = frozenset(("activations", "runs"))
-ACTIONS: Final = ("fail", "halt", "warn", "log")
-METHODS: Final = ("monitor", "analysis", "test", "review")
 UNITLESS: Final = frozenset(("bool", "text", "1"))  # what may stand for a unit behind the `:` of a signal
 
 
-class ClauseParser(ClaimParser):
+class RequirementParser(ClauseParser):
     """A cursor that can read requirements."""
 
     # ---- requirements ----
@@ -150,7 +138,7 @@ class ClauseParser(ClaimParser):
     def bare_title(self, has_quality: bool) -> Word | None:
         """Complain of a title without its quotes, and take it; or of a quality without its `:`."""
         following = self.index + 1
-        if self.kind != NAME or self.group or self.raw in VERBS or self.raw in HEADS or self.raw in _ENDS_CLAUSES:
+        if self.kind != NAME or self.group or self.raw in VERBS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
             return None
         is_word = self.kinds[following] == NEWLINE
         if self.kinds[following] == STRING and not has_quality:
@@ -181,7 +169,7 @@ class ClauseParser(ClaimParser):
 
     def is_prose(self, index: int) -> bool:
         """Whether a word behind another is none that makes a claim of both: a verb, or `must` and a verb."""
-        if self.kinds[index] != NAME or self.raws[index] in VERBS or self.raws[index] in _ENDS_CLAUSES:
+        if self.kinds[index] != NAME or self.raws[index] in VERBS or self.raws[index] in ENDS_CLAUSES:
             return False
         if self.raws[index] in MODALS:
             return not (self.kinds[index + 1] == NAME and near(self.raws[index + 1], VERBS, limit=1))
@@ -199,7 +187,7 @@ class ClauseParser(ClaimParser):
         if raw in VERBS and second:
             return second == "between" or (second, self.raws[index + 2]) in RELATIONS
         is_reason = raw == "because" and self.kinds[index + 1] == STRING
-        return is_reason or raw in _ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
+        return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES
 
     def classic_requirement(self, start: int) -> Requirement:
         """ "QualityReq" "ID" "=" Name [ [ "," ] "description" "=" Name ] { Clause }"""
@@ -230,23 +218,30 @@ class ClauseParser(ClaimParser):
         self.complain("syntax-error", span, f"expected `=` after `{self.raws[keys[0]]}`", (), (fix,))
 
     def params(self) -> tuple[Parameter, ...]:
-        """Params = "(" NAME ":" UNIT [ "=" Bounded ] { "," NAME ":" UNIT [ "=" Bounded ] } ")\""""
+        """Params = "(" Param { "," Param } ")\""""
         self.advance()
         self.group += 1
         found: list[Parameter] = []
-        while name := self.plain_name("a parameter's name"):
-            unit = None
-            if self.at("="):
-                note = "write its unit after `:`, and its default after that: `limit : m = 3 m`"
-                self.expected("`:` and the parameter's unit", (note,))
-            elif self.expect(":"):
-                unit = self.unit()
-            default = self.bounded() if self.accept("=") else None
-            found.append(Parameter(name, unit, default))
+        while (parameter := self.param()) is not None:
+            found.append(parameter)
             if not self.accept(","):
                 break
         self.close_group("`,` or `)`")
         return tuple(found)
+
+    def param(self) -> Parameter | None:
+        """Param = NAME ":" UNIT [ "=" Bounded ]"""
+        name = self.plain_name("a parameter's name")
+        if name is None:
+            return None
+        unit = None
+        if self.at("="):
+            note = "write its unit after `:`, and its default after that: `limit : m = 3 m`"
+            self.expected("`:` and the parameter's unit", (note,))
+        elif self.expect(":"):
+            unit = self.unit()
+        default = self.bounded() if self.accept("=") else None
+        return Parameter(name, unit, default)
 
     def req_ref(self, name: Word) -> ReqRef:
         """ReqRef = Name [ "(" NAME "=" Bounded { "," NAME "=" Bounded } ")" ];  the name is taken"""
@@ -289,204 +284,6 @@ class ClauseParser(ClaimParser):
             names.append(name)
         return QualityPath(tuple(names))
 
-    # ---- clauses ----
-
-    def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
-        """{ Clause }, to the end of the line or of what holds them"""
-        found: list[Clause] = []
-        while self.kind == NAME or self.kind == STRING:
-            following = self.index + 1
-            if self.kind == NAME and self.raw in _ENDS_CLAUSES and self.raw not in HEADS:
-                break
-            if self.group and self.is_operator(following, "="):
-                break
-            clause = self.clause()
-            if clause is None:
-                return tuple(found)
-            found.append(clause)
-        if at_least_one and not found and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
-            self.bare_bound()
-        elif at_least_one and not found:
-            self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
-        return tuple(found)
-
-    def clause(self) -> Clause | None:
-        """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
-        start = self.start()
-        word = self.raw if self.kind == NAME else ""
-        if word in VERBS or word in SUBJECT_HEADS:
-            return self.claim()
-        if word == "while" or word == "when":
-            scope = self.take()
-            condition = self.cond()
-            return Scope(start, self.last_end(), scope, condition)
-        if word == "in" or word == "with":
-            return self.odds()
-        if word == "confidence":
-            self.advance()
-            value = self.percentage("95 %")
-            return Confidence(start, self.last_end(), value)
-        if word == "over":
-            return self.window()
-        if word == "on":
-            self.advance()
-            if not self.accept_word("violation"):
-                self.no_violation()
-            self.skip_sign("=")
-            action = self.one_of(ACTIONS)
-            return OnViolation(start, self.last_end(), action)
-        if word == "on_violation":
-            fix = replace_fix("Write `on violation`", self.here(), "on violation", safe=True)
-            self.complain("syntax-error", self.here(), "expected `on violation`, found `on_violation`", (), (fix,))
-            self.advance()
-            self.skip_sign("=")
-            return OnViolation(start, self.last_end(), self.one_of(ACTIONS))
-        if word == "goal":
-            self.advance()
-            bounded = self.bounded()
-            return Goal(start, self.last_end(), bounded)
-        if word == "because":
-            self.advance()
-            text = self.take() if self.kind == STRING else None
-            if text is None:
-                said = self.here().start
-                rest = self.text[said : line_end(self.text, said)].partition(" #")[0].rstrip()
-                fix = replace_fix("Put quotes around it", Span(said, said + len(rest)), quote(rest))
-                self.expected("the reason in quotes", (), (fix,) if rest and not self.group else ())
-            return Because(start, self.last_end(), text)
-        if word == "verified":
-            self.advance()
-            self.expect_word("by")
-            method = self.one_of(METHODS)
-            return How(start, self.last_end(), method)
-        if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
-            self.expected(_A_CLAUSE)
-            return None
-        if self.is_no_time():
-            at = self.starts[self.index]
-            self.report(unknown_unit(self.text, at, at + len(self.raw)))
-            self.advance()
-            return self.clause() if self.kind == NAME else None
-        return self.claim()
-
-    def no_violation(self) -> None:
-        """Complain that `violation` is missing, and pass over what is meant for it: `on failure fail`."""
-        following = self.index + 1
-        if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
-            fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
-            self.complain("syntax-error", self.here(), f"expected `violation`, found `{self.raw}`", (), (fix,))
-            self.advance()
-        else:
-            self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
-
-    def bare_bound(self) -> None:
-        """Complain of `<= 30 s` without a verb."""
-        sign, value = self.raw, self.index + 1
-        bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
-        fixes: tuple[Fix, ...] = ()
-        if bound is not None and self.kinds[value] == QUANTITY and is_time(self.raws[value]):
-            written = f"takes {bound} {self.raws[value]}"
-            span = Span(self.here().start, self.starts[value] + len(self.raws[value]))
-            fixes = (replace_fix(f"Write `{written}`", span, written),)
-        self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
-
-    def is_no_time(self) -> bool:
-        """Whether a word stands behind a number where its unit of time should be, and is nothing else."""
-        if self.kind != NAME or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
-            return False
-        following = self.index + 1
-        ends = self.kinds[following] in (NEWLINE, CLOSE) or (
-            self.kinds[following] == NAME and self.raws[following] in HEADS
-        )
-        is_misspelt = near(self.raw, VERBS | HEADS, limit=1)
-        return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
-
-    def odds(self) -> Odds:
-        """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
-        start = self.start()
-        relation = ">="
-        value: Word | None = None
-        experiments = None
-        if self.accept_word("in"):
-            if self.kind == QUANTITY:
-                fix = replace_fix("Put `at least` before it", Span(self.here().start, self.here().start), "at least ")
-                self.complain(
-                    "syntax-error", self.here(), f"a probability is written `in at least {self.raw}`", (), (fix,)
-                )
-                value = self.take()
-            else:
-                ok = self.expect_word("at") and self.expect_word("least")
-                value = self.percentage("98 %") if ok else None
-            if value is not None and self.expect_word("of", forgotten=self.raw in EXPERIMENTS):
-                experiments = self.one_of(("activations", "runs"))
-            return Odds(start, self.last_end(), relation, value, experiments)
-        self.advance()
-        if self.kind == QUANTITY:
-            at = self.here()
-            fix = replace_fix("Put `probability >=` before it", Span(at.start, at.start), "probability >= ")
-            self.complain("syntax-error", at, f"a probability is written `with probability >= {self.raw}`", (), (fix,))
-            value = self.take()
-        elif self.expect_word("probability"):
-            if self.at(">=") or self.at(">"):
-                relation = self.raw
-                self.advance()
-                value = self.percentage("98 %")
-            elif self.kind == QUANTITY:
-                fix = replace_fix("Put `>=` before it", Span(self.here().start, self.here().start), ">= ")
-                message = f"a probability is written `with probability >= {self.raw}`"
-                self.complain("syntax-error", self.here(), message, (), (fix,))
-                value = self.take()
-            else:
-                fixes: tuple[Fix, ...] = ()
-                if self.kind == NUMBER and 0 < float(self.raw) <= 1:
-                    written = f">= {float(self.raw) * 100:.10g} %"
-                    fixes = (replace_fix(f"Write `{written}`", self.here(), written),)
-                self.expected("`>=` or `>` and a percentage", (), fixes)
-        if value is not None and self.accept_word("of"):
-            experiments = self.one_of(("activations", "runs"))
-        return Odds(start, self.last_end(), relation, value, experiments)
-
-    def percentage(self, example: str) -> Word | None:
-        """QUANTITY"""
-        fixes: tuple[Fix, ...] = ()
-        if self.kind == NUMBER:
-            share = float(self.raw)
-            percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
-            fixes = (replace_fix(f"Write `{percent}`", self.here(), percent),)
-        if self.kind == QUANTITY:
-            return self.take()
-        self.expected(f"a percentage: {example}", (), fixes)
-        return None
-
-    def window(self) -> Window:
-        """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
-        start = self.start()
-        self.advance()
-        self.expect_word("last")
-        size = experiments = None
-        if self.kind == QUANTITY:
-            size = self.take()
-        elif self.kind == NUMBER:
-            size = self.take()
-            experiments = self.one_of(("activations", "runs"))
-        else:
-            self.expected("a number of runs or activations, or a duration")
-        return Window(start, self.last_end(), size, experiments)
-
-    def one_of(self, words: tuple[str, ...]) -> Word | None:
-        self.skip_sign(":")
-        if self.kind == NAME and self.raw in words:
-            return self.take()
-        what = f"{', '.join(words[:-1])} or {words[-1]}"
-        meant = near(self.raw, words, limit=1) or tuple(word for word in words if self.raw.startswith(word))
-        meant = meant or tuple(word for word in _OTHER_WORDS.get(self.raw, ()) if word in words)
-        if self.kind != NAME or not meant:
-            return self.missing_word(what)
-        fixes = tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
-        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), fixes)
-        self.advance()
-        return None
-
     # ---- units ----
 
     def unit(self) -> Word | None:
@@ -516,12 +313,6 @@ class ClauseParser(ClaimParser):
 
 
 _TITLES: Final = ("description", "title", "text")
-_OTHER_WORDS: Final = {  # for actions and methods
-    **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
-    **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
-    **dict.fromkeys(("inspection", "demonstration"), ("review", "test")),
-    **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
-}
 _OTHER_SORTS: Final = {
     **dict.fromkeys(("boolean", "Boolean", "Bool", "flag"), "bool"),
     **dict.fromkeys(("string", "String", "str", "std::string"), "text"),
@@ -532,5 +323,3 @@ _A_QUALITY: Final = "a quality goes after `:`"
 _BEGIN_CLAUSES: Final = frozenset(
     (("in", "at"), ("with", "probability"), ("on", "violation"), ("over", "last"), ("verified", "by"))
 )
-_A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"
-_ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))

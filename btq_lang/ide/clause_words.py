@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.catalog.verbs import words as words_of
 from btq_lang.grammar.claims import HAPPENINGS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS
-from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.syntax.tokens import BRACED, CLOSE, NAME, NUMBER, OPEN, QUANTITY, STRING, Token
 from btq_lang.util.record import Record, replace
 

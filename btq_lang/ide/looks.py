@@ -11,9 +11,9 @@ from typing import Final
 
 from btq_lang.catalog.nodes import lookup
 from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
+from btq_lang.grammar.clauses import EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
-from btq_lang.grammar.requirements import ACTIONS as ON_VIOLATION
-from btq_lang.grammar.requirements import EXPERIMENTS, METHODS
 from btq_lang.ide.legend import MODIFIERS, TYPES
 from btq_lang.syntax.tokens import (
     BRACED,

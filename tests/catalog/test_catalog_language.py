@@ -9,9 +9,9 @@ import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
 from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
-from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import NODE_CLAUSES
 

@@ -10,10 +10,10 @@ from typing import TypeAlias
 import pytest
 
 from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
-from btq_lang.grammar.requirements import ACTIONS, EXPERIMENTS, METHODS
-from btq_lang.parser import parse
+from btq_lang.parser import Parser, parse
 from btq_lang.syntax.tokens import DIRECTIONS, NODE_CLAUSES, SYMBOLS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "grammar.md").read_text(encoding="utf-8")
@@ -27,6 +27,16 @@ TOKENS = {
     "SYMBOL": tuple(sorted(SYMBOLS)),
 }
 LAYOUT = ("NL", "INDENT", "DEDENT")
+WITHOUT_A_FUNCTION = {  # productions, and why
+    "Edition": "a name to the parser; the checks know the editions",
+    "Category": "a set of words",
+    "Kind": "`node` decides between it and a label by what follows",
+    "Label": "as Kind",
+    "Attribute": "the branches of the loop in `attributes`, of which a file has thousands",
+    "ReqHead": "of two forms, which `requirement` and `classic_requirement` read with the clauses behind them",
+    "Cmp": "a set of words",
+    "Func": "a set of words",
+}
 
 # A part of a rule: ("word", its text), ("name", of a production), ("one" or "all", parts), ("maybe" or "many", part).
 Part: TypeAlias = tuple[str, "str | Part | list[Part]"]
@@ -116,6 +126,13 @@ def _derive(part: Part, chance: random.Random, words: list[str], depth: int) -> 
 def test_every_production_is_used_and_defined() -> None:
     used = set(re.findall(r"\('name', '(\w+)'\)", repr(list(RULES.values()))))
     assert used - set(TOKENS) - set(LAYOUT) == set(RULES) - {"File"}
+
+
+def test_every_production_is_a_function_of_the_same_name() -> None:
+    named = {production: re.sub(r"(?<!^)(?=[A-Z])", "_", production).lower() for production in RULES}
+    named["Type"] = "type_"  # `type` is Python's own
+    without = {production for production, function in named.items() if not hasattr(Parser, function)}
+    assert without == set(WITHOUT_A_FUNCTION)
 
 
 @pytest.mark.parametrize("seed", range(400))

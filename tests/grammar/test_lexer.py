@@ -10,9 +10,9 @@ import pytest
 from syntax_asserts import assert_fix, assert_invariants, assert_parse, escaped, show_problems, written
 
 from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.clauses import EXPERIMENTS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
-from btq_lang.grammar.requirements import EXPERIMENTS
 from btq_lang.lexer import Lexer, tokens
 from btq_lang.parser import parse
 from btq_lang.syntax.tokens import BLANK, DEDENT, DIRECTIONS, INDENT, NAMES, NEWLINE, NODE_CLAUSES, SYMBOLS, Token

@@ -1,0 +1,283 @@
+"""The part of the parser that reads clauses: a claim, or what limits, weighs or explains the claims of a requirement.
+
+Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.catalog.measured import measured
+from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERBS, ClaimParser, is_time
+from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
+from btq_lang.syntax.scan import line_end
+from btq_lang.syntax.suggestions import unknown_unit
+from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.syntax.tree import (
+    Because,
+    Clause,
+    Confidence,
+    Goal,
+    How,
+    Odds,
+    OnViolation,
+    Scope,
+    Window,
+    Word,
+    quote,
+)
+from btq_lang.util.spelling import near
+from btq_lang.util.text import Span
+
+EXPERIMENTS: Final = frozenset(("activations", "runs"))
+ACTIONS: Final = ("fail", "halt", "warn", "log")
+METHODS: Final = ("monitor", "analysis", "test", "review")
+ENDS_CLAUSES: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "QualityReq", "Quality"))
+
+
+class ClauseParser(ClaimParser):
+    """A cursor that can read clauses."""
+
+    def clauses(self, at_least_one: bool = False) -> tuple[Clause, ...]:
+        """{ Clause }, to the end of the line or of what holds them"""
+        found: list[Clause] = []
+        while self.kind == NAME or self.kind == STRING:
+            following = self.index + 1
+            if self.kind == NAME and self.raw in ENDS_CLAUSES and self.raw not in HEADS:
+                break
+            if self.group and self.is_operator(following, "="):
+                break
+            clause = self.clause()
+            if clause is None:
+                return tuple(found)
+            found.append(clause)
+        if at_least_one and not found and self.kind == OPERATOR and self.raw in ("<=", "<", ">=", ">"):
+            self.bare_bound()
+        elif at_least_one and not found:
+            self.expected(_A_CLAUSE, (QUALITY_IN_HEAD,) if self.at_word("satisfices") else ())
+        return tuple(found)
+
+    def clause(self) -> Clause | None:
+        """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
+        word = self.raw if self.kind == NAME else ""
+        if word in VERBS or word in SUBJECT_HEADS:
+            return self.claim()
+        if word == "while" or word == "when":
+            return self.scope()
+        if word == "in" or word == "with":
+            return self.odds()
+        if word == "confidence":
+            return self.confidence()
+        if word == "over":
+            return self.window()
+        if word == "on" or word == "on_violation":
+            return self.on_violation()
+        if word == "goal":
+            return self.goal()
+        if word == "because":
+            return self.because()
+        if word == "verified":
+            return self.how()
+        if (self.lost_quote() or self.wrong_unit()) and not self.is_verb(1):
+            self.expected(_A_CLAUSE)
+            return None
+        if self.is_no_time():
+            at = self.starts[self.index]
+            self.report(unknown_unit(self.text, at, at + len(self.raw)))
+            self.advance()
+            return self.clause() if self.kind == NAME else None
+        return self.claim()
+
+    def scope(self) -> Scope:
+        """Scope = ( "while" | "when" ) Cond"""
+        word = self.take()
+        condition = self.cond()
+        return Scope(word.start, self.last_end(), word, condition)
+
+    def odds(self) -> Odds:
+        """ "in" "at" "least" QUANTITY "of" Experiments | "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" … ]"""
+        start = self.start()
+        return self.share(start) if self.accept_word("in") else self.probability(start)
+
+    def share(self, start: int) -> Odds:
+        """ "at" "least" QUANTITY "of" Experiments"""
+        value: Word | None = None
+        experiments = None
+        if self.kind == QUANTITY:
+            at = self.here()
+            fix = replace_fix("Put `at least` before it", Span(at.start, at.start), "at least ")
+            self.complain("syntax-error", at, f"a probability is written `in at least {self.raw}`", (), (fix,))
+            value = self.take()
+        elif self.expect_word("at") and self.expect_word("least"):
+            value = self.percentage("98 %")
+        if value is not None and self.expect_word("of", forgotten=self.raw in EXPERIMENTS):
+            experiments = self.experiments()
+        return Odds(start, self.last_end(), ">=", value, experiments)
+
+    def probability(self, start: int) -> Odds:
+        """ "with" "probability" ( ">=" | ">" ) QUANTITY [ "of" Experiments ]"""
+        relation = ">="
+        value: Word | None = None
+        experiments = None
+        self.advance()
+        if self.kind == QUANTITY:
+            value = self.after_missing("probability >=")
+        elif self.expect_word("probability"):
+            if self.at(">=") or self.at(">"):
+                relation = self.raw
+                self.advance()
+                value = self.percentage("98 %")
+            elif self.kind == QUANTITY:
+                value = self.after_missing(">=")
+            else:
+                fixes: tuple[Fix, ...] = ()
+                if self.kind == NUMBER and 0 < float(self.raw) <= 1:
+                    written = f">= {float(self.raw) * 100:.10g} %"
+                    fixes = (replace_fix(f"Write `{written}`", self.here(), written),)
+                self.expected("`>=` or `>` and a percentage", (), fixes)
+        if value is not None and self.accept_word("of"):
+            experiments = self.experiments()
+        return Odds(start, self.last_end(), relation, value, experiments)
+
+    def confidence(self) -> Confidence:
+        """ "confidence" QUANTITY"""
+        start = self.start()
+        self.advance()
+        value = self.percentage("95 %")
+        return Confidence(start, self.last_end(), value)
+
+    def window(self) -> Window:
+        """ "over" "last" ( NUMBER Experiments | QUANTITY )"""
+        start = self.start()
+        self.advance()
+        self.expect_word("last")
+        size = experiments = None
+        if self.kind == QUANTITY:
+            size = self.take()
+        elif self.kind == NUMBER:
+            size = self.take()
+            experiments = self.experiments()
+        else:
+            self.expected("a number of runs or activations, or a duration")
+        return Window(start, self.last_end(), size, experiments)
+
+    def on_violation(self) -> OnViolation:
+        """ "on" "violation" ( "fail" | "halt" | "warn" | "log" )"""
+        start = self.start()
+        if self.at_word("on_violation"):
+            fix = replace_fix("Write `on violation`", self.here(), "on violation", safe=True)
+            self.complain("syntax-error", self.here(), "expected `on violation`, found `on_violation`", (), (fix,))
+            self.advance()
+        else:
+            self.advance()
+            if not self.accept_word("violation"):
+                self.no_violation()
+        self.skip_sign("=")
+        action = self.one_of(ACTIONS)
+        return OnViolation(start, self.last_end(), action)
+
+    def goal(self) -> Goal:
+        """ "goal" Bounded"""
+        start = self.start()
+        self.advance()
+        value = self.bounded()
+        return Goal(start, self.last_end(), value)
+
+    def because(self) -> Because:
+        """ "because" STRING"""
+        start = self.start()
+        self.advance()
+        text = self.take() if self.kind == STRING else None
+        if text is None:
+            said = self.here().start
+            rest = self.text[said : line_end(self.text, said)].partition(" #")[0].rstrip()
+            fix = replace_fix("Put quotes around it", Span(said, said + len(rest)), quote(rest))
+            self.expected("the reason in quotes", (), (fix,) if rest and not self.group else ())
+        return Because(start, self.last_end(), text)
+
+    def how(self) -> How:
+        """ "verified" "by" ( "monitor" | "analysis" | "test" | "review" )"""
+        start = self.start()
+        self.advance()
+        self.expect_word("by")
+        method = self.one_of(METHODS)
+        return How(start, self.last_end(), method)
+
+    def experiments(self) -> Word | None:
+        """ "activations" | "runs" """
+        return self.one_of(("activations", "runs"))
+
+    def percentage(self, example: str) -> Word | None:
+        """QUANTITY"""
+        fixes: tuple[Fix, ...] = ()
+        if self.kind == NUMBER:
+            share = float(self.raw)
+            percent = f"{share * 100:.10g} %" if 0 < share <= 1 else f"{self.raw} %"
+            fixes = (replace_fix(f"Write `{percent}`", self.here(), percent),)
+        if self.kind == QUANTITY:
+            return self.take()
+        self.expected(f"a percentage: {example}", (), fixes)
+        return None
+
+    def one_of(self, words: tuple[str, ...]) -> Word | None:
+        self.skip_sign(":")
+        if self.kind == NAME and self.raw in words:
+            return self.take()
+        what = f"{', '.join(words[:-1])} or {words[-1]}"
+        meant = near(self.raw, words, limit=1) or tuple(word for word in words if self.raw.startswith(word))
+        meant = meant or tuple(word for word in _OTHER_WORDS.get(self.raw, ()) if word in words)
+        if self.kind != NAME or not meant:
+            return self.missing_word(what)
+        fixes = tuple(replace_fix(f"Replace `{self.raw}` with `{word}`", self.here(), word) for word in meant)
+        self.complain("syntax-error", self.here(), f"expected {what}, found {self.found()}", (), fixes)
+        self.advance()
+        return None
+
+    def no_violation(self) -> None:
+        """Complain that `violation` is missing, and pass over what is meant for it: `on failure fail`."""
+        following = self.index + 1
+        if self.kind == NAME and self.kinds[following] == NAME and self.raws[following] in ACTIONS:
+            fix = replace_fix(f"Replace `{self.raw}` with `violation`", self.here(), "violation")
+            self.complain("syntax-error", self.here(), f"expected `violation`, found `{self.raw}`", (), (fix,))
+            self.advance()
+        else:
+            self.expect_word("violation", forgotten=self.kind == NAME and self.raw in ACTIONS)
+
+    def after_missing(self, words: str) -> Word:
+        """The percentage at hand; complain that `words` are missing before it."""
+        at = self.here()
+        fix = replace_fix(f"Put `{words}` before it", Span(at.start, at.start), f"{words} ")
+        self.complain("syntax-error", at, f"a probability is written `with probability >= {self.raw}`", (), (fix,))
+        return self.take()
+
+    def bare_bound(self) -> None:
+        """Complain of `<= 30 s` without a verb."""
+        sign, value = self.raw, self.index + 1
+        bound = {"<=": "at most", "<": "less than", ">=": "at least", ">": "more than"}.get(sign)
+        fixes: tuple[Fix, ...] = ()
+        if bound is not None and self.kinds[value] == QUANTITY and is_time(self.raws[value]):
+            written = f"takes {bound} {self.raws[value]}"
+            span = Span(self.here().start, self.starts[value] + len(self.raws[value]))
+            fixes = (replace_fix(f"Write `{written}`", span, written),)
+        self.expected(_A_CLAUSE, ("a bound goes after its verb: `takes at most 30 s`",), fixes)
+
+    def is_no_time(self) -> bool:
+        """Whether a word stands behind a number where its unit of time should be, and is nothing else."""
+        if self.kind != NAME or self.index == 0 or self.kinds[self.index - 1] != NUMBER:
+            return False
+        following = self.index + 1
+        ends = self.kinds[following] in (NEWLINE, CLOSE) or (
+            self.kinds[following] == NAME and self.raws[following] in HEADS
+        )
+        is_misspelt = near(self.raw, VERBS | HEADS, limit=1)
+        return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
+
+
+_OTHER_WORDS: Final = {  # for actions and methods
+    **dict.fromkeys(("stop", "abort"), ("halt", "fail")),
+    **dict.fromkeys(("alert", "notify", "report"), ("warn", "log")),
+    **dict.fromkeys(("inspection", "demonstration"), ("review", "test")),
+    **dict.fromkeys(("simulation", "proof", "calculation"), ("analysis", "test")),
+}
+_A_CLAUSE: Final = "a clause: takes, keeps, in at least, on violation, …"

@@ -1,0 +1,311 @@
+"""The part of the parser that reads the items of a file, but for Root, whose block holds items.
+
+Each function is a production of docs/grammar.md and named as it; its docstring shows the production.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.grammar.nodes import NodeParser
+from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
+from btq_lang.syntax.tokens import (
+    BRACED,
+    CATEGORIES,
+    CLOSE,
+    DIRECTIONS,
+    ERROR,
+    NAME,
+    NEWLINE,
+    OPEN,
+    QUANTITY,
+    STRING,
+)
+from btq_lang.syntax.tree import (
+    Apply,
+    Context,
+    Include,
+    Meta,
+    Model,
+    Models,
+    Port,
+    Qualities,
+    QualityDecl,
+    ReqRef,
+    Requirement,
+    Selector,
+    Signal,
+    Tree,
+    Verbatim,
+    Word,
+    quote,
+    unquote,
+)
+from btq_lang.util.text import Span
+
+
+class ItemParser(NodeParser):
+    """A cursor that can read items."""
+
+    def include(self) -> Include:
+        """ "include" STRING [ Attributes ] NL"""
+        start = self.take().start
+        if self.at_word("path") and self.is_operator(self.index + 1, "=") and self.kinds[self.index + 2] == STRING:
+            gone = Span(self.here().start, self.starts[self.index + 2])
+            fix = replace_fix("Remove `path =`", gone, "", safe=True)
+            self.complain("syntax-error", self.here(), "the path of an include needs no `path =`", (), (fix,))
+            self.go_to(self.index + 2)
+        elif (self.at(":") or self.at("=")) and self.kinds[self.index + 1] == STRING:
+            behind = blanks_end(self.text, self.starts[self.index] + 1, len(self.text))
+            fix = self.without_sign(f"Remove `{self.raw}`", behind, "", safe=True)
+            self.complain("syntax-error", self.here(), f"unexpected `{self.raw}`", (), (fix,))
+            self.advance()
+        path = self.take() if self.kind == STRING else self.unquoted_path()
+        attributes = self.pairs()
+        return Include(start, self.end_line(), path, attributes)
+
+    def qualities(self) -> Qualities:
+        """ "qualities" NAME NL"""
+        start = self.take().start
+        edition = self.name("iso25010-2023 or iso25010-2011")
+        return Qualities(start, self.end_line(), edition)
+
+    def quality_decl(self) -> QualityDecl:
+        """ "quality" Name [ ":" QualityPath ] [ STRING ] NL"""
+        start = self.take().start
+        self.skip_glued_colon()
+        name = self.name("the name of the quality")
+        parent = self.quality_path() if self.accept(":") else None
+        text = self.take() if self.kind == STRING else None
+        notes = ("write the quality it belongs to after `:`, and its definition in quotes",)
+        return QualityDecl(start, self.end_line(notes), name, parent, text)
+
+    def models(self, level: int) -> Models:
+        """ "TreeNodesModel" NL [ INDENT { Model | Verbatim } DEDENT ]"""
+        start = self.take().start
+        end = self.end_line()
+        models: list[Model | Verbatim] = []
+        while self.deeper(level):
+            self.scan()
+            inner = self.lexer.level
+            if self.kind == NAME and self.raw in CATEGORIES:
+                models.append(self.model(inner))
+            elif self.kind == NAME and self.raw == "xml":
+                models.append(self.verbatim())
+            else:
+                self.expected("a node model: Action, Condition, Control, Decorator or SubTree and its ID")
+                self.end_line()
+                self.skip_block(inner)
+            self.no_block(inner)
+        return Models(start, end, tuple(models))
+
+    def model(self, level: int) -> Model:
+        """( "Action" | … | "SubTree" ) Name [ Attributes ] [ STRING ] NL [ INDENT { Port | … } DEDENT ]"""
+        category = self.take()
+        self.skip_glued_colon()
+        name = self.name("the node's ID")
+        if self.kind == OPEN and self.kinds[self.index + 1] in (NAME, CLOSE) and self.is_operator(self.index + 2, ":"):
+            note = "a port goes on a line of its own below the node, indented: `input name : type`"
+            self.complain("syntax-error", self.here(), "ports do not go in brackets", (note,))
+            self.go_to(len(self.kinds) - 1)
+        attributes = self.pairs()
+        text = self.take() if self.kind == STRING else None
+        end = self.end_line()
+        return Model(category.start, end, category, name, attributes, text, self.model_block(level))
+
+    def model_block(self, level: int) -> tuple[Port | Meta | Verbatim, ...]:
+        """[ INDENT { Port | Meta | Verbatim } DEDENT ]"""
+        body: list[Port | Meta | Verbatim] = []
+        while self.deeper(level):
+            inner = self.lexer.level
+            self.scan()
+            if self.kind == NAME and self.raw in DIRECTIONS:
+                body.append(self.port())
+            elif self.kind == NAME and (direction := self.raw.removesuffix("_port")) in DIRECTIONS:
+                fix = replace_fix(f"Write `{direction}`", self.here(), direction, safe=True)
+                message = f"unknown word `{self.raw}`; did you mean `{direction}`?"
+                self.complain("syntax-error", self.here(), message, (), (fix,))
+                body.append(self.port(direction))
+            elif self.kind == NAME and self.raw == "metadata":
+                body.append(self.meta())
+            elif self.kind == NAME and self.raw == "xml":
+                body.append(self.verbatim())
+            else:
+                fixes = self.replaced_by((*sorted(DIRECTIONS), "metadata", "xml"))
+                if self.kind == NAME and self.raw in ("in", "out"):
+                    fixes = (replace_fix(f"Write `{self.raw}put`", self.here(), f"{self.raw}put", safe=True),)
+                self.expected("a port (input, output or inout), metadata or xml", (), fixes)
+                self.end_line()
+                self.skip_block(inner)
+            self.no_block(inner)
+        return tuple(body)
+
+    def meta(self) -> Meta:
+        """ "metadata" Attributes NL"""
+        start = self.take().start
+        if self.kind != OPEN:
+            self.expected('attributes in brackets: metadata (key = "value")')
+        attributes = self.pairs()
+        return Meta(start, self.end_line(), attributes)
+
+    def signal(self) -> Signal:
+        """ "signal" NAME ":" UNIT [ "from" BRACED ] [ "level" | … ] [ "fresh" … ] [ "initially" … ] NL"""
+        start = self.take().start
+        self.skip_glued_colon()
+        name = self.plain_name("the signal's name")
+        unit = self.unit() if self.at_unit() else None
+        source = behaviour = fresh = initially = None
+        if self.accept_word("from"):
+            source = self.entry_key()
+        if self.kind == NAME and self.raw in _BEHAVIOURS:
+            behaviour = self.take()
+        if self.accept_word("fresh"):
+            self.expect_word("within", forgotten=self.kind == QUANTITY)
+            fresh = self.quantity("a duration: 5 s")
+        if self.accept_word("initially"):
+            initially = self.simple(strings=True)
+        end = self.end_line((_SIGNAL_ORDER,), self.replaced_by(_SIGNAL_WORDS))
+        return Signal(start, end, name, unit, source, behaviour, fresh, initially)
+
+    def context(self) -> Context:
+        """ "context" NAME ":" Cond NL"""
+        start = self.take().start
+        self.skip_glued_colon()
+        name = self.plain_name("the context's name")
+        condition = self.cond() if self.expect(":", " and a condition") else None
+        return Context(start, self.end_line(), name, condition)
+
+    def req_item(self, level: int) -> Requirement:
+        """ReqHead { Clause } NL [ INDENT { Clause { Clause } NL } DEDENT ]"""
+        requirement = self.requirement()
+        self.second_quality(requirement)
+        self.end_line()
+        return self.clause_block(requirement, level)
+
+    def apply(self) -> Apply:
+        """ "apply" ReqRef { "," ReqRef } "to" Selector { "," Selector } [ "except" Selector { "," Selector } ] NL"""
+        start = self.take().start
+        uses: list[ReqRef] = []
+        while name := self.missing_word("a requirement") if self.at_word("to") else self.name("a requirement"):
+            uses.append(self.req_ref(name))
+            if not self.accept(","):
+                break
+        targets = self.selectors() if self.expect_word("to", ("on", "for", "at")) else ()
+        exceptions = self.selectors() if self.accept_word("except") else ()
+        return Apply(start, self.end_line(), tuple(uses), targets, exceptions)
+
+    def selectors(self) -> tuple[Selector, ...]:
+        """Selector { "," Selector }"""
+        found: list[Selector] = []
+        while selector := self.selector():
+            found.append(selector)
+            if not self.accept(","):
+                break
+        return tuple(found)
+
+    def selector(self) -> Selector | None:
+        """ "every" Name [ "under" Path ] | "every" "node" "tagged" NAME | Path"""
+        start = self.start()
+        if not (self.accept_word("every") or self.every_meant()):
+            path = self.path("a node, or `every` and a node")
+            self.blank_in_path(path, _END_SELECTORS)
+            return Selector(path.span.start, path.span.end, path=path) if path else None
+        if self.at_word("node") and self.is_word(self.index + 1, "tagged"):
+            self.advance()
+            self.advance()
+            tag = self.name("a tag")
+            return Selector(start, self.last_end(), tag=tag)
+        if self.at_word("tagged") and self.kinds[self.index + 1] == NAME:
+            fix = replace_fix("Put `node` before it", Span(self.here().start, self.here().start), "node ")
+            self.complain(
+                "syntax-error", self.here(), "nodes with a tag are selected with `every node tagged …`", (), (fix,)
+            )
+            self.advance()
+            return Selector(start, self.last_end(), tag=self.name("a tag"))
+        every = self.name("a node's ID or kind")
+        under = self.path("a tree or node") if self.accept_word("under") else None
+        return Selector(start, self.last_end(), every=every, path=under)
+
+    def tree(self, level: int) -> Tree:
+        """ "BehaviorTree" [ [ "ID" "=" ] Name ] [ Attributes ] NL [ INDENT { Port } { ClauseLine } { Node } DEDENT ]"""
+        start = self.take().start
+        if self.at_word("ID") and self.is_operator(self.index + 1, "="):
+            self.advance()
+            self.advance()
+            name = self.name("the tree's ID")
+        elif self.at_word("ID") and self.kinds[self.index + 1] in (NAME, STRING):
+            fix = replace_fix("Put `=` after it", Span(self.here().end, self.here().end), " =")
+            self.complain("syntax-error", self.here(), "expected `=` after `ID`", (), (fix,))
+            self.advance()
+            name = self.take()
+        else:
+            self.skip_glued_colon()
+            name = self.take() if self.kind == NAME or self.kind == STRING else None
+        attributes = self.pairs()
+        end = self.end_line()
+        ports, clauses, children = self.tree_block(level)
+        return Tree(start, end, name, attributes, ports, clauses, children)
+
+    def unquoted_path(self) -> Word | None:
+        """Complain of `include stations.btq`; there is no path."""
+        has_sign = self.at(":") or self.at("=")
+        first = self.index + 1 if has_sign and self.kinds[self.index + 1] != NEWLINE else self.index
+        start = self.starts[first]
+        end = behind = path_end(self.text, start)
+        for index in range(first, len(self.kinds)):
+            if self.kinds[index] == ERROR and self.raws[index] in ("'", '"'):  # only the opening quote is missing
+                end, behind = self.starts[index], self.starts[index] + 1
+        title, path = "Put quotes around it", quote(self.text[start:end])
+        fixes: tuple[Fix, ...] = ()
+        if self.at("<") and (closing := self.text.find(">", start, line_end(self.text, start))) > start + 1:
+            path = quote(self.text[start + 1 : closing].strip())
+            fixes = (replace_fix(f"Write `{path}`", Span(start, closing + 1), path),)
+        elif end > start and first > self.index:
+            fixes = (self.without_sign(title, behind, path, safe=False),)
+        elif end > start and not has_sign:
+            fixes = (replace_fix(title, Span(start, behind), path),)
+        self.expected("a file in quotes", (), fixes)
+        return None
+
+    def without_sign(self, title: str, end: int, text: str, *, safe: bool) -> Fix:
+        """Write a text from the `:` or `=` behind `include` on, up to `end`; a blank stays before it."""
+        start = self.starts[self.index]
+        blank = "" if self.text[start - 1] in " \t" else " "
+        return replace_fix(title, Span(start, end), f"{blank}{text}", safe=safe)
+
+    def at_unit(self) -> bool:
+        """ ":" before the unit of a signal, whose absence is reported"""
+        if self.accept(":"):
+            return True
+        unit = self.index + 1
+        fixes: tuple[Fix, ...] = ()
+        if self.at("=") and self.kinds[unit] == QUANTITY and self.kinds[unit + 1] == NEWLINE:
+            raw = self.raws[unit]
+            symbol = raw[number_end(raw, 0) :].strip()
+            span = Span(self.here().start, self.starts[unit] + len(raw))
+            fixes = (replace_fix(f"Write `: {symbol} initially {raw}`", span, f": {symbol} initially {raw}"),)
+        elif self.kind == OPEN and CLOSE in self.kinds[unit:]:
+            closing = self.kinds.index(CLOSE, unit)
+            inside = self.text[self.here().end : self.starts[closing]].strip()
+            span = Span(self.here().start, self.starts[closing] + len(self.raws[closing]))
+            fixes = (replace_fix(f"Write `: {inside}`", span, f": {inside}"),) if is_unit(inside) else ()
+        elif self.at("=") or self.at_word("in") or self.at_word("is"):
+            fixes = (replace_fix("Write `:`", self.here(), ":"),)
+        self.expected("`:` and the signal's unit", (), fixes)
+        return False
+
+    def entry_key(self) -> Word | None:
+        """BRACED"""
+        if self.kind == BRACED:
+            return self.take()
+        key = unquote(self.raw).strip("{}") if self.kind == STRING else self.raw
+        fixes = (replace_fix(f"Write `{{{key}}}`", self.here(), f"{{{key}}}"),) if is_name(key) else ()
+        self.expected("a blackboard entry: `{key}`", (), fixes)
+        return None
+
+
+_BEHAVIOURS: Final = frozenset(("level", "counter", "gauge"))
+_SIGNAL_WORDS: Final = ("from", *sorted(_BEHAVIOURS), "fresh", "initially")
+_SIGNAL_ORDER: Final = "the order is: signal x : % from {x} level fresh within 5 s initially 100 %"
+_END_SELECTORS: Final = frozenset((",", "except", "\n", "\r\n", "\r", ""))
