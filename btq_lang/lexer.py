@@ -15,7 +15,8 @@ import re
 from bisect import bisect_left
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
+from btq_lang.syntax.indentation import TOP_LINE, extends
 from btq_lang.syntax.scan import (
     APOSTROPHE,
     CAPITAL_A,
@@ -37,10 +38,8 @@ from btq_lang.syntax.scan import (
     begins_name,
     blanks_end,
     braced_end,
-    ink_map,
     line_end,
     line_opening,
-    line_start,
     name_end,
     number_at,
     string_end,
@@ -48,15 +47,11 @@ from btq_lang.syntax.scan import (
     unit_run,
     word_map,
 )
+from btq_lang.syntax.strange import StrangeCharacters, has_line_end
 from btq_lang.syntax.suggestions import (
-    ATTRIBUTES,
-    INSTEAD,
-    attributes_in_braces,
     close_string,
-    no_token,
     unknown_escapes,
     unknown_unit,
-    value_meant,
 )
 from btq_lang.syntax.tokens import (
     BLANK,
@@ -126,51 +121,25 @@ def pieces(text: str) -> list[tuple[int, int, str]]:
     return found
 
 
-class Lexer:
+class Lexer(StrangeCharacters):
     """A place in a text, and the logical line that begins there.
 
     Attributes:
-        words, ink: the maps of the text that `scan` reads (`word_map`, `ink_map`).
-        position: where the next thing is read.
-        level: how many blocks are open around the line.
-        line_start: where the line begins, its blanks included.
-        blanks: the blanks it begins with.
-        columns: the blanks of each open block.
-        adopted: other blanks were taken for those of an open block.
-        kinds, starts, raws: the tokens of the line after `scan`; the last one is always a NEWLINE.
+        words: the map of the text that says where words end (`word_map`).
         comments: start and end of every comment so far.
-        problems: what was wrong so far.
         ends_early: the line ends brackets that have no `)`, and nothing follows these.
         ended_early: how many brackets ended before a line further left, while no other has opened since.
     """
 
     def __init__(self, text: str) -> None:
-        self.text: Final = text
-        self.size: Final = len(text)
+        super().__init__(text)
         self.words: Final = word_map(text)
-        self.ink: Final = ink_map(text)
-        self.position = 1 if text.startswith("\ufeff") else 0
-        self.level = 0
-        self.line_start = self.position
-        self.blanks = ""
-        self.kinds: list[int] = []
-        self.starts: list[int] = []
-        self.raws: list[str] = []
         self.comments: list[tuple[int, int]] = []
-        self.problems: list[Diagnostic] = []
         self.ends_early = False
         self.ended_early = 0
-        self._cut_until = -1  # the end of the last line that ended its brackets early
-        self.columns: list[str] = [""]
-        self._aliases: list[tuple[str, ...]] = [()]  # other blanks taken for the same block, each reported once
-        self.adopted = False
-        self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
-        self._block_ends: set[int] = set()  # where braces close blocks whose opening ones are reported
-        self._strange = False  # a character that begins nothing was reported on this line
         self._stray_until = -1  # the end of the last line of text where a `)` was reported
         self._wrong_units = 0  # how many were reported on this line
         self._line_blanks = ""  # of the line of text at hand, but for lines inside strings and comments
-        self._root_level = -1  # the level of an open Root block's items
         self._no_double = self._no_single = self.size + 1  # from here on no such quote closes anything
         self._has_returns: Final = "\r" in text
         self._has_escapes: Final = "\\" in text
@@ -218,53 +187,6 @@ class Lexer:
         self.adopted = aliases != ()
         self.level = len(columns) - 1
         self.position = start
-
-    def _indent(self, blanks: str) -> None:
-        """Open a block, close blocks, or adopt a column that no open block has."""
-        columns, aliases = self.columns, self._aliases
-        level = len(columns) - 1
-        if not self.adopted and len(blanks) > len(columns[level]):
-            level = -1  # as below, for no column is longer
-        while level >= 0 and blanks != columns[level] and blanks not in aliases[level]:
-            level -= 1
-        if level < 0:
-            if _extends(blanks, columns[-1], aliases[-1]):
-                columns.append(blanks)
-                aliases.append(())
-                self.level = len(columns) - 1
-                return
-            level = self._adopting_level(blanks)
-            self.adopted = True
-            if self._cut_until < 0 or self.text[self._cut_until : self.line_start].strip():
-                self._report_indentation(blanks, columns[level])  # else it is what is left of the brackets
-            if level == 0:
-                aliases[0] = (*aliases[0], blanks)[-_ALIASES:]
-            else:
-                aliases[level] = (*aliases[level], columns[level])[-_ALIASES:]
-                columns[level] = blanks
-        while len(columns) > level + 1:
-            columns.pop()
-            aliases.pop()
-        if self.adopted and level <= max(self._root_level, 0) and not any(aliases):
-            self.adopted = False  # the blocks in which that was are closed
-        self.level = level
-        if level < self._root_level:
-            self._root_level = -1
-
-    def _adopting_level(self, blanks: str) -> int:
-        """The block that a line belongs to whose indentation fits none: for an item that of the items, else the nearer
-        of those between which it stands; of tabs in a file of blanks, each counts as a level."""
-        columns = self.columns
-        items = max(0, min(self._root_level, len(columns) - 1))  # a Root may have no block
-        if _TOP_LINE.match(self.text, self.position):
-            return items
-        if not blanks.strip("\t") and not "".join(columns).strip(" "):
-            return min(len(blanks), len(columns) - 1)
-        level = len(columns) - 1
-        while not _extends(blanks, columns[level - 1], self._aliases[level - 1]):
-            level -= 1
-        is_nearer = len(blanks) - len(columns[level - 1]) < len(columns[level]) - len(blanks)
-        return level - 1 if is_nearer and level - 1 > items else level
 
     def scan(self) -> None:
         """Cut the opened line into tokens, through all lines that its brackets join."""
@@ -357,12 +279,6 @@ class Lexer:
 
     # ---- tokens, each from its first character to the position behind it ----
 
-    def _add(self, kind: int, start: i64, end: i64) -> i64:
-        self.kinds.append(kind)
-        self.starts.append(start)
-        self.raws.append(self.text[start:end])
-        return end
-
     def _other(self, start: i64, character: str) -> i64:
         """Symbols, signs, braces and comments; a tab is passed over."""
         if character == "\t":
@@ -393,133 +309,11 @@ class Lexer:
             return self._add(ERROR, start, start + (1 if character == "!" else 2))
         return self._nothing(start, character)
 
-    def _nothing(self, start: i64, character: str) -> i64:
-        """What begins nothing, reported once a line; mostly it is left out."""
-        text = self.text
-        if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
-            return self._close_square(start)
-        if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
-            return self._shell_entry(start, entry.end())
-        if character == ";" and self._separates(start):
-            self._strange = True
-            fix = replace_fix("Write `,`", Span(start, start + 1), ",", safe=True)
-            message = "expected `,` between attributes, found `;`"
-            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
-            return start + 1
-        if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
-            self._strange = True
-            fixes = (value_meant(text, start, square.end(), safe=self._takes_strings()),)
-            span = Span(start, square.end())
-            self.problems.append(Diagnostic("syntax-error", span, "this value needs quotes", fixes=fixes))
-            return self._add(NAME, start, square.end())
-        in_value = self._brackets and (character == "[" or character not in INSTEAD)
-        if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
-            return self._quote_value(start)
-        if character in "{}[]" and (end := self._block_sign(start, character)) > start:
-            return end
-        if character == "{" or character == "}":
-            return self._half_braced(start, character)
-        if self.kinds and self.kinds[-1] == STRING and _has_line_end(text, self.starts[-1], start):
-            return self._add(ERROR, start, start + 1)  # the parser sees that a quote was lost
-        end = start + 1
-        while end < self.size and text[end] == character:
-            end += 1
-        if not self._strange:
-            self._strange = True
-            self.problems.append(no_token(text, start, end, of_signal=self.raws[:1] == ["signal"]))
-        return end
-
-    def _separates(self, start: int) -> bool:
-        """Whether a sign here is between two attributes, as `,` may be."""
-        if not self._brackets or self._strange or self.raws[-1] in ("=", ",", "("):
-            return False
-        return _KEY.match(self.text, start + 1) is not None
-
-    def _shell_entry(self, start: int, end: int) -> int:
-        """A blackboard entry as shells write a variable: `$key` or `${key}`."""
-        written = f"{{{self.text[start:end].strip('${}')}}}"
-        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
-        self._strange = True
-        message = f"a blackboard entry is written `{written}`"
-        self.problems.append(Diagnostic("syntax-error", Span(start, end), message, fixes=(fix,)))
-        return self._add(NAME, start, end)
-
-    def _block_sign(self, start: int, character: str) -> int:
-        """The brace or bracket of somebody's block, at the end of a line or alone on it; both are one mistake.
-
-        Returns:
-            Where it ends, or `start` where it is none.
-        """
-        behind = blanks_end(self.text, start + 1, self.size)
-        ends_line = behind == self.size or self.text[behind] in "\r\n"
-        is_opening = character in "{["
-        if self._brackets or not ends_line or self._strange or is_opening != bool(self.raws):
-            return start
-        if start in self._block_ends:
-            self._block_ends.remove(start)
-            return start + 1
-        before = start
-        while self.raws and self.text[before - 1] in " \t":
-            before -= 1
-        changes: tuple[Change, ...] = (Change(Place(Span(before, start + 1)), ""),)
-        closing = self._block_end(start, "}" if character == "{" else "]") if is_opening else start
-        if is_opening and closing > start:
-            self._block_ends.add(closing)
-            end = line_end(self.text, closing)
-            end += 2 if self.text.startswith("\r\n", end) else end < self.size
-            changes += (Change(Place(Span(line_start(self.text, start, closing), end)), ""),)
-        fix = Fix(f"Remove `{character}`", changes)
-        self._strange = True
-        message = f"unexpected `{character}`: a block consists of indented lines"
-        self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
-        return start + 1
-
-    def _block_end(self, start: int, sign: str) -> int:
-        """Where the sign that closes a block is alone on the first line that is no deeper than the one at hand; else
-        -1."""
-        text = self.text
-        at = line_end(text, start)
-        while at < self.size:
-            first, at = line_opening(text, self.ink, at)
-            if at - first <= len(self.blanks):
-                behind = blanks_end(text, at + 1, self.size)
-                is_alone = behind >= self.size or text[behind] in "\r\n"
-                return at if text[at : at + 1] == sign and is_alone else -1
-            at = line_end(text, at)
-        return -1
-
-    def _half_braced(self, start: int, character: str) -> int:
-        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
-        if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
-            fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
-            message = "a blackboard entry has one pair of braces"
-            self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
-            self._strange = True
-            return self._add(NAME, start, twice.end())
-        word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
-        end = self._add(NAME, start, word.end()) if word else start + 1
-        if self._strange:
-            return end
-        self._strange = True
-        if character == "{" and not self._brackets and (mended := attributes_in_braces(self.text, start)) is not None:
-            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), ATTRIBUTES, fixes=(mended,)))
-            return end
-        other = "}" if character == "{" else "{"
-        at = end
-        if character == "}":
-            at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
-        fix = replace_fix(f"Add `{other}`", Span(at, at), other)
-        message = f"missing `{other}` for this `{character}`"
-        notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
-        span = Span(start, start + 1)
-        self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
-        return end
-
     def _after_operand(self, position: int) -> bool:
         """Whether a `-` here subtracts: it does behind an operand on the same line (docs/language.md, NUMBER)."""
         if not self.kinds or self.kinds[-1] not in (NAME, NUMBER, QUANTITY, STRING, CLOSE):
             return False
-        return not _has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
+        return not has_line_end(self.text, self.starts[-1] + len(self.raws[-1]), position)
 
     def _number(self, start: i64) -> i64:
         kind, end = number_at(self.text, start)
@@ -576,7 +370,7 @@ class Lexer:
 
     def _check_lines(self, start: int, end: int) -> None:
         for line in LINE_END.finditer(self.text, start, end):
-            if item := _TOP_LINE.match(self.text, line.end()):
+            if item := TOP_LINE.match(self.text, line.end()):
                 place = Place(Span(item.start(), item.end()))
                 self.problems.append(
                     Diagnostic(
@@ -613,45 +407,6 @@ class Lexer:
             Diagnostic("misplaced-comment", Span(start, end), f"{message}; put this in quotes", fixes=fixes)
         )
         return self._add(NAME, start, end)
-
-    def _quote_value(self, at: int) -> int:
-        """A character that begins nothing, inside a value: `a = 1;2`."""
-        start, end = self._whole_word(at)
-        self._strange = True  # more of it may follow
-        fixes: tuple[Fix, ...] = ()
-        if _VALUE_END.match(self.text, end):
-            fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
-        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
-        return self._add(NAME, start, end)
-
-    def _takes_strings(self) -> bool:
-        """Whether a value may surely be a string: those of a requirement's parameters may not."""
-        return not _WITH_PARAMETERS.intersection(self.raws)
-
-    def _in_value(self, at: int) -> bool:
-        """Whether what begins at `at` stands behind `key =`, or without a blank behind a word that does."""
-        last = len(self.raws) - 1
-        while last > 0 and self._joins(last, at):
-            at = self.starts[last]
-            last -= 1
-        return last >= 0 and self.raws[last] == "="
-
-    def _whole_word(self, at: int) -> tuple[int, int]:
-        """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
-        word = _WHOLE_WORD.match(self.text, at)
-        assert word is not None, "a word or a sign begins here"
-        while self.raws and self._joins(len(self.raws) - 1, at):
-            at = self.starts.pop()
-            self.kinds.pop()
-            self.raws.pop()
-        return at, word.end()
-
-    def _joins(self, index: int, at: int) -> bool:
-        """Whether a token makes one word with what begins at `at`: there is no blank between, and it is no `=`."""
-        kind, raw = self.kinds[index], self.raws[index]
-        if kind not in (NAME, NUMBER, QUANTITY, OPERATOR) or raw == "=" or raw == ",":
-            return False
-        return self.starts[index] + len(raw) == at
 
     def _comment(self, start: int) -> int:
         """The end of the comment that begins here, or `start` where none may begin."""
@@ -696,13 +451,6 @@ class Lexer:
             self._stray_until = line_end(self.text, position)
         return position + 1
 
-    def _close_square(self, position: int) -> int:
-        span = Span(position, position + 1)
-        fix = replace_fix("Write `)`", span, ")", safe=True)
-        self.problems.append(Diagnostic("syntax-error", span, "expected `)`, found `]`", fixes=(fix,)))
-        self._brackets.pop()
-        return self._add(CLOSE, position, position + 1)
-
     def _continue(self, position: i64) -> i64:
         """Behind a line end in brackets: the next line, or `position` where the line ends the brackets early."""
         text = self.text
@@ -713,7 +461,7 @@ class Lexer:
         code: i64 = ord(text[at])
         if code in (CLOSING, HASH) or (code == SLASH and text.startswith(_COMMENT_SIGNS, at)):
             return at
-        if self._at_top_column(blanks) and _TOP_LINE.match(text, at):
+        if self._at_top_column(blanks) and TOP_LINE.match(text, at):
             self._end_brackets(len(self._brackets), position, at)
             return position
         ended = 0
@@ -732,7 +480,7 @@ class Lexer:
         level = self._root_level
         if blanks == "" or (0 < level < len(self.columns) and blanks == self.columns[level]):
             return True
-        return self._is_root_line() and _extends(blanks, self.columns[-1], ())
+        return self._is_root_line() and extends(blanks, self.columns[-1], ())
 
     def _close_lost(self, start: int, end: int) -> None:
         """Close the brackets whose `)` is lost in a string or comment that runs to the end of its line."""
@@ -764,7 +512,7 @@ class Lexer:
         end = opened
         for index in range(bisect_left(self.starts, opened), len(self.starts)):
             start, raw = self.starts[index], self.raws[index]
-            begins = index + 1 < len(self.raws) and _has_line_end(self.text, end, start)
+            begins = index + 1 < len(self.raws) and has_line_end(self.text, end, start)
             if begins and raw not in _IN_BRACKETS and self.raws[index + 1] != "=" and self.raws[index - 1] not in "=,(":
                 break
             end = start + len(raw)
@@ -774,16 +522,6 @@ class Lexer:
 
     def _report(self, rule: str, start: int, end: int, message: str, notes: tuple[str, ...] = ()) -> None:
         self.problems.append(Diagnostic(rule, Span(start, end), message, notes=notes))
-
-    def _report_indentation(self, blanks: str, expected: str) -> None:
-        if expected.startswith(blanks) or blanks.startswith(expected):
-            message = f"an indentation of {_shown(blanks)} matches no open block"
-        else:
-            message = f"tabs and spaces are mixed: {_shown(blanks)} cannot be compared with {_shown(expected)}"
-        note = f"btq reads the line as if indented by {_shown(expected)}"
-        span = Span(self.line_start, self.line_start + len(blanks))
-        fix = replace_fix(f"Indent it by {_shown(expected)}", span, expected)
-        self.problems.append(Diagnostic("inconsistent-indentation", span, message, notes=(note,), fixes=(fix,)))
 
 
 # ---- all tokens ----
@@ -817,50 +555,10 @@ def _gaps(text: str, start: int, end: int) -> list[Token]:
     return [Token(BLANK if piece[1] else ERROR, piece.start(), piece[0]) for piece in _GAP.finditer(text, start, end)]
 
 
-# ---- blanks ----
-
-
-def _has_line_end(text: str, start: int, end: int) -> bool:
-    return text.find("\n", start, end) >= 0 or text.find("\r", start, end) >= 0
-
-
-def _extends(blanks: str, outer: str, aliases: tuple[str, ...]) -> bool:
-    if len(blanks) > len(outer) and blanks.startswith(outer):
-        return True
-    return any(len(blanks) > len(column) and blanks.startswith(column) for column in aliases)
-
-
-def _shown(blanks: str) -> str:
-    if not blanks:
-        return "nothing"
-    tabs = blanks.count("\t")
-    parts = [
-        f"{count} {word}{'s' * (count > 1)}" for count, word in ((tabs, "tab"), (len(blanks) - tabs, "space")) if count
-    ]
-    return " and ".join(parts)
-
-
 # ---- patterns ----
 
-# The words that begin an item, and what must follow for a line to end a forgotten bracket (docs/language.md, Brackets).
-_TOP_LINE: Final = re.compile(
-    r"""(?x)
-        BehaviorTree [ \t]+ ID [ \t]* = (?!=)
-        | (?:BehaviorTree|Root|TreeNodesModel) (?: [ \t]+ (?= \# | //? ) | [ \t]* (?= [\r\n(] | \Z ) )
-        | (?:BehaviorTree|Root|TreeNodesModel|include|signal|context|apply|quality|qualities|QualityReq)
-          (?: [ \t]+ (?= (?P<name> [^\W\d] (?:\w|-(?=\w))* [?!]? ) ) (?P=name)
-            | [ \t]* (?: "(?:[^"\\\r\n]|\\[^\r\n])*" | '(?:[^'\\\r\n]|\\[^\r\n])*' ) )
-          (?! [ \t]* = )
-    """
-)
 _GAP: Final = re.compile(r"([ \t\r\n\ufeff]+)|[^ \t\r\n\ufeff]+")
 _COMMENT_SIGN: Final = re.compile(r"#|//|/\*")
-_WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
-_TWICE_BRACED: Final = re.compile(r"\{(\{[^{}\r\n]*\})\}")
-_SHELL_ENTRY: Final = re.compile(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
-_KEY: Final = re.compile(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
-_SQUARE: Final = re.compile(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
-_VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
 
 # ---- tables ----
 
@@ -868,7 +566,5 @@ _SILENT: Final = (OPEN, CLOSE, NEWLINE)
 _TWO: Final = frozenset(("==", "!=", "<=", ">=", "::"))
 _COMMENT_SIGNS: Final = ("#", "//", "/*")
 _MANY: Final = 20  # wrong units on one line: who has so many needs no more to see what is wrong
-_WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
 _IN_BRACKETS: Final = frozenset(("satisfices", "satisfies", "tags", "parameters", "description", ",", "(", ")", "="))
 _QUOTES: Final = ('"', "'", "{", "}")  # behind a word they mean that more went wrong than a missing quote
-_ALIASES: Final = 16  # columns taken for one block; more of them would only cost time

@@ -14,19 +14,7 @@ from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.syntax.scan import line_end
 from btq_lang.syntax.suggestions import unknown_unit
 from btq_lang.syntax.tokens import CLOSE, NAME, NEWLINE, NUMBER, OPERATOR, QUANTITY, STRING
-from btq_lang.syntax.tree import (
-    Because,
-    Clause,
-    Confidence,
-    Goal,
-    How,
-    Odds,
-    OnViolation,
-    Scope,
-    Window,
-    Word,
-    quote,
-)
+from btq_lang.syntax.tree import Because, Clause, Confidence, Goal, How, Odds, OnViolation, Scope, Window, Word, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 

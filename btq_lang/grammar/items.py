@@ -10,18 +10,7 @@ from typing import Final
 from btq_lang.diagnostics.model import Fix, replace_fix
 from btq_lang.grammar.nodes import NodeParser
 from btq_lang.syntax.scan import blanks_end, is_name, is_unit, line_end, number_end, path_end
-from btq_lang.syntax.tokens import (
-    BRACED,
-    CATEGORIES,
-    CLOSE,
-    DIRECTIONS,
-    ERROR,
-    NAME,
-    NEWLINE,
-    OPEN,
-    QUANTITY,
-    STRING,
-)
+from btq_lang.syntax.tokens import BRACED, CATEGORIES, CLOSE, DIRECTIONS, ERROR, NAME, NEWLINE, OPEN, QUANTITY, STRING
 from btq_lang.syntax.tree import (
     Apply,
     Context,

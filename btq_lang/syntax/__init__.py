@@ -8,6 +8,8 @@ and the parser.  Not known here: whether a name exists, or what it means.
     words.py, node_clauses.py   words with their place, and what is written on a node
     tokens.py        the kinds of tokens
     scan.py          runs of characters: names, numbers, blanks
+    indentation.py   the blocks that are open around a line
+    strange.py       characters that begin no token
     quantities.py    numbers with units
     suggestions.py   what was meant by a misspelt token
     script/          the scripting language of the engine, in strings

@@ -1,0 +1,226 @@
+"""Characters that begin no token: what they are probably meant for is reported, and mostly they are left out.
+
+One invariant: reading goes on behind each of them, whatever it is.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final
+
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.syntax.indentation import Indentation
+from btq_lang.syntax.scan import blanks_end, ink_map, line_end, line_opening, line_start
+from btq_lang.syntax.suggestions import ATTRIBUTES, INSTEAD, attributes_in_braces, no_token, value_meant
+from btq_lang.syntax.tokens import CLOSE, ERROR, NAME, NUMBER, OPERATOR, QUANTITY, STRING
+from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from mypy_extensions import i64
+
+
+class StrangeCharacters(Indentation):
+    """The tokens of a logical line so far, to which characters are added or not that begin none.
+
+    Attributes:
+        ink: the map of the text that says where blanks end (`ink_map`).
+        kinds, starts, raws: the tokens; when the line is read, the last one is always a NEWLINE.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.ink: Final = ink_map(text)
+        self.kinds: list[int] = []
+        self.starts: list[int] = []
+        self.raws: list[str] = []
+        self._brackets: list[tuple[int, str]] = []  # where each was opened, and the blanks of that line
+        self._block_ends: set[int] = set()  # where braces close blocks whose opening ones are reported
+        self._strange = False  # a character that begins nothing was reported on this line
+
+    def _nothing(self, start: i64, character: str) -> i64:
+        """What begins nothing, reported once a line; mostly it is left out."""
+        text = self.text
+        if character == "]" and self._brackets and text.find("[", self._brackets[-1][0], start) < 0:
+            return self._close_square(start)
+        if character == "$" and (entry := _SHELL_ENTRY.match(text, start)) and self.raws[-1:] == ["="]:
+            return self._shell_entry(start, entry.end())
+        if character == ";" and self._separates(start):
+            self._strange = True
+            fix = replace_fix("Write `,`", Span(start, start + 1), ",", safe=True)
+            message = "expected `,` between attributes, found `;`"
+            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+            return start + 1
+        if character == "[" and self.raws[-1:] == ["="] and (square := _SQUARE.match(text, start)):
+            self._strange = True
+            fixes = (value_meant(text, start, square.end(), safe=self._takes_strings()),)
+            span = Span(start, square.end())
+            self.problems.append(Diagnostic("syntax-error", span, "this value needs quotes", fixes=fixes))
+            return self._add(NAME, start, square.end())
+        in_value = self._brackets and (character == "[" or character not in INSTEAD)
+        if in_value and _WHOLE_WORD.match(text, start) and self._in_value(start):
+            return self._quote_value(start)
+        if character in "{}[]" and (end := self._block_sign(start, character)) > start:
+            return end
+        if character == "{" or character == "}":
+            return self._half_braced(start, character)
+        if self.kinds and self.kinds[-1] == STRING and has_line_end(text, self.starts[-1], start):
+            return self._add(ERROR, start, start + 1)  # the parser sees that a quote was lost
+        end = start + 1
+        while end < self.size and text[end] == character:
+            end += 1
+        if not self._strange:
+            self._strange = True
+            self.problems.append(no_token(text, start, end, of_signal=self.raws[:1] == ["signal"]))
+        return end
+
+    def _separates(self, start: int) -> bool:
+        """Whether a sign here is between two attributes, as `,` may be."""
+        if not self._brackets or self._strange or self.raws[-1] in ("=", ",", "("):
+            return False
+        return _KEY.match(self.text, start + 1) is not None
+
+    def _shell_entry(self, start: int, end: int) -> int:
+        """A blackboard entry as shells write a variable: `$key` or `${key}`."""
+        written = f"{{{self.text[start:end].strip('${}')}}}"
+        fix = replace_fix(f"Write `{written}`", Span(start, end), written)
+        self._strange = True
+        message = f"a blackboard entry is written `{written}`"
+        self.problems.append(Diagnostic("syntax-error", Span(start, end), message, fixes=(fix,)))
+        return self._add(NAME, start, end)
+
+    def _block_sign(self, start: int, character: str) -> int:
+        """The brace or bracket of somebody's block, at the end of a line or alone on it; both are one mistake.
+
+        Returns:
+            Where it ends, or `start` where it is none.
+        """
+        behind = blanks_end(self.text, start + 1, self.size)
+        ends_line = behind == self.size or self.text[behind] in "\r\n"
+        is_opening = character in "{["
+        if self._brackets or not ends_line or self._strange or is_opening != bool(self.raws):
+            return start
+        if start in self._block_ends:
+            self._block_ends.remove(start)
+            return start + 1
+        before = start
+        while self.raws and self.text[before - 1] in " \t":
+            before -= 1
+        changes: tuple[Change, ...] = (Change(Place(Span(before, start + 1)), ""),)
+        closing = self._block_end(start, "}" if character == "{" else "]") if is_opening else start
+        if is_opening and closing > start:
+            self._block_ends.add(closing)
+            end = line_end(self.text, closing)
+            end += 2 if self.text.startswith("\r\n", end) else end < self.size
+            changes += (Change(Place(Span(line_start(self.text, start, closing), end)), ""),)
+        fix = Fix(f"Remove `{character}`", changes)
+        self._strange = True
+        message = f"unexpected `{character}`: a block consists of indented lines"
+        self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), message, fixes=(fix,)))
+        return start + 1
+
+    def _block_end(self, start: int, sign: str) -> int:
+        """Where the sign that closes a block is alone on the first line that is no deeper than the one at hand; else
+        -1."""
+        text = self.text
+        at = line_end(text, start)
+        while at < self.size:
+            first, at = line_opening(text, self.ink, at)
+            if at - first <= len(self.blanks):
+                behind = blanks_end(text, at + 1, self.size)
+                is_alone = behind >= self.size or text[behind] in "\r\n"
+                return at if text[at : at + 1] == sign and is_alone else -1
+            at = line_end(text, at)
+        return -1
+
+    def _half_braced(self, start: int, character: str) -> int:
+        """A brace without the other one: `{key` or `key}`; the key is left as a word."""
+        if character == "{" and (twice := _TWICE_BRACED.match(self.text, start)):
+            fix = replace_fix(f"Write `{twice[1]}`", Span(start, twice.end()), twice[1], safe=True)
+            message = "a blackboard entry has one pair of braces"
+            self.problems.append(Diagnostic("syntax-error", Span(start, twice.end()), message, fixes=(fix,)))
+            self._strange = True
+            return self._add(NAME, start, twice.end())
+        word = _WHOLE_WORD.match(self.text, start + 1) if character == "{" else None
+        end = self._add(NAME, start, word.end()) if word else start + 1
+        if self._strange:
+            return end
+        self._strange = True
+        if character == "{" and not self._brackets and (mended := attributes_in_braces(self.text, start)) is not None:
+            self.problems.append(Diagnostic("syntax-error", Span(start, start + 1), ATTRIBUTES, fixes=(mended,)))
+            return end
+        other = "}" if character == "{" else "{"
+        at = end
+        if character == "}":
+            at = self.starts[-1] if self.raws and self.starts[-1] + len(self.raws[-1]) == start else start
+        fix = replace_fix(f"Add `{other}`", Span(at, at), other)
+        message = f"missing `{other}` for this `{character}`"
+        notes = ("a blackboard entry is written `{key}`, on one line and without quotes in it",)
+        span = Span(start, start + 1)
+        self.problems.append(Diagnostic("syntax-error", span, message, notes=notes, fixes=(fix,)))
+        return end
+
+    def _close_square(self, position: int) -> int:
+        span = Span(position, position + 1)
+        fix = replace_fix("Write `)`", span, ")", safe=True)
+        self.problems.append(Diagnostic("syntax-error", span, "expected `)`, found `]`", fixes=(fix,)))
+        self._brackets.pop()
+        return self._add(CLOSE, position, position + 1)
+
+    def _quote_value(self, at: int) -> int:
+        """A character that begins nothing, inside a value: `a = 1;2`."""
+        start, end = self._whole_word(at)
+        self._strange = True  # more of it may follow
+        fixes: tuple[Fix, ...] = ()
+        if _VALUE_END.match(self.text, end):
+            fixes = (value_meant(self.text, start, end, safe=self._takes_strings()),)
+        self.problems.append(Diagnostic("syntax-error", Span(start, end), "this value needs quotes", fixes=fixes))
+        return self._add(NAME, start, end)
+
+    def _takes_strings(self) -> bool:
+        """Whether a value may surely be a string: those of a requirement's parameters may not."""
+        return not _WITH_PARAMETERS.intersection(self.raws)
+
+    def _in_value(self, at: int) -> bool:
+        """Whether what begins at `at` stands behind `key =`, or without a blank behind a word that does."""
+        last = len(self.raws) - 1
+        while last > 0 and self._joins(last, at):
+            at = self.starts[last]
+            last -= 1
+        return last >= 0 and self.raws[last] == "="
+
+    def _whole_word(self, at: int) -> tuple[int, int]:
+        """Where the word around `at` begins and ends; the tokens already made of it are taken back."""
+        word = _WHOLE_WORD.match(self.text, at)
+        assert word is not None, "a word or a sign begins here"
+        while self.raws and self._joins(len(self.raws) - 1, at):
+            at = self.starts.pop()
+            self.kinds.pop()
+            self.raws.pop()
+        return at, word.end()
+
+    def _joins(self, index: int, at: int) -> bool:
+        """Whether a token makes one word with what begins at `at`: there is no blank between, and it is no `=`."""
+        kind, raw = self.kinds[index], self.raws[index]
+        if kind not in (NAME, NUMBER, QUANTITY, OPERATOR) or raw == "=" or raw == ",":
+            return False
+        return self.starts[index] + len(raw) == at
+
+    def _add(self, kind: int, start: i64, end: i64) -> i64:
+        self.kinds.append(kind)
+        self.starts.append(start)
+        self.raws.append(self.text[start:end])
+        return end
+
+
+def has_line_end(text: str, start: int, end: int) -> bool:
+    """Whether a piece of a text runs over several lines."""
+    return text.find("\n", start, end) >= 0 or text.find("\r", start, end) >= 0
+
+
+_WHOLE_WORD: Final = re.compile(r"[^\s(),\"'{}]+")
+_TWICE_BRACED: Final = re.compile(r"\{(\{[^{}\r\n]*\})\}")
+_SHELL_ENTRY: Final = re.compile(r"\$(?:\{[^\W\d]\w*\}|[^\W\d]\w*)(?=[ \t),\r\n]|\Z)")
+_KEY: Final = re.compile(r"[ \t]*[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)")
+_SQUARE: Final = re.compile(r"\[[^\[\](){}\"'\r\n]*\](?=[ \t]*(?:[),\r\n]|\Z))")
+_VALUE_END: Final = re.compile(r"[ \t]*(?:[),\r\n#/]|\Z|[^\W\d](?:\w|-(?=\w))*[ \t]*=(?!=)|satisf|tags\b)")
+_WITH_PARAMETERS: Final = frozenset(("satisfies", "QualityReq", "apply"))
