@@ -12,7 +12,7 @@ from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix, shifted
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS, item_word_meant, read_as
 from btq_lang.grammar.items import ItemParser
@@ -258,7 +258,7 @@ class Parser(ItemParser):
         meant = item_word_meant(self.raw)
         following = self.kinds[self.index + 1]
         other = _OTHER_ITEMS.get(self.raw.lower())
-        if other is not None and following in (NAME, STRING) and self.raws[self.index + 1] not in VERBS:
+        if other is not None and following in (NAME, STRING) and self.raws[self.index + 1] not in VERB_WORDS:
             message = f"unknown word `{self.raw}`; did you mean `{other}`?"
             self.complain("syntax-error", self.here(), message, (), (self.other_item(other),))
             return "" if other == "include" or self.raw in ("def", "class") else other
@@ -327,7 +327,7 @@ class Parser(ItemParser):
             notes = ('another file is read with `include "stations.btq"`',)
         elif self.kind == NAME and self.raw in NODE_CLAUSES:
             notes = ("write it after a node, or indented in the block of a node or BehaviorTree",)
-        elif self.kind == NAME and (self.raw in VERBS or self.raw in HEADS):
+        elif self.kind == NAME and (self.raw in VERB_WORDS or self.raw in HEADS):
             notes = ("a clause goes in the block of a QualityReq, indented",)
         elif self.kind == NAME and self.raw in DIRECTIONS:
             notes = ("a port goes in the block of a model or BehaviorTree, indented",)

@@ -13,7 +13,7 @@ from typing import Final
 
 from btq_lang.btcpp.document import unescape
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, xml_tag
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
@@ -125,7 +125,7 @@ def _quoted(inside: str) -> str:
     return '"' + inside.replace('"', '\\"') + '"'
 
 
-_MEANING: Final = frozenset((*CATEGORIES, *DIRECTIONS, *NODE_CLAUSES, *ITEM_WORDS, *HEADS, *VERBS))
+_MEANING: Final = frozenset((*CATEGORIES, *DIRECTIONS, *NODE_CLAUSES, *ITEM_WORDS, *HEADS, *VERB_WORDS))
 _BLANKS: Final = " \t"
 _FIRST_BLANKS: Final = (" ", "\t")
 _ESCAPED: Final = {"\n": "\\n", "\r": "\\n", "\t": "\\t", "\\": "\\\\"}

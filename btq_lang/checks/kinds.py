@@ -15,7 +15,7 @@ from btq_lang.checks import lookups
 from btq_lang.checks.view import View, misspelt_clause
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Entry, Include, Model, Word, is_name, quote, shape
@@ -358,7 +358,7 @@ def _is_clause(seen: SeenNode) -> bool:
     return (
         name is not None
         and not (name.quoted or seen.node.category or seen.node.children)
-        and (name.text in VERBS or name.text in HEADS)
+        and (name.text in VERB_WORDS or name.text in HEADS)
     )
 
 

@@ -11,7 +11,7 @@ from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
 from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _BLANKS = " \t"
 _WHITE = " \t\r\n"
 # Words that mean something else where a node's kind, or its label, may stand.
-_NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERBS | {"xml"}
+_NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xml"}
 
 
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.catalog.units import dimension_name, parse_unit
+from btq_lang.catalog.verbs import VERBS, words
 from btq_lang.diagnostics.model import Fix, replace_fix
 from btq_lang.grammar.conditions import HEADS, ConditionParser
 from btq_lang.grammar.cursor import shown
@@ -34,9 +35,7 @@ from btq_lang.syntax.tree import (
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
 
-VERBS: Final = frozenset(
-    ("takes", "succeeds", "needs", "keeps", "never", "leaves", "uses", "tries", "runs", "starts", "ends", "follows")
-)
+VERB_WORDS: Final = frozenset(VERBS)
 HAPPENINGS: Final = frozenset(("starts", "succeeds", "fails", "finishes", "halts"))
 MAX_CASES: Final = 100  # in one value: a table may stand in each case of another one
 RELATIONS: Final = {("at", "most"): "<=", ("at", "least"): ">=", ("less", "than"): "<", ("more", "than"): ">"}
@@ -51,9 +50,9 @@ class ClaimParser(ConditionParser):
         """Claim = [ Subject ] Verb"""
         start = self.start()
         subject: Subject | None = None
-        if not (self.kind == NAME and self.raw in VERBS):
+        if not (self.kind == NAME and self.raw in VERB_WORDS):
             subject = self.subject()
-        if not (self.kind == NAME and self.raw in VERBS) and not self.blank_in_path(subject, VERBS):
+        if not (self.kind == NAME and self.raw in VERB_WORDS) and not self.blank_in_path(subject, VERB_WORDS):
             if subject is not None:
                 self.no_verb(subject)
             return None
@@ -72,23 +71,23 @@ class ClaimParser(ConditionParser):
         per: Path | Word | None = None
         event: Event | None = None
         every = False
-        word = verb.raw
-        if word == "takes":
+        operand = VERBS[verb.raw].operand
+        if operand == "duration":
             bound = self.bound()
-        elif word == "succeeds":
+        elif operand == "deadline":
             bound = self.within() if self.accept_word("within") else None
-        elif word in _OF_CONDITIONS:
-            if word == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
+        elif operand == "condition":
+            if verb.raw == "never" and self.raw in HAPPENINGS and self.kinds[self.index + 1] == NEWLINE:
                 self.expected("a condition", (_NEVER_FAILS,))
             else:
                 condition = self.cond()
-        elif word == "uses":
+        elif operand == "use":
             bound = self.bound()
             resource = self.plain_name("a signal") if self.expect_word("of", forgotten=self.kind == NAME) else None
-        elif word == "tries":
+        elif operand == "count":
             bound = self.bound()
             per = self.path("a node") if self.accept_word("per") else None
-        elif word == "runs":
+        elif operand == "rate":
             if self.accept_word("every"):
                 every = True
                 bound = self.within()
@@ -98,7 +97,7 @@ class ClaimParser(ConditionParser):
                     self.expected("`per` and a time", ("a rate is written `runs at least 10 per 1 s`",))
                 else:
                     per = self.quantity("a duration: 1 s") if self.expect_word("per") else None
-        elif word == "follows":
+        elif operand == "event":
             event = self.event()
         else:
             bound = self.within() if self.expect_word("within") else None
@@ -109,7 +108,7 @@ class ClaimParser(ConditionParser):
         """`all MoveBase`: complain, and pass it as `every`."""
         if self.kind != NAME or self.raw not in ("all", "each", "any"):
             return False
-        if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERBS:
+        if self.kinds[self.index + 1] != NAME or self.raws[self.index + 1] in VERB_WORDS:
             return False
         fix = replace_fix(f"Replace `{self.raw}` with `every`", self.here(), "every")
         self.complain("syntax-error", self.here(), "all nodes of a kind are written `every …`", (), (fix,))
@@ -119,7 +118,7 @@ class ClaimParser(ConditionParser):
     def is_verb(self, further: int) -> bool:
         """Whether the next word but `further` is a verb."""
         index = self.index + further
-        return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERBS
+        return index < len(self.kinds) and self.kinds[index] == NAME and self.raws[index] in VERB_WORDS
 
     def no_verb(self, subject: Subject) -> None:
         """Complain of a subject without a verb, or of a misspelt verb that was read as a subject."""
@@ -151,11 +150,11 @@ class ClaimParser(ConditionParser):
             self.expected(
                 _A_VERB, ("`tries at most 3` limits the attempts, `succeeds` demands that the node does not fail",)
             )
-        elif self.kind == NAME and (likely := near(self.raw, VERBS, limit=1)):
+        elif self.kind == NAME and (likely := near(self.raw, VERB_WORDS, limit=1)):
             self.misspelt(self.here(), self.raw, likely[0])
         elif not isinstance(subject, Path):
             self.expected(_A_VERB)
-        elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERBS | HEADS, limit=1)):
+        elif len(subject.names) == 1 and (likely := near(subject.names[0].raw, VERB_WORDS | HEADS, limit=1)):
             self.misspelt(subject.span.shifted(self.base), subject.names[0].raw, likely[0])
         else:
             name = "/".join(word.raw for word in subject.names)
@@ -270,7 +269,11 @@ class ClaimParser(ConditionParser):
                 if self.kind in (QUANTITY, NUMBER) and self.raws[self.index + 1] == "-":
                     note = "a range is written `between 10 s and 20 s`"
                 fixes: tuple[Fix, ...] = ()
-                if self.kind == QUANTITY and self.raws[self.index + 1] != "-" and self.raws[self.index - 1] == "takes":
+                if (
+                    self.kind == QUANTITY
+                    and self.raws[self.index + 1] != "-"
+                    and self.raws[self.index - 1] in _OF_DURATIONS
+                ):
                     at = self.here().start
                     fixes = (replace_fix("Put `at most` before it", Span(at, at), "at most "),)
                 self.expected("a bound: at most, at least, less than, more than or between", (note,), fixes)
@@ -381,7 +384,7 @@ _A_VERB: Final = "a verb: takes, succeeds, needs, keeps, …"
 _NEVER_FAILS: Final = (
     "write `succeeds` for a node that must not fail, or `never node Dock` for a node that must not run"
 )
-_OF_CONDITIONS: Final = frozenset(("needs", "keeps", "never", "leaves"))
+_OF_DURATIONS: Final = words(operands=("duration",))
 _BOUNDS_IN_WORDS: Final[dict[tuple[str, ...], tuple[str, str]]] = {
     **dict.fromkeys(
         (("no", "more", "than"), ("not", "more", "than"), ("no", "longer", "than"), ("up", "to"), ("=", "<")),

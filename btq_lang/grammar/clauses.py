@@ -9,7 +9,7 @@ from typing import Final
 
 from btq_lang.catalog.measured import measured
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERBS, ClaimParser, is_time
+from btq_lang.grammar.claims import QUALITY_IN_HEAD, VERB_WORDS, ClaimParser, is_time
 from btq_lang.grammar.conditions import HEADS, SUBJECT_HEADS
 from btq_lang.syntax.scan import line_end
 from btq_lang.syntax.suggestions import unknown_unit
@@ -49,7 +49,7 @@ class ClauseParser(ClaimParser):
     def clause(self) -> Clause | None:
         """Clause = Claim | Scope | Odds | Confidence | Window | OnViolation | Goal | Because | How"""
         word = self.raw if self.kind == NAME else ""
-        if word in VERBS or word in SUBJECT_HEADS:
+        if word in VERB_WORDS or word in SUBJECT_HEADS:
             return self.claim()
         if word == "while" or word == "when":
             return self.scope()
@@ -258,7 +258,7 @@ class ClauseParser(ClaimParser):
         ends = self.kinds[following] in (NEWLINE, CLOSE) or (
             self.kinds[following] == NAME and self.raws[following] in HEADS
         )
-        is_misspelt = near(self.raw, VERBS | HEADS, limit=1)
+        is_misspelt = near(self.raw, VERB_WORDS | HEADS, limit=1)
         return ends and not is_misspelt and measured(self.raws[: self.index]) == "s"
 
 

@@ -11,7 +11,7 @@ from typing import Final
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
 from btq_lang.grammar.attributes import AttributeParser, meant_clause
 from btq_lang.grammar.blocks import MAX_DEPTH, OF_ITS_OWN, Block
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.grammar.cursor import VALUES, shown
 from btq_lang.syntax.scan import line_end, line_start
@@ -234,7 +234,7 @@ class NodeParser(AttributeParser):
         if kind is not None and kind.kind == NAME and kind.raw in _STATEMENTS and self.raws[-2] == ":":
             message = f"expected a node, found the statement `{kind.raw}`"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (_STATEMENTS[kind.raw],))
-        elif kind is not None and kind.kind == NAME and (kind.raw in VERBS or kind.raw in HEADS):
+        elif kind is not None and kind.kind == NAME and (kind.raw in VERB_WORDS or kind.raw in HEADS):
             message = f"unexpected clause `{kind.raw}` in a tree; clauses go in a requirement"
             note = "write `satisfies QualityReq` and an ID before it, or indent it below a line that does"
             self.complain("syntax-error", kind.span.shifted(self.base), message, (note,))

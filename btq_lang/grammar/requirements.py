@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
-from btq_lang.grammar.claims import MEANT, MODALS, RELATIONS, VERBS
+from btq_lang.grammar.claims import MEANT, MODALS, RELATIONS, VERB_WORDS
 from btq_lang.grammar.clauses import ENDS_CLAUSES, ClauseParser
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.syntax.scan import is_unit, path_end, unit_run
@@ -124,7 +124,7 @@ class RequirementParser(ClauseParser):
         last = quality.names[-1]
         if self.kind != NAME or last.kind != NAME or self.kinds[self.index + 1] not in (STRING, NEWLINE):
             return
-        if self.raw not in VERBS and self.raw not in HEADS:
+        if self.raw not in VERB_WORDS and self.raw not in HEADS:
             fix = replace_fix("Write `-`", Span(last.end + self.base, self.here().start), "-")
             span = Span(last.start + self.base, self.here().end)
             self.complain("syntax-error", span, "a quality's name has no spaces", (), (fix,))
@@ -138,7 +138,7 @@ class RequirementParser(ClauseParser):
     def bare_title(self, has_quality: bool) -> Word | None:
         """Complain of a title without its quotes, and take it; or of a quality without its `:`."""
         following = self.index + 1
-        if self.kind != NAME or self.group or self.raw in VERBS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
+        if self.kind != NAME or self.group or self.raw in VERB_WORDS or self.raw in HEADS or self.raw in ENDS_CLAUSES:
             return None
         is_word = self.kinds[following] == NEWLINE
         if self.kinds[following] == STRING and not has_quality:
@@ -147,7 +147,7 @@ class RequirementParser(ClauseParser):
             return self.take()
         if not (is_word or self.is_prose(following)):
             return None
-        if self.raw in MEANT or (near(self.raw, VERBS | HEADS, limit=1) and not self.is_long_prose()):
+        if self.raw in MEANT or (near(self.raw, VERB_WORDS | HEADS, limit=1) and not self.is_long_prose()):
             return None
         end = following
         while self.kinds[end] != NEWLINE and not self.is_clause(end):
@@ -169,11 +169,11 @@ class RequirementParser(ClauseParser):
 
     def is_prose(self, index: int) -> bool:
         """Whether a word behind another is none that makes a claim of both: a verb, or `must` and a verb."""
-        if self.kinds[index] != NAME or self.raws[index] in VERBS or self.raws[index] in ENDS_CLAUSES:
+        if self.kinds[index] != NAME or self.raws[index] in VERB_WORDS or self.raws[index] in ENDS_CLAUSES:
             return False
         if self.raws[index] in MODALS:
-            return not (self.kinds[index + 1] == NAME and near(self.raws[index + 1], VERBS, limit=1))
-        return not (self.is_clause(index) or near(self.raws[index], VERBS, limit=1))
+            return not (self.kinds[index + 1] == NAME and near(self.raws[index + 1], VERB_WORDS, limit=1))
+        return not (self.is_clause(index) or near(self.raws[index], VERB_WORDS, limit=1))
 
     def is_long_prose(self) -> bool:
         """Whether nothing but words stands here to the end of the line, and more than two: `keep the arm still`."""
@@ -184,7 +184,7 @@ class RequirementParser(ClauseParser):
         if self.kinds[index] != NAME:
             return False
         raw, second = self.raws[index], self.raws[index + 1] if self.kinds[index + 1] == NAME else ""
-        if raw in VERBS and second:
+        if raw in VERB_WORDS and second:
             return second == "between" or (second, self.raws[index + 2]) in RELATIONS
         is_reason = raw == "because" and self.kinds[index + 1] == STRING
         return is_reason or raw in ENDS_CLAUSES or (raw, second) in _BEGIN_CLAUSES

@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Final
 
 from btq_lang.catalog.nodes import lookup
-from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS as ON_VIOLATION
 from btq_lang.grammar.clauses import EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
@@ -106,7 +106,7 @@ KEYWORDS: Final = frozenset(
     | NODE_CLAUSES
     | DIRECTIONS
     | HEADS
-    | VERBS
+    | VERB_WORDS
     | HAPPENINGS
     | EXPERIMENTS
     | FUNCTIONS

@@ -11,7 +11,7 @@ from collections.abc import Container
 from functools import cache, lru_cache
 
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.grammar.claims import VERBS
+from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
 from btq_lang.parser import parse
 from btq_lang.syntax.tree import Claim, Path, Requirement, Word
@@ -63,7 +63,7 @@ def _nodes_needed(text: str) -> frozenset[str] | None:
     if is_script(text):
         return frozenset()
     words = text.replace(".", " ").split()
-    if not words or (words[0] not in HEADS and VERBS.isdisjoint(words)):
+    if not words or (words[0] not in HEADS and VERB_WORDS.isdisjoint(words)):
         return None
     found = clauses_of(text)
     if found is None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btq_lang.catalog.language import PHRASES, Phrase, beginning, phrase_at, phrases_of
-from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
@@ -30,7 +30,7 @@ def words_of(*parts: str) -> set[str]:
 
 
 def test_no_word_of_the_grammar_is_left_out() -> None:
-    assert words_of("claim") - {"every"} == VERBS
+    assert words_of("claim") - {"every"} == VERB_WORDS
     assert words_of("event") - {"when"} == HAPPENINGS
     assert words_of("action") == set(ACTIONS)
     assert words_of("method") == set(METHODS)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import pytest
 
-from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import ACTIONS, EXPERIMENTS, METHODS
 from btq_lang.grammar.conditions import COMPARISONS, FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
@@ -144,6 +144,16 @@ def test_what_the_grammar_makes_is_read(seed: int) -> None:
 
 def test_no_word_of_the_parser_is_left_out() -> None:
     words = set(re.findall(r"\('word', '([^']+)'\)", repr(list(RULES.values()))))
-    known = {*ITEM_WORDS, *NODE_CLAUSES, *DIRECTIONS, *VERBS, *HEADS, *HAPPENINGS, *EXPERIMENTS, *ACTIONS, *METHODS}
+    known = {
+        *ITEM_WORDS,
+        *NODE_CLAUSES,
+        *DIRECTIONS,
+        *VERB_WORDS,
+        *HEADS,
+        *HAPPENINGS,
+        *EXPERIMENTS,
+        *ACTIONS,
+        *METHODS,
+    }
     assert known | set(FUNCTIONS) | set(COMPARISONS) <= words
     assert all(f"`{symbol}`".replace("|", "\\|") in PAGE for symbol in SYMBOLS if symbol.isascii())

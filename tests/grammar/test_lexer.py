@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 from syntax_asserts import assert_fix, assert_invariants, assert_parse, escaped, show_problems, written
 
-from btq_lang.grammar.claims import HAPPENINGS, VERBS
+from btq_lang.grammar.claims import HAPPENINGS, VERB_WORDS
 from btq_lang.grammar.clauses import EXPERIMENTS
 from btq_lang.grammar.conditions import FUNCTIONS, HEADS
 from btq_lang.grammar.item_words import ITEM_WORDS
@@ -561,7 +561,7 @@ def test_a_word_after_a_number_is_a_unit_or_the_next_token(text: str, expected: 
 
 
 def test_no_word_of_the_grammar_is_a_unit() -> None:
-    every = VERBS | HEADS | HAPPENINGS | FUNCTIONS | EXPERIMENTS | NODE_CLAUSES | DIRECTIONS | set(ITEM_WORDS)
+    every = VERB_WORDS | HEADS | HAPPENINGS | FUNCTIONS | EXPERIMENTS | NODE_CLAUSES | DIRECTIONS | set(ITEM_WORDS)
     others = {
         "per",
         "of",
