@@ -517,9 +517,9 @@ def check_moved(text: str, moves: Mapping[str, str], after: str) -> None:
     assert files == split_files(after)
 
 
-def answer_everything(text: str, offset: int) -> None:
-    """Every feature answers, and what it answers lies in the text."""
-    workspace = Workspace.of({"main.btq": text})
+def answer_everything(text: str, offset: int, workspace: Workspace | None = None) -> None:
+    """Every feature answers, and what it answers lies in the text: `main.btq` of a workspace, or of a new one."""
+    workspace = workspace or Workspace.of({"main.btq": text})
     at = workspace, "main.btq", offset
     whole = Span(0, len(text))
     for target in goto_definition(*at):
@@ -555,8 +555,7 @@ def answer_everything(text: str, offset: int) -> None:
         assert _lies_in(link.span, whole)
     for outline in document_symbols(workspace, "main.btq"):
         assert _lies_in(outline.span, whole)
-    parsed = parse(text)
-    stretches = [stretch_of(parsed, len(text), *group) for group in groups(parsed)]
+    stretches = [stretch_of(file.parsed, len(text), *group) for group in groups(file.parsed)]
     parts = [text[part.start : part.end] for part in stretches]
     assert "".join(parts) == text
     assert [word for part in parts for word in words_of(part)] == words_of(text)
