@@ -6,6 +6,7 @@ called, their answer printed.  A command imports what it needs when it runs, for
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -22,6 +23,7 @@ def program() -> None:
     It ends as it stands: to free every object first, as Python does, takes a tenth of a small check, and the system
     takes all of it back anyway.
     """
+    gc.set_threshold(100_000, 50, 10)  # nearly all that a command makes stays: looking for garbage takes a tenth of it
     try:
         code = main()
     except Exception as error:  # a mistake of btq's: nothing of it says that there are findings
@@ -69,8 +71,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _plain_check(paths: Sequence[str]) -> int:
     """`btq check PATH …`, the command that editors, hooks and people run all day: no argparse, no needless work."""
-    import gc
-
     gc.disable()  # what imports make stays; looking for garbage in it takes a tenth of the time of a small check
     from btq_lang.commands.check import run
     from btq_lang.commands.options import CheckOptions
