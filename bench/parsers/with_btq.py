@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import sys
 from collections.abc import Callable
@@ -18,6 +19,7 @@ PACKAGE = str(Path(btq_lang.__file__).resolve().parents[1])
 
 
 def load() -> Callable[[str], Any]:
+    gc.set_threshold(100_000, 50, 10)  # as in btq's programs (btq_lang/cli.py)
     for home in HOMES:
         parse: Callable[[str], Any] | None = getattr(importlib.import_module(home), "parse", None)
         if parse is not None:
