@@ -1,11 +1,13 @@
 """The checks: what is wrong with a file beyond its syntax.
 
-One invariant: a check is a function of the view of a file and one of its entries, and yields diagnostics whose spans
-count from that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below
-says which function looks at which items.  Not known here: what an edit changed, and how findings are printed.
+One invariant: a check is a function of the view of an item and its entry, and yields diagnostics whose spans count
+from that entry; it never raises, whatever the file.  A module holds the rules of one subject, and `CHECKS` below says
+which function looks at which items.  What a check asks, it asks its view, and so the query store
+(workspace/queries.py), which keeps the answers from one edit to the next.  Not known here: what an edit changed, and
+how findings are printed.
 
-    view.py, seen.py   what a check sees: its file, and the nodes of a tree sorted by what checks look for
-    answers.py, lookups.py   what it asks of other items, kept from one edit to the next
+    view.py, seen.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
+    lookups.py, resolving.py   what it looks up in the files, and the requirements there
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
@@ -33,6 +35,7 @@ from btq_lang.checks import (
     includes,
     kinds,
     literals,
+    lookups,
     measures,
     misspelt,
     mixed_types,
@@ -46,6 +49,7 @@ from btq_lang.checks import (
     reactive,
     repeated,
     requirements,
+    resolving,
     scripts,
     trees,
     unreachable,
@@ -69,13 +73,11 @@ from btq_lang.syntax.tree import (
     Signal,
     Tree,
 )
-from btq_lang.util.record import Record
 from btq_lang.workspace.config import configured
-from btq_lang.workspace.findings import Findings, Told
+from btq_lang.workspace.findings import Findings, Reported
+from btq_lang.workspace.queries import Store
 
 if TYPE_CHECKING:
-    from btq_lang.checks.answers import Answers
-    from btq_lang.workspace.config import Project
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.workspace import Workspace
 
@@ -237,18 +239,7 @@ _OF_NODES = tuple(each for each in CHECKS[Model] if each not in _OF_PORTS_OF_TRE
 _WITHOUT_PORTS = tuple(each for each in _OF_NODES if each not in _OF_PORTS)
 
 
-class Found(Record):
-    """What was found in an item.
-
-    Attributes:
-        restless: the checks that must be asked again after every edit, for they look at the whole workspace.
-    """
-
-    diagnostics: tuple[Diagnostic, ...]
-    restless: tuple[Check, ...]
-
-
-def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[Diagnostic, ...]:
+def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     """All that is wrong with a file, in the order of its text.
 
         >>> from btq_lang import Workspace, check
@@ -259,7 +250,6 @@ def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[D
 
     Args:
         path: one of the workspace's files.
-        is_alone: say nothing of what is wrong in the files that it includes.
 
     Returns:
         Diagnostics as the project asks for them (severities, selection, suppressions); their spans count from the
@@ -268,55 +258,20 @@ def check(workspace: Workspace, path: str, *, is_alone: bool = False) -> tuple[D
     Raises:
         KeyError: there is no such file.
     """
-    view = View(workspace, path)
-    project = None if _looks_beyond(workspace, path) else workspace.project
-    told: list[tuple[Told, list[int]]] = []
-    for entry in workspace.files[path].parsed.entries:
-        checks = checks_of(entry)
-        if is_alone:
-            checks = tuple(each for each in checks if each is not includes.include_with_errors)
-        found = [diagnostic for each in checks for diagnostic in each(view, entry)]
-        if found or entry.diagnostics:
-            of_item = _told(view, entry, found, project)
-            told.append((of_item, of_item.starts(workspace)))
-    return (Findings(told) if project is not None else _wanted(workspace, path, Findings(told))).diagnostics
+    return findings(Store(workspace), path).diagnostics
 
 
-def check_again(workspace: Workspace, path: str, answers: Answers) -> Findings:
-    """The same, asking no more than an edit asks for.
+def findings(store: Store[Workspace], path: str) -> Findings:
+    """The same of a file of the store's workspace, with what each item is reported for."""
+    return findings_of(store.state, path, store.ask(reported_in_file, path, False))
 
-    Args:
-        answers: what earlier checks of the file have left here.
-    """
-    view = View(workspace, path, answers)
+
+def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -> Findings:
+    """What is reported of a file's items, without what its comments silence, and of XML on the XML itself."""
+    found = Findings([(each, each.starts(workspace)) for each in reported])
     file = workspace.files[path]
-    answers.begin(view, workspace)
-    project = None if _looks_beyond(workspace, path) else workspace.project
-    told: list[tuple[Told, list[int]]] = []
-    before, answers.told = answers.told, {}
-    found = answers.conclude_each(view, _kept, file.facts.values())
-    for entry, facts, known in zip(file.parsed.entries, file.facts.values(), found, strict=True):
-        if not (known.diagnostics or known.restless or entry.diagnostics):
-            continue
-        same = before.get(facts)
-        if same is None or same[0] is not known or same[1] is not project or known.restless:
-            restless = (diagnostic for each in known.restless for diagnostic in each(view, entry))
-            same = known, project, _told(view, entry, (*known.diagnostics, *restless), project)
-        answers.told[facts] = same
-        if same[2].diagnostics:
-            told.append((same[2], same[2].starts(workspace)))
-    answers.end()
-    return Findings(told) if project is not None else _wanted(workspace, path, Findings(told))
-
-
-def _looks_beyond(workspace: Workspace, path: str) -> bool:
-    """Whether what is to be told of an item is more than that and the project say."""
-    return workspace.files[path].has_directives or bool(workspace.origins)
-
-
-def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
-    """What is to be told of all that was found, where that takes more than each item and the project."""
-    file = workspace.files[path]
+    if not file.has_directives and not workspace.origins:
+        return found
     diagnostics: Iterable[Diagnostic] = found.diagnostics
     if file.has_directives:
         from btq_lang.checks.suppressions import Suppressions  # few files have any
@@ -330,28 +285,49 @@ def _wanted(workspace: Workspace, path: str, found: Findings) -> Findings:
     return Findings.placed(configured(workspace.project, diagnostics))
 
 
-def _told(view: View, entry: Entry, found: Iterable[Diagnostic], project: Project | None) -> Told:
-    """All that is to be told of an entry, as the project wants it; None: that is not to be asked yet."""
+def keep(store: Store[Workspace], path: str) -> None:
+    """Keep what is found in a file from one edit to the next."""
+    store.pin(reported_in_file, path, False)
+    resolving.keep(store, path)
+
+
+def forget(store: Store[Workspace], path: str) -> None:
+    """Nobody asks for a file any more."""
+    store.unpin(reported_in_file, path, False)
+    store.sweep(always=True)
+    resolving.forget(store, path)
+
+
+def let_go(store: Store[Workspace]) -> None:
+    """Nobody waits: let go of what edits have replaced."""
+    store.sweep()
+    resolving.let_go(store)
+
+
+def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) -> tuple[Reported, ...]:
+    """What is reported of each item of a file of which anything is.
+
+    Args:
+        is_alone: nothing of what is wrong in the files that it includes.
+    """
+    items = store.read(viewpoint, lookups.items, viewpoint)
+    found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is Include) for facts in items]
+    return tuple([each for each in found if each is not None])
+
+
+def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: bool) -> Reported | None:
+    view = View(store, viewpoint, facts)
+    entry = view.entry
+    checks = checks_of(entry)
+    if is_alone:
+        checks = tuple([each for each in checks if each is not includes.include_with_errors])
+    found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view, entry)]
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
-    return Told(found if project is None else configured(project, found), (view.path, entry.item))
-
-
-def _kept(view: View, facts: Facts) -> Found:
-    """What the checks find in an item, as far as they say what they ask for."""
-    entry = view.entry(facts)
-    checks = checks_of(entry)
-    restless: list[Check] = []
-    found = view.watched(checks, entry)
-    if found is None:  # one of them does, in few items: to watch each by itself takes longer
-        found = []
-        for each in checks:
-            diagnostics = view.watched((each,), entry)
-            if diagnostics is None:
-                restless.append(each)
-            else:
-                found += diagnostics
-    return Found(tuple(found), tuple(restless))
+    elif not found:
+        return None
+    wanted = tuple(configured(view.project, found))
+    return Reported(wanted, (viewpoint, facts.item)) if wanted else None
 
 
 def checks_of(entry: Entry) -> tuple[Check, ...]:
@@ -369,9 +345,9 @@ def checks_of(entry: Entry) -> tuple[Check, ...]:
 
 def _on_sound_lines(found: Iterable[Diagnostic], entry: Entry, text: str) -> Iterator[Diagnostic]:
     """What is not on a line with a syntax error: what a line means is not known before it can be read."""
-    broken = {_line(text, entry, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
-    return (each for each in found if _line(text, entry, each) not in broken)
+    broken = {_line(text, each) for each in entry.diagnostics if each.effective_severity is Severity.ERROR}
+    return (each for each in found if _line(text, each) not in broken)
 
 
-def _line(text: str, entry: Entry, diagnostic: Diagnostic) -> int:
-    return line_start(text, entry.start, entry.start + diagnostic.span.start)
+def _line(text: str, diagnostic: Diagnostic) -> int:
+    return line_start(text, 0, diagnostic.span.start)

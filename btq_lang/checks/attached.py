@@ -32,6 +32,6 @@ def _alone(view: View, entry: Entry, use: Use, word: str) -> Span | None:
     clauses = use.node.clauses if use.node is not None else entry.item.clauses if isinstance(entry.item, Tree) else ()
     for clause in clauses:
         if isinstance(clause, Satisfices | Satisfies) and clause.start < use.span.start and clause.end == use.span.end:
-            before = view.text[entry.start + clause.start : entry.start + use.span.start]
+            before = view.text[clause.start : use.span.start]
             return Span(clause.start, clause.start + len(word)) if before.strip() == word else None
     return None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, replace_fix
+from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NUMBER, QUANTITY
 from btq_lang.syntax.tree import (
@@ -62,20 +62,20 @@ def impossible_bound(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`uses … of` a signal that is neither a counter nor a level: nobody says what its use is."""
     for _, claim in _claims(view, entry):
-        definition = view.scope.find(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
-        signal = definition.symbol.target if definition is not None else None
-        if claim.resource is None or definition is None or not isinstance(signal, Signal) or signal.unit is None:
+        declaration = view.declaration(Kind.SIGNAL, claim.resource.text) if claim.resource is not None else None
+        signal = declaration.symbol.target if declaration is not None else None
+        if claim.resource is None or declaration is None or not isinstance(signal, Signal) or signal.unit is None:
             continue
         if signal.unit.text in ("bool", "text") or (signal.behaviour and signal.behaviour.raw != "gauge"):
             continue
         at = signal.behaviour.span if signal.behaviour else Span(*[(signal.source or signal.unit).end] * 2)
-        place = Place(at, definition.path, definition.entry.item)
+        place = Place(at, declaration.path, declaration.owner.item)
         words = ("level", "counter") if signal.unit.text == "%" else ("counter", "level")
         yield Diagnostic(
             "uses-of-gauge",
             claim.resource.span,
             f"`{claim.resource.text}` is neither a counter nor a level, so its use is undefined",
-            related=(view.defined_at(definition, "declared here"),),
+            related=(Related(declaration.place, "declared here"),),
             notes=("the use of a counter is its final minus its initial value; the use of a level is the opposite",),
             fixes=tuple(
                 Fix(f"Declare it as a {word}", (Change(place, word if signal.behaviour else f" {word}"),))
@@ -85,7 +85,7 @@ def uses_of_gauge(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _claims(view: View, entry: Entry) -> Iterator[tuple[Requirement, Claim]]:
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         if isinstance(requirement := symbol.target, Requirement):
             for clause in requirement.clauses:
                 if isinstance(clause, Claim):

@@ -2,74 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, KeysView, Mapping
+from collections.abc import Iterable, KeysView, Mapping, Set
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
+from btq_lang.checks.view import View
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
-    from btq_lang.checks.seen import SeenNode
-    from btq_lang.checks.view import View
-
-    T = TypeVar("T")
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 # The trees that a tree runs, and those that it means to: where `SubTree` is missing.
 Runs: TypeAlias = "tuple[tuple[str, ...], tuple[str, ...]]"
 
 
-def calls(view: View) -> Calls:
-    """Which tree runs which, of all trees in scope; those of the file come first, for a circle is told at its first
+def calls(store: Store[Workspace], viewpoint: str) -> Calls:
+    """Which tree runs which, of all trees in scope; those of the file come first, for a circle is reported at its first
     tree, and included XML may not know that it is in one."""
-    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.scope.names(Kind.TREE)))
+    view = View(store, viewpoint)
+    names = dict.fromkeys((*view.look_up(lookups.own_trees), *view.names(Kind.TREE)))
     return Calls({name: view.ask(_runs, name) for name in names})
 
 
-def callers(view: View, tree: str) -> tuple[str, ...]:
+def callers(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...]:
     """The other trees that run a tree, or mean to."""
-    return view.look_up_in(_callers, tree) or ()
+    return store.ask(calls, viewpoint).callers.get(tree, ())
 
 
-def missed(view: View) -> dict[str, bool]:
-    """The trees that the mission does not run, neither directly nor through others, if that is known for sure."""
+def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
+    """Whether the mission does not run a tree, neither directly nor through others, if that is known for sure."""
+    return tree in store.ask(_missed, viewpoint)
+
+
+def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...] | None:
+    """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
+    has one: there it is reported."""
+    return store.ask(calls, viewpoint).circles.get(tree)
+
+
+def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether a SubTree names a tree that nobody knows, so that what is reached cannot be told."""
+    return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
+
+
+def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:
+    view = View(store, viewpoint)
     main = view.main_tree
     if main is None or view.ask(has_gaps) or not view.is_read:
-        return {}
+        return frozenset()
     known = view.ask(calls)
-    return dict.fromkeys(known.names - known.reached_from(main), True)
-
-
-def circles(view: View) -> dict[str, tuple[str, ...]]:
-    """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
-    has one: there it is told."""
-    return view.ask(calls).circles
-
-
-def ask_of_called(view: View, what: Callable[[View, str], T], tree: str, seen: SeenNode) -> T | None:
-    """What a conclusion about trees, `what`, says of the one that a SubTree node of `tree` runs; None: the node names
-    none, or one that leads back to `tree`.
-
-    Whatever rests on the same about other trees asks for it here: so no circle of trees makes it ask for ever.
-    """
-    called = seen.id.text if seen.id is not None else ""
-    if not called or called in (view.look_up_in(_knots, tree) or ()):
-        return None
-    return view.ask(what, called)
-
-
-def _callers(view: View) -> dict[str, tuple[str, ...]]:
-    return view.ask(calls).callers
-
-
-def _knots(view: View) -> dict[str, frozenset[str]]:
-    return {tree: knot for knot in view.ask(calls).knots.values() for tree in knot}
-
-
-def has_gaps(view: View) -> bool:
-    """Whether a SubTree names a tree that nobody knows, so that what is reached cannot be told."""
-    return not view.scope.complete or view.ask(calls).has_gaps
+    return known.names - known.reached_from(main)
 
 
 class Calls:
@@ -202,8 +187,9 @@ def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
     return turned
 
 
-def _runs(view: View, tree: str) -> Runs:
-    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
+def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
+    view = View(store, viewpoint)
+    facts = view.owner(Kind.TREE, tree)
     if facts is None:
         return (), ()
     uses = facts.summary.uses

@@ -25,7 +25,7 @@ _THRESHOLDS = {"Parallel": ("success_count", "failure_count"), "ParallelAll": ("
 
 def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """More or fewer children than the node takes."""
-    nodes = view.nodes(entry)
+    nodes = view.nodes
     for index, seen in enumerate(nodes):
         if seen.category is None:
             continue
@@ -40,7 +40,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
             continue  # of a child that is meant for a clause, that is told
         if count == 0 and entry.diagnostics:
             after = nodes[index + 1].node.start if index + 1 < len(nodes) else len(view.text)
-            if view.is_torn(entry, seen.node.start, after - 1):
+            if view.is_torn(seen.node.start, after - 1):
                 continue  # its child may be what could not be read
         notes: tuple[str, ...] = ()
         if seen.kind is not None and seen.kind.late_count and count:
@@ -61,7 +61,7 @@ def child_count(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Switch whose cases and children do not match: a child for each case, and one more for the default."""
-    for seen in view.seen(entry).tagged(*_SWITCHES):
+    for seen in view.seen.tagged(*_SWITCHES):
         if seen.kind is None:
             continue
         node = seen.node
@@ -92,7 +92,7 @@ def switch_cases(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def parallel_threshold(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A threshold that the children of a Parallel cannot reach: the engine throws when it is ticked."""
-    for seen in view.seen(entry).tagged(*_THRESHOLDS):
+    for seen in view.seen.tagged(*_THRESHOLDS):
         count = len(seen.node.children)
         if seen.kind is None or count == 0:
             continue  # without a child, that is what is told

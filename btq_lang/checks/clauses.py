@@ -38,7 +38,7 @@ _ONCE: dict[type, str] = {
 
 def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A second clause of a kind of which the first counts; one that says the same can go."""
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
             continue
@@ -46,19 +46,19 @@ def duplicate_clause(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for clause in requirement.clauses:
             if type(clause) in _ONCE and (counts := first.setdefault(type(clause), clause)) is not clause:
                 # What one of several equal definitions leaves out contradicts the others.
-                is_alone = not view.scope.is_repeated(symbol.kind, symbol.name)
+                is_alone = not view.is_repeated(symbol.kind, symbol.name)
                 yield _duplicate(view, entry, counts, clause, is_alone)
 
 
 def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A confidence, or a window of runs or activations, in a requirement without a required probability."""
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if symbol.kind is not Kind.REQUIREMENT or not isinstance(requirement, Requirement):
             continue
         if any(isinstance(clause, Odds) for clause in requirement.clauses):
             continue
-        if view.is_torn(entry, requirement.start, requirement.end):
+        if view.is_torn(requirement.start, requirement.end):
             continue  # the odds may be what could not be read
         for clause in requirement.clauses:
             if isinstance(clause, Confidence) or (isinstance(clause, Window) and clause.experiments is not None):
@@ -73,11 +73,11 @@ def clause_without_odds(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A parameter that no clause of its requirement names, so that its value changes nothing."""
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or not requirement.parameters:
             continue
-        if view.is_torn(entry, requirement.start, requirement.end):
+        if view.is_torn(requirement.start, requirement.end):
             continue  # what it is for may be what could not be read
         named = {word.text for word in walk(requirement.clauses) if isinstance(word, Word)}
         for parameter in requirement.parameters:
@@ -87,7 +87,7 @@ def unused_parameter(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _duplicate(view: View, entry: Entry, counts: Clause, clause: Clause, is_alone: bool) -> Diagnostic:
-    text = view.text[entry.start :]
+    text = view.text
     said, again = (" ".join(text[each.start : each.end].split()) for each in (counts, clause))
     removals = [(again, clause)] if said == again else [(again, clause), (said, counts)]
     return Diagnostic(

@@ -37,7 +37,7 @@ def subtraction_without_blanks(view: View, entry: Entry) -> Iterator[Diagnostic]
 def _operands(view: View, entry: Entry) -> Iterator[Operand]:
     item = entry.item
     if isinstance(item, Tree):
-        clauses = (item.clauses, *[seen.node.clauses for seen in view.seen(entry).demanding])
+        clauses = (item.clauses, *[seen.node.clauses for seen in view.seen.demanding])
         roots: Iterable[Requirement | ReqRef | Context] = (
             requirement for each in clauses for requirement in requirements_at(each)
         )
@@ -53,14 +53,14 @@ def _operands(view: View, entry: Entry) -> Iterator[Operand]:
         if isinstance(root, Requirement):
             parts, clauses_of = root.parameters, root.clauses
         # Nearly all clauses are without a `-`, and need not be looked at word by word.
-        minus = [each for each in clauses_of if "-" in text[entry.start + each.start : entry.start + each.end]]
+        minus = [each for each in clauses_of if "-" in text[each.start : each.end]]
         for part in walk((*parts, *minus)):
             if isinstance(part, Operand):
                 yield part
 
 
 def _is_known(view: View, entry: Entry, name: str) -> bool:
-    if any(view.scope.find(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT)):
+    if any(view.find(kind, name) for kind in (Kind.SIGNAL, Kind.CONTEXT)):
         return True
     item = entry.item
     return isinstance(item, Requirement) and any(parameter.name.text == name for parameter in item.parameters)

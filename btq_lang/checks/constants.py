@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_port_name
+from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tokens import QUANTITY
 from btq_lang.syntax.tree import Entry, Model, Models, Port, Tree, Word
-from btq_lang.workspace.port_types import Meeting, is_number, is_text, meetings
+from btq_lang.workspace.port_types import is_number
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
@@ -24,7 +25,7 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
     if not at_least(view.project.target, _TYPED_SINCE):
         return
-    for seen in view.seen(entry).subtrees:
+    for seen in view.seen.subtrees:
         if seen.id is None:
             continue
         for pair in seen.node.attributes:
@@ -38,17 +39,18 @@ def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield _told(port.default, met, Severity.WARNING)
 
 
-def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -> Meeting | None:
+def _text_below(view: View, tree: Word, port: Word | None, value: Word | None) -> tuple[Place, str, str] | None:
+    """The port of texts that a number meets: its place, its name, its node."""
     if value is None or port is None or value.kind == QUANTITY or not is_number(value.text):
         return None
     if not is_port_name(port.text):
         return None
-    found = meetings(view.scope, view.project.target, tree.text, port.text)
-    return next((meeting for meeting in found if is_text(meeting.type)), None)
+    return view.look_up(lookups.text_below, tree.text, port.text)
 
 
-def _told(value: Word, met: Meeting, severity: Severity | None) -> Diagnostic:
-    port = f"`{met.pair.key.text}` of `{met.node.head.text}`"
+def _told(value: Word, met: tuple[Place, str, str], severity: Severity | None) -> Diagnostic:
+    place, name, node = met
+    port = f"`{name}` of `{node}`"
     message = (
         f"BehaviorTree.CPP {_TYPED_SINCE} and later refuse to load this tree: `{value.text}` is a number, "
         f"{port} a string"
@@ -57,7 +59,7 @@ def _told(value: Word, met: Meeting, severity: Severity | None) -> Diagnostic:
         "number-for-text",
         value.span,
         message,
-        related=(Related(Place(met.pair.key.span, met.tree.path, met.tree.entry.item), "the string port"),),
+        related=(Related(place, "the string port"),),
         notes=(f"pass an entry that holds the string: `Script (code = \"text := '{value.text}'\")`, then `{{text}}`",),
         severity=severity,
     )

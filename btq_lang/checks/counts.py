@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def count_of_nothing(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Repeat or a Retry that never runs its child, a Timeout that never ends."""
-    for seen in view.seen(entry).tagged(*_PORTS):
+    for seen in view.seen.tagged(*_PORTS):
         if seen.kind is None:
             continue
         value = seen.node.attribute(_PORTS[seen.kind.tag])

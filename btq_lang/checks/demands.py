@@ -7,28 +7,37 @@ find of the nodes of a tree is kept for as long as what they look at stays the s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeAlias
+
+from btq_lang.checks.view import View
 
 if TYPE_CHECKING:
     from btq_lang.checks.demanded import Demanded, Found, Guard
-    from btq_lang.checks.view import View
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Requirement
     from btq_lang.requirements.trees import TreeNodes
     from btq_lang.syntax.tree import Entry
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 
 def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """All that these rules find in an entry."""
-    yield from view.look_up_in(_all_demands, id(entry.item)) or ()
+    yield from view.ask(_demands, view.facts)
 
 
-def _all_demands(view: View) -> ByItem:
-    """What the rules find in the file, by the item that it stands in."""
+def _demands(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
+    return store.ask(_all_demands, viewpoint).get(id(facts.item), ())
+
+
+def _all_demands(store: Store[Workspace], viewpoint: str) -> ByItem:
+    """What the rules find in the file, by the item that it is in."""
+    view = View(store, viewpoint)
     if view.requirements is None:
         return {}
     from btq_lang.checks.demanded import Demanded  # few files need it

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.diagnostics.model import Diagnostic
@@ -35,17 +34,12 @@ _Found: TypeAlias = "Iterator[tuple[str, Word | None]]"
 
 def empty_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that is empty: nothing can refer to it; or a text for people that is."""
-    if view.is_xml or not (view.keeps_answers or _has_empty(view.text)):
+    if view.is_xml or not any(sign in view.text for sign in _EMPTY):
         return
     for what, word in _names(entry.item):
         if word is not None and word.raw in _EMPTY:
             severity = Severity.HINT if what in _FOR_PEOPLE else None
             yield Diagnostic("empty-text", word.span, f"{what} is empty", severity=severity)
-
-
-@lru_cache(1)  # all items of a file ask
-def _has_empty(text: str) -> bool:
-    return any(sign in text for sign in _EMPTY)
 
 
 _EMPTY = ('""', "''", "{}")

@@ -10,19 +10,20 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks import lookups
 from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
 from btq_lang.checks.scripts import is_script
 from btq_lang.checks.strings import in_source
-from btq_lang.syntax.tree import Model, Pair, Port, Signal, Tree
+from btq_lang.checks.view import View
+from btq_lang.syntax.tree import Pair, Port, Signal, Tree
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
-    from btq_lang.checks.view import View
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 # A name in a tree; an empty tree stands for the root blackboard.
 Name: TypeAlias = tuple[str, str]
@@ -48,14 +49,14 @@ class Mention(Record):
     in_script: bool
 
 
-def mentions(view: View, tree: Facts) -> tuple[Mention, ...]:
+def mentions(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[Mention, ...]:
     """Every name of an entry in a tree, in document order."""
-    return tuple(_mentions(view, tree))
+    return tuple(_mentions(View(store, viewpoint), tree))
 
 
-def blackboards(view: View) -> Blackboards:
+def blackboards(store: Store[Workspace], viewpoint: str) -> Blackboards:
     """The entries of the trees in scope."""
-    return Blackboards(view)
+    return Blackboards(View(store, viewpoint))
 
 
 def _mentions(view: View, tree: Facts) -> Iterator[Mention]:
@@ -108,14 +109,13 @@ class Blackboards:
     """
 
     def __init__(self, view: View) -> None:
-        self._view = view
         self._same: dict[Name, Name] = {}
         self._uses: dict[Name, list[Touch]] = {}
         self._ports: set[Name] = set()
         self._signals = view.ask(_signal_entries)
         self.root_names: dict[str, int] = {}
-        trees = {tree: view.ask(_handling, tree) for tree in view.scope.names(Kind.TREE)}
-        self._roots = frozenset([tree for tree in trees if not callers(view, tree)])
+        trees = {tree: view.ask(_handling, tree) for tree in view.names(Kind.TREE)}
+        self._roots = frozenset([tree for tree in trees if not view.ask(callers, tree)])
         for tree, handling in trees.items():
             self._add(tree, handling, trees)
 
@@ -178,12 +178,13 @@ class Blackboards:
         return name
 
 
-def _handling(view: View, tree: str) -> Handling:
-    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
+def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
+    view = View(store, viewpoint)
+    facts = view.owner(Kind.TREE, tree)
     if facts is None or not isinstance(facts.item, Tree):
         return Handling((), (), (), ())
-    model = view.scope.find(Kind.MODEL, tree)
-    declared = model.symbol.target.ports if model is not None and isinstance(model.symbol.target, Model) else ()
+    model = view.find(Kind.MODEL, tree)
+    declared = model.ports if model is not None else ()
     gives: list[tuple[str, str, str]] = []
     shares: list[tuple[str, frozenset[str]]] = []
     for seen in view.seen_in(facts).subtrees:
@@ -204,10 +205,11 @@ def _handling(view: View, tree: str) -> Handling:
     )
 
 
-def _signal_entries(view: View) -> frozenset[Name]:
+def _signal_entries(store: Store[Workspace], viewpoint: str) -> frozenset[Name]:
     """The entries that signals are read from."""
-    found = [view.scope.find(Kind.SIGNAL, name) for name in view.scope.names(Kind.SIGNAL)]
-    signals = [each.symbol.target for each in found if each is not None]
+    view = View(store, viewpoint)
+    found = [view.find(Kind.SIGNAL, name) for name in view.names(Kind.SIGNAL)]
+    signals = [each.target for each in found if each is not None]
     sources = [each.source for each in signals if isinstance(each, Signal) and each.source is not None]
     return frozenset([("", source.text.strip("{}").removeprefix("@")) for source in sources])
 

@@ -7,6 +7,7 @@ from collections.abc import Container, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import lookups
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Include, quote
@@ -14,7 +15,7 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.file import is_btq
 
 if TYPE_CHECKING:
-    from btq_lang.checks.view import View
+    from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 NOWHERE = "; neither this file nor its includes define it"
@@ -26,7 +27,7 @@ def missing_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(include, Include) or include.path is None or _from_ros_package(include):
         return
     path = include.path.text
-    if view.workspace.included_by(view.path, include) is not None:
+    if view.look_up(lookups.included, view.facts) is not None:
         return
     folder = posixpath.dirname(view.path)
     fixes = tuple(
@@ -51,8 +52,8 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     include = entry.item
     if not isinstance(include, Include) or include.path is None:
         return
-    target = view.workspace.included_by(view.path, include)
-    if target is None or view.path not in view.workspace.closure(target):
+    target = view.look_up(lookups.included, view.facts)
+    if target is None or view.path not in _closure(view, target):
         return
     how = "itself" if target == view.path else f"`{include.path.text}`, which includes this file again"
     yield Diagnostic(
@@ -66,11 +67,11 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An included file that cannot be read or loaded as it stands, or one that includes such a file."""
     include = entry.item
-    target = view.workspace.included_by(view.path, include) if isinstance(include, Include) else None
+    target = view.look_up(lookups.included, view.facts)
     if target is None or not isinstance(include, Include) or include.path is None:
         return
-    for path in reversed(view.workspace.closure(target)):
-        errors = _errors(view.workspace, path) if path != view.path else ()
+    for path in reversed(_closure(view, target)):
+        errors = view.store.ask(_errors, path) if path != view.path else ()
         if not errors:
             continue
         place, message = errors[0]
@@ -94,41 +95,42 @@ def is_told_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
     return diagnostic.rule == "include-with-errors" and diagnostic.related[0].place.path in checked
 
 
-def _errors(workspace: Workspace, path: str) -> tuple[tuple[Place, str], ...]:
+def _closure(view: View, path: str) -> tuple[str, ...]:
+    return view.store.read(path, lookups.closure, path)
+
+
+def _errors(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str], ...]:
     """What keeps a file from being read, without what a check of its own would find; of XML, which no build writes and
     which is seldom checked itself, all that is wrong with it."""
-    file = workspace.files[path]
-    if file.origin is None:
-        return tuple(
-            (Place(problem.span, file.path, entry.item), problem.message)
-            for entry in file.parsed.entries
-            for problem in entry.diagnostics
-            if problem.effective_severity is Severity.ERROR
-        )
-    # They rest on the project, the files that the file sees, and the trees of those that see it: most edits touch none.
-    seen = tuple(workspace.files[each] for each in workspace.closure(path))
-    trees = lookups.trees_of_mission(workspace, path)
-    if file.known_errors is not None:
-        project, rested_on, known_trees, known = file.known_errors
-        same_files = [*map(id, rested_on)] == [*map(id, seen)]
-        if same_files and project == workspace.project and known_trees == trees:
-            return known
-    from btq_lang.checks import check  # it is what calls this
+    view = View(store, viewpoint)
+    if not view.is_xml:
+        return view.look_up(lookups.syntax_errors)
+    from btq_lang.checks import findings_of, reported_in_file  # they are what calls this
 
-    errors = tuple(
-        (Place(each.span, path), each.message)
-        for each in check(workspace, path, is_alone=True)
-        if each.effective_severity is Severity.ERROR
+    return tuple(
+        [
+            (Place(each.span, viewpoint), each.message)
+            for each in findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
+            if each.effective_severity is Severity.ERROR
+        ]
     )
-    file.known_errors = workspace.project, seen, trees, errors
-    return errors
 
 
 def include_fix(view: View, path: str) -> Fix:
     """Include another file, behind the includes that are there."""
+    at, line = include_line(view.look_up(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
-    at, margin = view.look_up(lookups.head)
-    return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), f"{margin}include {quote(shown)}\n"),))
+    return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), line),))
+
+
+def include_line(head: tuple[int, str], path: str, other: str) -> tuple[int, str]:
+    """The line that includes another file in the one at `path`, and the offset where it belongs.
+
+    Args:
+        head: as `lookups.head` says it.
+    """
+    at, margin = head
+    return at, f"{margin}include {quote(posixpath.relpath(other, posixpath.dirname(path) or '.'))}\n"
 
 
 def _from_ros_package(include: Include) -> bool:

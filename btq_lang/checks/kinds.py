@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 # How many children the nodes of a category have; None: any number.
 CHILDREN: dict[str, tuple[int, int | None]] = {
@@ -41,7 +43,7 @@ CHILDREN: dict[str, tuple[int, int | None]] = {
 def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A kind that nobody knows: where a palette of models is in scope, or where a known name is so near that this must
     be a slip.  Without a palette any other name is a custom node that the robot's program registers."""
-    for seen in view.seen(entry).strangers:
+    for seen in view.seen.strangers:
         name = seen.id
         word = seen.node.category
         if word is not None and (name is None or name.text == ""):
@@ -64,9 +66,9 @@ def unknown_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A word of the published language, or of an older engine, that no engine of today registers."""
-    for seen in view.nodes(entry):
+    for seen in view.nodes:
         name = seen.id
-        if name is None or seen.definition or seen.is_subtree:
+        if name is None or seen.is_defined or seen.is_subtree:
             continue
         text = name.text
         if seen.kind is not None and seen.kind.tag == text:
@@ -86,7 +88,7 @@ def not_an_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def newer_engine_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A built-in that a version which the project is for does not have."""
     project = view.project
-    for tagged in view.seen(entry).by_tag.values():
+    for tagged in view.seen.by_tag.values():
         missing = [] if tagged[0].kind is None else _missing(tagged[0].kind.tag, project.engines)
         for seen in tagged if missing else ():
             if seen.kind is None or seen.id is None:
@@ -108,10 +110,10 @@ def _missing(tag: str, engines: tuple[str, ...]) -> list[str]:
 
 def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A mission of many nodes with ports and not one model: an include may be forgotten, and nothing says so."""
-    if view.is_xml or not view.is_first_tree(entry) or view.has_names(Kind.MODEL):
+    if view.is_xml or not view.is_first_tree or view.has_names(Kind.MODEL):
         return
-    given = view.ask(_given_ports) if view.scope.complete and view.is_read else ()
-    own = view.nodes(entry)
+    given = view.ask(_given_ports) if view.is_complete and view.is_read else ()
+    own = view.nodes
     if own and len(given) >= _MANY:
         shown = ", ".join(f"`{name}`" for name in given[:3])
         message = f"no models in scope, so btq cannot check the ports of {len(given)} nodes: {shown} …"
@@ -119,14 +121,16 @@ def no_models(view: View, entry: Entry) -> Iterator[Diagnostic]:
         yield Diagnostic("no-models", own[0].node.head.span, message, notes=notes)
 
 
-def _given_ports(view: View) -> tuple[str, ...]:
+def _given_ports(store: Store[Workspace], viewpoint: str) -> tuple[str, ...]:
     """The custom nodes of the file that are given ports."""
+    view = View(store, viewpoint)
     found = (view.ask(_given_ports_in, tree) for tree in view.look_up(lookups.trees))
     return tuple(dict.fromkeys(name for names in found for name in names))
 
 
-def _given_ports_in(view: View, tree: Facts) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(seen.node.head.text for seen in view.nodes_of(tree) if _gives_ports(seen)))
+def _given_ports_in(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[str, ...]:
+    nodes = View(store, viewpoint).seen_in(tree).all
+    return tuple(dict.fromkeys(seen.node.head.text for seen in nodes if _gives_ports(seen)))
 
 
 def _gives_ports(seen: SeenNode) -> bool:
@@ -137,7 +141,7 @@ def _gives_ports(seen: SeenNode) -> bool:
 
 def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`Condition MoveBase` where MoveBase is an action."""
-    for seen in view.seen(entry).categorized:
+    for seen in view.seen.categorized:
         category = declared_category(seen)
         written_as = seen.node.category
         if written_as is None or category is None or category == written_as.raw:
@@ -154,7 +158,7 @@ def category_mismatch(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`keeps` in the block of a node is a node called `keeps`."""
-    nodes = view.seen(entry)
+    nodes = view.seen
     for seen in nodes.given:
         for pair in seen.node.attributes:
             if pair.key.raw in ("satisfices", "satisfies") and pair.value is not None and not view.is_xml:
@@ -167,7 +171,7 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
         meant = misspelt_clause(seen.node)
         if name is None or not (meant or _is_clause(seen)):
             continue
-        if view.is_torn(entry, name.start, name.start):
+        if view.is_torn(name.start, name.start):
             continue  # the parser has said so already
         if meant:
             message = f"btq reads `{name.text}` as a node here; did you mean `{meant}`?"
@@ -185,19 +189,19 @@ def clause_as_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def duplicate_definition(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A second signal, context or quality of one name, or a second model with another interface."""
-    for first, second in view.clashes(entry, *_DEFINED_ONCE):
+    for first, second in view.clashes(*_DEFINED_ONCE):
         if not _is_same_model(first.symbol, second.symbol):
             both = (
-                view.defined_at(first, "first definition, which takes effect"),
-                view.defined_at(second, "second definition"),
+                Related(first.place, "first definition, which takes effect"),
+                Related(second.place, "second definition"),
             )
             yield _second(second.symbol, include_place(entry), both, "this file includes a second definition of")
-    for symbol in view.summary(entry).symbols:
-        if symbol.kind not in _DEFINED_ONCE or not view.scope.is_repeated(symbol.kind, symbol.name):
+    for symbol in view.facts.summary.symbols:
+        if symbol.kind not in _DEFINED_ONCE or not view.is_repeated(symbol.kind, symbol.name):
             continue
-        counts = view.scope.find(symbol.kind, symbol.name)
+        counts = view.declaration(symbol.kind, symbol.name)
         if counts is not None and counts.symbol is not symbol and not _is_same_model(counts.symbol, symbol):
-            one = (view.defined_at(counts, "first definition, which takes effect"),)
+            one = (Related(counts.place, "first definition, which takes effect"),)
             yield _second(symbol, symbol.span, one, "duplicate definition of")
 
 
@@ -212,7 +216,7 @@ def declared_category(seen: SeenNode) -> str | None:
 
 def model_related(view: View, seen: SeenNode, message: str) -> tuple[Related, ...]:
     """The place of a node's model, where it has one."""
-    return (view.defined_at(seen.definition, message),) if seen.definition else ()
+    return view.declared_at(Kind.MODEL, seen.asked, message) if seen.is_defined else ()
 
 
 def likely_category(seen: SeenNode) -> str:
@@ -224,7 +228,7 @@ def likely_category(seen: SeenNode) -> str:
 
 def is_torn(view: View, entry: Entry, seen: SeenNode) -> bool:
     """Whether something in a node's own lines could not be read."""
-    return view.is_torn(entry, seen.node.start, seen.node.end)
+    return view.is_torn(seen.node.start, seen.node.end)
 
 
 def include_place(entry: Entry) -> Span:
@@ -263,16 +267,16 @@ def _quoted_alias(seen: SeenNode, name: Word) -> NodeKind | None:
 
 
 def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[Diagnostic]:
-    has_palette = view.has_palette and view.scope.complete
+    has_palette = view.has_palette and view.is_complete
     likely = view.near(name.text, Kind.MODEL)
     if not has_palette:
         if seen.node.category is not None:
             return  # written as a declaration: `Action Foo` says that there is such a node
         likely = tuple(meant for meant in likely if _is_slip(name.text, meant))
-        is_odd = view.scope.complete and not seen.is_placeholder and view.look_up(lookups.most_have_models)
+        is_odd = view.is_complete and not seen.is_placeholder and view.look_up(lookups.most_have_models)
         if not (likely or is_odd):
             return
-    if not likely and not view.is_first_use(entry, seen.node, name.text):
+    if not likely and not view.is_first_use(seen.node, name.text):
         return  # what is missing is one model, however many nodes would need it
     fixes = tuple(replace_fix(f"Replace `{name.text}` with `{meant}`", name.span, written(meant)) for meant in likely)
     notes: tuple[str, ...] = ()
@@ -291,8 +295,8 @@ def _unknown(view: View, entry: Entry, seen: SeenNode, name: Word) -> Iterator[D
 
 def _declared(view: View, entry: Entry, seen: SeenNode, model: str, ports: tuple[LikelyPort, ...]) -> Fix:
     """The model of a node with the ports that its uses show, put in before an item."""
-    margin = view.text[entry.start : entry.start + entry.item.start]
-    below = view.text[entry.start : entry.start + seen.node.start + 1].splitlines()[1:]
+    margin = view.text[: entry.item.start]
+    below = view.text[: seen.node.start + 1].splitlines()[1:]
     inside = next((line[: len(line) - len(line.lstrip())] for line in below if line.strip()), "")
     inside = inside if inside.startswith(margin) and inside != margin else f"{margin}    "
     lines = [f"{margin}{model}\n"]
@@ -336,12 +340,11 @@ def _tree_as_node(view: View, seen: SeenNode, name: Word) -> Diagnostic:
     """`PickPlace` or `Action PickPlace` where PickPlace is a tree."""
     category = seen.node.category
     span, text = (Span(name.start, name.start), "SubTree ") if category is None else (category.span, "SubTree")
-    tree = view.scope.find(Kind.TREE, name.text)
     return Diagnostic(
         "unknown-node",
         name.span,
         f"`{name.text}` is a tree, not a node",
-        related=(view.defined_at(tree, "tree definition"),) if tree is not None else (),
+        related=view.declared_at(Kind.TREE, name.text, "tree definition"),
         fixes=(replace_fix(f"Write `SubTree {written(name.text)}`", span, text),),
         severity=Severity.ERROR,
     )

@@ -240,7 +240,7 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
 
 def _goal_clause(view: View, requirement: Requirement) -> Goal | None:
     """The clause that a goal stands in."""
-    for symbol in view.file.facts[id(requirement.item)].summary.symbols:
+    for symbol in view.workspace.files[view.path].facts[id(requirement.item)].summary.symbols:
         written = symbol.target
         if symbol.span == requirement.place.span and isinstance(written, WrittenRequirement):
             return next((clause for clause in written.clauses if isinstance(clause, Goal)), None)

@@ -134,7 +134,7 @@ def _values(view: View, entry: Entry, kind: int | None = None) -> Iterator[tuple
             continue
         if (target := _declared(port, False)) is not None:
             yield target, value
-    for seen in view.seen(entry).given:
+    for seen in view.seen.given:
         if seen.is_placeholder:
             continue
         for pair in seen.node.attributes:

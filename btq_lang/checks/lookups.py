@@ -1,13 +1,21 @@
-"""What checks look up in the files: one function a question, of the workspace and the path of the file at hand.
+"""What checks look up in the files: the inputs of the query store (workspace/queries.py), one function a question.
+
+An input reads the workspace from a *viewpoint*: a file, in whose scope names are looked up.  Its topic is one of
+
+* the viewpoint: an edit of any file that is linked with it by includes may change the answer;
+* a kind and a name: the answer depends on nothing but the items that define this name, in whatever file;
+* the facts of an item: the answer never changes, for an item that is edited is another one.
 
 One invariant: an answer holds no offsets that an edit elsewhere would move, and two that compare as equal are as good
-as each other, for whoever has asked keeps what he made of it (see answers.py).  An item is known by its facts, which
-stay the same object for as long as the item does.
+as each other, for queries keep what they made of the first.  An item is known by its facts, which stay the same object
+for as long as the item does.
 """
 
 from __future__ import annotations
 
 import posixpath
+from bisect import bisect_right
+from collections.abc import Hashable, Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -15,43 +23,135 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
+from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Include, Model, Models, Qualities, Root, Tree
+from btq_lang.syntax.tree import Apply, Entry, Include, Model, Models, Qualities, Root, Tree
+from btq_lang.util.record import Record
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.port_types import is_text, meetings
+from btq_lang.workspace.queries import Store
 
 if TYPE_CHECKING:
-    from btq_lang.util.text import Span
+    from btq_lang.syntax.tree import Port
+    from btq_lang.workspace.config import Project
     from btq_lang.workspace.custom_nodes import LikelyPort
-    from btq_lang.workspace.file import Origin
+    from btq_lang.workspace.file import Definition, File, Origin
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.symbols import Symbol
     from btq_lang.workspace.workspace import Workspace
+
+
+def advanced(store: Store[Workspace], after: Workspace) -> Store[Workspace]:
+    """The store after an edit: the same one, or an empty one where there are other files, or another project."""
+    before = store.state
+    if before.project != after.project or [*before.files] != [*after.files]:
+        return Store(after)
+    edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
+    if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
+        store.advance(after, [topic for topic in store.topics if not isinstance(topic, Facts)])
+    else:
+        store.advance(after, {topic for old, new in edited for topic in _touched(after, old, new)})
+    return store
+
+
+def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
+    """The topics in which an edit of one file may change something."""
+    yield from after.linked(new.path)
+    for item in old.facts.keys() ^ new.facts.keys():
+        for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
+            yield symbol.kind, symbol.name
+
+
+class Meaning(Record):
+    """All that others see of what a name means.
+
+    Attributes:
+        owner: the item that defines it; of trees and models nobody sees more than what follows.
+        target: what it means; None for a tree.
+        ports: of a tree or a model.
+    """
+
+    owner: Facts | None
+    target: object
+    ports: tuple[Port, ...]
+
+
+class Declaration(Record):
+    """A symbol and the item that defines it."""
+
+    path: str
+    owner: Facts
+    symbol: Symbol
+
+    @property
+    def place(self) -> Place:
+        """That of the name."""
+        return Place(self.symbol.span, self.path, self.owner.item)
+
+
+def project(workspace: Workspace) -> Project:
+    """What holds for all files."""
+    return workspace.project
+
+
+def everything(workspace: Workspace, viewpoint: str) -> Workspace:
+    """The workspace itself: who reads it runs again after every edit of a linked file."""
+    return workspace
+
+
+# ---- an item ----
+
+
+def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
+    """An item of a file and what is wrong with its syntax, as it would be at the start of the file."""
+    found = workspace.files[path].entry_of(facts.item)
+    return Entry(0, found.item, found.in_root, found.diagnostics)
+
+
+def text(workspace: Workspace, path: str, facts: Facts) -> str:
+    """The text of an item, up to the next one."""
+    file = workspace.files[path]
+    entries, start = file.parsed.entries, file.start_of(facts.item)
+    after = bisect_right(entries, start, key=lambda each: each.start)
+    return file.text[start : entries[after].start if after < len(entries) else len(file.text)]
+
 
 # ---- a name: what these say depends on nothing but the items that define it ----
 
 
-def is_defined(workspace: Workspace, path: str, kind: Kind, name: str) -> bool:
+def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name means something."""
-    return workspace.scope(path).defines(kind, name)
+    return workspace.scope(viewpoint).defines(kind, name)
 
 
-def meaning(workspace: Workspace, path: str, kind: Kind, name: str) -> object:
-    """All that others see of what a name means: of a tree its ports, of a node its model; what else there is only
-    those look at who define it, too, and so it matters which one it is."""
-    found = workspace.scope(path).find(kind, name)
-    target = found.symbol.target if found is not None else None
+def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Meaning | None:
+    """What a name means."""
+    found = workspace.scope(viewpoint).find(kind, name)
+    if found is None:
+        return None
+    target = found.symbol.target
     if isinstance(target, Tree):
-        return target.ports
-    return target if isinstance(target, Model) else owner(workspace, path, kind, name)
+        return Meaning(None, None, target.ports)
+    if isinstance(target, Model):
+        return Meaning(None, target, target.ports)
+    return Meaning(_declaration(workspace, found).owner, target, ())
 
 
-def owner(workspace: Workspace, path: str, kind: Kind, name: str) -> Facts | None:
+def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
+    """Where a name is defined."""
+    found = workspace.scope(viewpoint).find(kind, name)
+    return _declaration(workspace, found) if found is not None else None
+
+
+def owner(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Facts | None:
     """The item that defines what a name means."""
-    found = workspace.scope(path).find(kind, name)
-    return workspace.files[found.path].facts[id(found.entry.item)] if found is not None else None
+    found = workspace.scope(viewpoint).find(kind, name)
+    return _declaration(workspace, found).owner if found is not None else None
 
 
-def is_torn(workspace: Workspace, path: str, kind: Kind, name: str) -> bool:
+def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model that a name means, which may be a port."""
-    found = workspace.scope(path).find(kind, name)
+    found = workspace.scope(viewpoint).find(kind, name)
     if found is None or not found.entry.diagnostics:
         return False
     target, item = found.symbol.target, found.entry.item
@@ -62,82 +162,113 @@ def is_torn(workspace: Workspace, path: str, kind: Kind, name: str) -> bool:
     return any(each.rule in UNREADABLE and target.start <= each.span.start < end for each in found.entry.diagnostics)
 
 
-def place(workspace: Workspace, path: str, kind: Kind, name: str) -> tuple[str, Facts, Span] | None:
-    """Where a name is defined: the file, the item, and the name in it."""
-    found = workspace.scope(path).find(kind, name)
-    if found is None:
-        return None
-    return found.path, workspace.files[found.path].facts[id(found.entry.item)], found.symbol.span
-
-
-def owners(workspace: Workspace, path: str, kind: Kind, name: str) -> tuple[Facts, ...]:
-    """The items that define a name."""
-    found = workspace.scope(path).all(kind, name)
-    return tuple([workspace.files[each.path].facts[id(each.entry.item)] for each in found])
+def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
+    """Whether a name has several definitions."""
+    return len(workspace.scope(viewpoint).all(kind, name)) > 1
 
 
 # ---- the scope ----
 
 
-def is_complete(workspace: Workspace, path: str) -> bool:
+def is_complete(workspace: Workspace, viewpoint: str) -> bool:
     """Whether a name that is not in scope is nowhere."""
-    return workspace.scope(path).complete
+    return workspace.scope(viewpoint).complete
 
 
-def names(workspace: Workspace, path: str, kind: Kind) -> tuple[str, ...]:
+def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
     """All names of a kind, in the order of their definitions."""
-    return workspace.scope(path).names(kind)
+    return workspace.scope(viewpoint).names(kind)
 
 
-def has_palette(workspace: Workspace, path: str) -> bool:
+def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be all there are."""
-    for each in workspace.scope(path).paths:
+    for each in workspace.scope(viewpoint).paths:
         for entry in workspace.files[each].parsed.entries:
             if isinstance(entry.item, Models) and any(_is_of_node(model) for model in entry.item.models):
                 return True
-            if each != path and _is_of_node(entry.item):
+            if each != viewpoint and _is_of_node(entry.item):
                 return True
     return False
+
+
+def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
+    """The names that an included file and one included before it both define: the include, the definition that counts
+    and the other one.  Neither file can see the other, so no check of theirs reports it."""
+    file = workspace.files[viewpoint]
+    found: list[tuple[Facts, Declaration, Declaration]] = []
+    before: set[str] = set()
+    for include in file.includes if len(file.includes) > 1 else ():
+        target = workspace.included_by(viewpoint, include)
+        brought = workspace.closure(target) if target is not None else ()
+        for path in brought if before else ():
+            for second in workspace.defined_in(path) if path not in before else ():
+                first = workspace.scope(viewpoint).find(second.symbol.kind, second.symbol.name)
+                if first is not None and first.path in before and first.path not in brought:
+                    both = _declaration(workspace, first), _declaration(workspace, second)
+                    found.append((file.facts[id(include)], *both))
+        before.update(brought)
+    return tuple(found)
+
+
+def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[Place, str, str] | None:
+    """The first port of texts that a port of a tree meets in that tree or below: its place, its name, its node."""
+    for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port):
+        if is_text(met.type):
+            place = Place(met.pair.key.span, met.tree.path, met.tree.entry.item)
+            return place, met.pair.key.text, met.node.head.text
+    return None
+
+
+def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
+    """Where the tree that a name means is referred to, in whatever file."""
+    found = workspace.scope(viewpoint).find(Kind.TREE, name)
+    uses = workspace.references(found) if found is not None else ()
+    return tuple([Place(each.use.span, each.path, each.entry.item) for each in uses])
 
 
 # ---- the file ----
 
 
-def first_tree(workspace: Workspace, path: str) -> Facts | None:
+def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
+    """The file's items, in order."""
+    return tuple(workspace.files[viewpoint].facts.values())
+
+
+def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
     """The file's first tree."""
-    return next((each for each in workspace.files[path].facts.values() if isinstance(each.item, Tree)), None)
+    return next((each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)), None)
 
 
-def has_neighbours(workspace: Workspace, path: str) -> bool:
+def has_neighbours(workspace: Workspace, viewpoint: str) -> bool:
     """Whether more stands in the file that the engine reads than one tree."""
-    items = [each.item for each in workspace.files[path].facts.values()]
+    items = [each.item for each in workspace.files[viewpoint].facts.values()]
     return len([item for item in items if isinstance(item, Tree | Model | Models | Include)]) > 1
 
 
-def trees(workspace: Workspace, path: str) -> tuple[Facts, ...]:
+def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's trees, in order."""
-    return tuple([each for each in workspace.files[path].facts.values() if isinstance(each.item, Tree)])
+    return tuple([each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)])
 
 
-def trees_in_scope(workspace: Workspace, path: str) -> tuple[tuple[str, Facts], ...]:
+def trees_in_scope(workspace: Workspace, viewpoint: str) -> tuple[tuple[str, Facts], ...]:
     """All trees in scope and their files, in order."""
-    return tuple([(each, tree) for each in workspace.scope(path).paths for tree in trees(workspace, each)])
+    return tuple([(each, tree) for each in workspace.scope(viewpoint).paths for tree in trees(workspace, each)])
 
 
-def is_tree_of_mission(workspace: Workspace, path: str, name: str) -> bool:
+def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a file that is linked with this one by includes, in whatever direction, has a tree of the name."""
-    return name in trees_of_mission(workspace, path)
+    return name in trees_of_mission(workspace, viewpoint)
 
 
-def trees_of_mission(workspace: Workspace, path: str) -> frozenset[str]:
+def trees_of_mission(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names of the trees in all files that are linked with this one by includes."""
-    linked = workspace.linked(path)
+    linked = workspace.linked(viewpoint)
     return frozenset(
         [name for each in linked for kind, name in workspace.files[each].defined_names if kind is Kind.TREE]
     )
 
 
-def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
+def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
     """The names that a tree of the mission cannot have in XML, as its other trees and its nodes have them: by what is
     written, what has it.
 
@@ -147,7 +278,7 @@ def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
     target = workspace.project.target
     taken = dict.fromkeys(BUILTINS, "a built-in node")
     trees: dict[str, str] = {}
-    for each in sorted(workspace.linked(path)):
+    for each in sorted(workspace.linked(viewpoint)):
         for kind, name in sorted(workspace.files[each].defined_names, key=lambda one: one[1]):
             if kind is Kind.TREE and name != but:
                 is_refused = model_name_problem(name, target) is not None
@@ -157,129 +288,155 @@ def taken_names(workspace: Workspace, path: str, but: str) -> dict[str, str]:
     return taken | trees
 
 
-def is_node_name(workspace: Workspace, path: str, name: str) -> bool:
+def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node so."""
-    return any(name in workspace.files[each].node_names for each in workspace.scope(path).paths)
+    return any(name in workspace.files[each].node_names for each in workspace.scope(viewpoint).paths)
 
 
-def is_asked_for(workspace: Workspace, path: str, name: str) -> bool:
+def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a condition, a bound or an argument in the file names it."""
-    return name in workspace.files[path].asked_for
+    return name in workspace.files[viewpoint].asked_for
 
 
-def asked_for_in_vain(workspace: Workspace, path: str) -> frozenset[str]:
+def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
-    find = workspace.scope(path).find
+    find = workspace.scope(viewpoint).find
     return frozenset(
-        [name for name in workspace.files[path].asked_for if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))]
+        [
+            name
+            for name in workspace.files[viewpoint].asked_for
+            if not (find(Kind.SIGNAL, name) or find(Kind.CONTEXT, name))
+        ]
     )
 
 
-def own_trees(workspace: Workspace, path: str) -> tuple[str, ...]:
+def own_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The names of the file's trees, in order."""
-    return workspace.files[path].names.by_kind[Kind.TREE]
+    return workspace.files[viewpoint].names.by_kind[Kind.TREE]
 
 
-def has_root_of_tree(workspace: Workspace, path: str) -> bool:
+def has_apply(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether the file attaches requirements to nodes from outside."""
+    return bool(workspace.files[viewpoint].of_type(Apply))
+
+
+def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file says which tree is the main one, even if there is none of that name."""
-    facts = workspace.files[path].facts.values()
+    facts = workspace.files[viewpoint].facts.values()
     return any(Kind.TREE in each.used for each in facts if isinstance(each.item, Root))
 
 
-def root(workspace: Workspace, path: str) -> tuple[int, str] | None:
+def root(workspace: Workspace, viewpoint: str) -> tuple[int, str] | None:
     """Where a name may be put in behind the word Root, if there is one: an offset in the file."""
-    first = next((each for each in workspace.files[path].parsed.entries if isinstance(each.item, Root)), None)
+    first = next((each for each in workspace.files[viewpoint].parsed.entries if isinstance(each.item, Root)), None)
     return (first.start + first.item.start + len("Root"), "") if first is not None else None
 
 
-def has_pointers(workspace: Workspace, path: str) -> bool:
+def has_pointers(workspace: Workspace, viewpoint: str) -> bool:
     """Whether any entry of a blackboard may be named in the file."""
-    return "{" in workspace.files[path].text
+    return "{" in workspace.files[viewpoint].text
 
 
-def main_tree(workspace: Workspace, path: str) -> tuple[str, bool] | None:
+def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
     """The name of the tree that runs when the engine loads the file, and whether only this file's own can be it."""
-    main = workspace.main_tree(path)
+    main = workspace.main_tree(viewpoint)
     if main is None:
         return None
     name = Kind.TREE, main.symbol.name
-    return main.symbol.name, main.path == path and len(workspace.files[path].names.found[name]) == 1
+    return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.found[name]) == 1
 
 
-def used(workspace: Workspace, path: str, kind: Kind) -> frozenset[str]:
+def used(workspace: Workspace, viewpoint: str, kind: Kind) -> frozenset[str]:
     """The names of a kind that the file refers to."""
-    return workspace.files[path].used(kind)
+    return workspace.files[viewpoint].used(kind)
 
 
-def first_user(workspace: Workspace, path: str, kind: Kind, name: str) -> Facts | None:
+def first_user(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Facts | None:
     """The first of the file's items that refers to a name."""
-    return workspace.files[path].first_users(kind).get(name)
+    return workspace.files[viewpoint].first_users(kind).get(name)
 
 
-def names_unknown_requirements(workspace: Workspace, path: str) -> bool:
+def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
-    used = workspace.files[path].used(Kind.REQUIREMENT)
-    return not used.issubset(workspace.scope(path).names(Kind.REQUIREMENT))
+    used = workspace.files[viewpoint].used(Kind.REQUIREMENT)
+    return not used.issubset(workspace.scope(viewpoint).names(Kind.REQUIREMENT))
 
 
-def custom_node(workspace: Workspace, path: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
+def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
     """What the uses of a custom node suggest that it is: its category and its ports."""
     from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
 
-    found = found_in_uses(workspace, path, name)
+    found = found_in_uses(workspace, viewpoint, name)
     return found.category, found.ports
 
 
-def most_have_models(workspace: Workspace, path: str) -> bool:
+def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether of the custom nodes that a file knows or uses few have no model: a third at most."""
-    known = workspace.scope(path).names(Kind.MODEL)
-    unknown = workspace.files[path].used(Kind.MODEL).difference(known)
+    known = workspace.scope(viewpoint).names(Kind.MODEL)
+    unknown = workspace.files[viewpoint].used(Kind.MODEL).difference(known)
     return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
 
 
-def is_crowded(workspace: Workspace, path: str, kind: Kind) -> bool:
+def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that nobody reads what each of them may mean."""
-    known = workspace.scope(path).names(kind)
-    unknown = workspace.files[path].used(kind).difference(known)
+    known = workspace.scope(viewpoint).names(kind)
+    unknown = workspace.files[viewpoint].used(kind).difference(known)
     if kind is Kind.MODEL:
         unknown = unknown.difference(BUILTINS)
     return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED
 
 
-def edition(workspace: Workspace, path: str) -> str:
+def edition(workspace: Workspace, viewpoint: str) -> str:
     """The edition of the quality model that holds for the file."""
-    for each in workspace.files[path].of_type(Qualities):
+    for each in workspace.files[viewpoint].of_type(Qualities):
         named = each.edition
         if named is not None and named.text in EDITIONS:
             return named.text
     return workspace.project.qualities
 
 
-def is_read(workspace: Workspace, path: str) -> bool:
+def is_read(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the whole file could be read."""
-    return all(problem.effective_severity is not Severity.ERROR for problem in workspace.files[path].problems)
+    return all(problem.effective_severity is not Severity.ERROR for problem in workspace.files[viewpoint].problems)
 
 
-def has_torn_tree(workspace: Workspace, path: str) -> bool:
+def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the name of one of the file's trees may be what could not be read."""
-    return bool(workspace.files[path].problems) and any(
+    return bool(workspace.files[viewpoint].problems) and any(
         problem.span.start <= entry.item.end
-        for entry in workspace.files[path].parsed.entries
+        for entry in workspace.files[viewpoint].parsed.entries
         if entry.diagnostics and isinstance(entry.item, Tree)
         for problem in entry.diagnostics
     )
 
 
-def origin(workspace: Workspace, path: str) -> Origin | None:
+def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
     """What the file stands for, if it is written in another language."""
-    return workspace.files[path].origin
+    return workspace.files[viewpoint].origin
 
 
-def head(workspace: Workspace, path: str) -> tuple[int, str]:
+def is_xml(workspace: Workspace, viewpoint: str) -> bool:
+    """Whether the file is XML that the engine loads as it is: no build comes between."""
+    return workspace.files[viewpoint].origin is not None
+
+
+def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, str], ...]:
+    """What keeps the file from being read."""
+    return tuple(
+        [
+            (Place(problem.span, viewpoint, entry.item), problem.message)
+            for entry in workspace.files[viewpoint].parsed.entries
+            for problem in entry.diagnostics
+            if problem.effective_severity is Severity.ERROR
+        ]
+    )
+
+
+def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
     """Where a line may be put in that belongs to the head of the file, behind its includes, and what it is indented
     with: an offset in the file."""
-    text = workspace.files[path].text
-    includes = [entry for entry in workspace.files[path].parsed.entries if isinstance(entry.item, Include)]
+    text = workspace.files[viewpoint].text
+    includes = [entry for entry in workspace.files[viewpoint].parsed.entries if isinstance(entry.item, Include)]
     if includes:
         last = includes[-1]
         at = text.find("\n", last.start + last.item.end) + 1
@@ -291,20 +448,30 @@ def head(workspace: Workspace, path: str) -> tuple[int, str]:
 # ---- the project ----
 
 
-def is_included(workspace: Workspace, path: str) -> bool:
+def included(workspace: Workspace, viewpoint: str, include: Facts) -> str | None:
+    """The file that an include brings, if it is there."""
+    return workspace.included_by(viewpoint, include.item) if isinstance(include.item, Include) else None
+
+
+def closure(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
+    """A file and all that it includes, included ones first."""
+    return workspace.closure(viewpoint)
+
+
+def is_included(workspace: Workspace, viewpoint: str) -> bool:
     """Whether another file includes this one."""
-    return path in workspace.included_files
+    return viewpoint in workspace.included_files
 
 
-def elsewhere(workspace: Workspace, path: str, kind: Kind, name: str) -> tuple[str, ...]:
+def elsewhere(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[str, ...]:
     """The files that define a name, whether they are in scope or not."""
     return workspace.files_defining(kind, name)
 
 
-def other_files(workspace: Workspace, path: str) -> tuple[str, ...]:
+def other_files(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The project's other files, as an include in this one names them."""
-    folder = posixpath.dirname(path) or "."
-    return tuple(posixpath.relpath(other, folder) for other in workspace.files if other != path)
+    folder = posixpath.dirname(viewpoint) or "."
+    return tuple(posixpath.relpath(other, folder) for other in workspace.files if other != viewpoint)
 
 
 # How many names one file's misspelt ones are compared with: 30 ms of work, a second where all look alike (rq_0001 …).
@@ -313,3 +480,7 @@ _MOST_COMPARED = 20_000
 
 def _is_of_node(item: object) -> bool:
     return isinstance(item, Model) and item.category.raw != "SubTree"
+
+
+def _declaration(workspace: Workspace, found: Definition) -> Declaration:
+    return Declaration(found.path, workspace.files[found.path].facts[id(found.entry.item)], found.symbol)

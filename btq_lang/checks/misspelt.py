@@ -18,16 +18,18 @@ from btq_lang.util.spelling import distance
 
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An entry that is named once, and read though nothing writes it, or written though nothing reads it, where
     another entry has nearly the same name."""
     tree = entry.item
-    mentions = view.mentions(entry)
+    mentions = view.mentions
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return
-    if any(isinstance(child, Verbatim) for node in view.nodes(entry) for child in node.node.children):
+    if any(isinstance(child, Verbatim) for node in view.nodes for child in node.node.children):
         return  # XML that nobody reads here may name any entry
     yield from _misspelt_booleans(mentions, view, tree.name.text)
     counts: dict[str, int] = {}
@@ -46,7 +48,7 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
         for meant in alike.to(mention.name):
             if meant in told or _stand_together(mentions, mention, meant):
                 continue
-            if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.scope.complete:
+            if view.ask(_is_meant, tree.name.text, mention.name, meant, meant in counts) and view.is_complete:
                 told.add(mention.name)
                 yield _told(mentions, mention, meant, counts.get(meant) == 1)
                 break
@@ -58,7 +60,7 @@ def _misspelt_booleans(mentions: Iterable[Mention], view: View, tree: str) -> It
         meant = mention.name.lower()
         if not mention.in_script or mention.name == meant or meant not in ("true", "false"):
             continue
-        if not view.ask(_is_created, tree, mention.name) and view.scope.complete:
+        if not view.ask(_is_created, tree, mention.name) and view.is_complete:
             message = f"a script reads `{mention.name}` as the name of an entry; did you mean `{meant}`?"
             fix = replace_fix(f"Write `{meant}`", mention.span, meant)
             yield Diagnostic("misspelt-entry", mention.span, message, fixes=(fix,))
@@ -75,23 +77,23 @@ def _stand_together(mentions: Iterable[Mention], mention: Mention, other: str) -
     )
 
 
-def _root_names(view: View) -> frozenset[str]:
+def _root_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
     """The names of the root blackboard that the trees in scope mention."""
-    return frozenset(view.ask(blackboards).root_names)
+    return frozenset(store.ask(blackboards, viewpoint).root_names)
 
 
-def _is_created(view: View, tree: str, name: str) -> bool:
+def _is_created(store: Store[Workspace], viewpoint: str, tree: str, name: str) -> bool:
     """Whether anything makes an entry."""
-    return any(each.creates for each in view.ask(blackboards).of(tree, name))
+    return any(each.creates for each in store.ask(blackboards, viewpoint).of(tree, name))
 
 
-def _is_meant(view: View, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
+def _is_meant(store: Store[Workspace], viewpoint: str, tree: str, name: str, meant: str, is_mentioned: bool) -> bool:
     """Whether what happens to one entry leads nowhere, and to the other one where it would.
 
     Args:
         is_mentioned: the tree names the other one not only as a port.
     """
-    boards = view.ask(blackboards)
+    boards = store.ask(blackboards, viewpoint)
     if boards.is_given(tree, name) or boards.is_one(tree, name, meant):
         return False
     place = boards.place(tree, name)

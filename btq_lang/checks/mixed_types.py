@@ -14,17 +14,19 @@ from btq_lang.catalog.literals import is_known_type, plain_type
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import port_type
 from btq_lang.checks import lookups
-from btq_lang.checks.calls import ask_of_called, callers
+from btq_lang.checks.calls import callers
 from btq_lang.checks.pointers import pointed_at, remaps_all
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Pair, Tree
 from btq_lang.util.record import Record
 from btq_lang.workspace.port_types import declared_type, is_text
+from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
-    from btq_lang.checks.view import View
+    from btq_lang.workspace.workspace import Workspace
 
 
 class _Port(Record):
@@ -60,13 +62,12 @@ def entry_with_two_types(view: View, entry: Entry) -> Iterator[Diagnostic]:
     tree = entry.item
     if not isinstance(tree, Tree) or tree.name is None or not view.look_up(lookups.has_pointers):
         return
-    definition = view.scope.find(Kind.TREE, tree.name.text)
-    if definition is not None and view.is_this(definition, entry):
-        view.ask_in_order(_types)
-        yield from view.ask(_found_in, tree.name.text, view.is_main(entry))
+    if view.defines_here(Kind.TREE, tree.name.text):
+        yield from view.ask(_found_in, tree.name.text, view.is_main)
 
 
-def _found_in(view: View, tree: str, is_main: bool) -> tuple[Diagnostic, ...]:
+def _found_in(store: Store[Workspace], viewpoint: str, tree: str, is_main: bool) -> tuple[Diagnostic, ...]:
+    view = View(store, viewpoint)
     found: list[Diagnostic] = []
     known = view.ask(_types, tree)
     for key in dict.fromkeys(name.removeprefix("@") for name in known):
@@ -78,12 +79,20 @@ def _found_in(view: View, tree: str, is_main: bool) -> tuple[Diagnostic, ...]:
     return tuple(found)
 
 
-def _types(view: View, tree: str) -> _Types:
-    """The types that the entries of a tree meet in it and below it; in a circle of trees nothing is handed on."""
+@on_circle({})
+def _types_below(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
+    """The types that a tree hands on to those that run it; none, if it runs itself."""
+    return _types(store, viewpoint, tree)
+
+
+def _types(store: Store[Workspace], viewpoint: str, tree: str) -> _Types:
+    """The types that the entries of a tree meet in it and below it.  `_types_below` does not ask for it: it would be
+    part of each circle."""
+    view = View(store, viewpoint)
     found: _Types = {}
     for number, seen in enumerate(_nodes(view, tree)):
         if seen.is_subtree:
-            for key, given, below in _handed_on(view, tree, seen):
+            for key, given, below in _handed_on(view, seen):
                 _add(found, key, _Meeting(below.type, number, given, below.port))
             continue
         for index, pair in enumerate(seen.node.attributes):
@@ -94,14 +103,13 @@ def _types(view: View, tree: str) -> _Types:
     return found
 
 
-def _handed_on(view: View, tree: str, seen: SeenNode) -> Iterator[tuple[str, int | None, _Meeting]]:
+def _handed_on(view: View, seen: SeenNode) -> Iterator[tuple[str, int | None, _Meeting]]:
     """What the entries meet that a SubTree gives to its tree, by the names that they have here."""
-    types = ask_of_called(view, _types, tree, seen)
-    if types is None:
+    if seen.id is None or not seen.id.text:
         return
     given = {pair.key.text: at for at, pair in reversed([*enumerate(seen.node.attributes)]) if pair.value is not None}
     shares_all = remaps_all(seen)
-    for port, meetings in types.items():
+    for port, meetings in view.ask(_types_below, seen.id.text).items():
         at = given.get(port)
         value = seen.node.attributes[at].value if at is not None else None
         key: str | None = port if port[0] == "@" else None
@@ -119,7 +127,7 @@ def _is_first(view: View, tree: str, key: str) -> bool:
     waiting = [(tree, key)]
     while waiting:
         name, entry = waiting.pop()
-        above = callers(view, name)
+        above = view.ask(callers, name)
         if not above:
             return True
         for caller in above:
@@ -147,8 +155,8 @@ def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]
 
 
 def _nodes(view: View, tree: str) -> tuple[SeenNode, ...]:
-    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
-    return view.nodes_of(facts) if facts is not None else ()
+    facts = view.owner(Kind.TREE, tree)
+    return view.seen_in(facts).all if facts is not None else ()
 
 
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:
@@ -194,10 +202,9 @@ def _port(view: View, port: _Port) -> tuple[SeenNode, Pair]:
 
 
 def _related(view: View, port: _Port, message: str) -> Related:
-    place = view.look_up_name(lookups.place, Kind.TREE, port.tree)
-    assert place is not None, "its nodes have been seen"
-    path, facts, _ = place
-    return Related(Place(_port(view, port)[1].key.span, path, facts.item), message)
+    tree = view.declaration(Kind.TREE, port.tree)
+    assert tree is not None, "its nodes have been seen"
+    return Related(Place(_port(view, port)[1].key.span, tree.path, tree.owner.item), message)
 
 
 def _severity(first: str, later: str) -> Severity | None:

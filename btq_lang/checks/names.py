@@ -33,7 +33,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
             yield from _nameless(view, entry, item)
         elif reason := model_name_problem(item.name.text, version):
             yield _tree_name(view, item.name, reason, _renamed(view, entry, item.name))
-        nodes = view.seen(entry)
+        nodes = view.seen
         for seen in nodes.all:
             if seen.id is not None and (reason := model_name_problem(seen.id.text, version)):
                 yield from _of_id(view, seen, seen.id, reason)
@@ -52,7 +52,7 @@ def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Two nodes of a tree with one name: their paths are one path, in logs and in Groot."""
     first: dict[tuple[bool, str], Word] = {}
-    for seen in view.seen(entry).named:
+    for seen in view.seen.named:
         name = seen.name
         if name is None or (name.text == "" and not seen.is_subtree):
             continue
@@ -76,7 +76,7 @@ def duplicate_instance_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _of_id(view: View, seen: SeenNode, name: Word, reason: str) -> Iterator[Diagnostic]:
-    if seen.is_subtree and name.text and not view.scope.complete and view.scope.find(Kind.TREE, name.text) is None:
+    if seen.is_subtree and name.text and not view.is_complete and not view.defines(Kind.TREE, name.text):
         yield _tree_name(view, name, reason, ())  # else it is told where the tree is, or that there is none
     elif not seen.is_subtree and seen.node.category is None and seen.kind is None:
         refused = _refused("node ID", name, reason, _explicit(seen, name))
@@ -92,7 +92,7 @@ def _is_prefixed(name: str) -> bool:
 def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
         yield _refused("instance name", label, reason)
-    if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main(entry):
+    if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main:
         refused = _refused("instance name", label, "it is empty, like the name of the main tree")
         note = "`btq build` leaves it out"
         yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))
@@ -134,15 +134,14 @@ def _refused(what: str, name: Word, reason: str, fixes: tuple[Fix, ...] = ()) ->
 
 def _renamed(view: View, entry: Entry, name: Word) -> tuple[Fix, ...]:
     """A legal name for a tree, wherever it is named."""
-    definition = view.scope.find(Kind.TREE, name.text)
-    if definition is None or not view.is_this(definition, entry):
+    declaration = view.declaration(Kind.TREE, name.text)
+    if declaration is None or declaration.owner is not view.facts:
         return ()
     legal = legal_name(name.text)
     taken = view.look_up(lookups.taken_names, name.text)
     while legal in taken:
         legal += "_"
-    places = [view.place(definition)]
-    places += [Place(use.use.span, use.path, use.entry.item) for use in view.workspace.references(definition)]
+    places = (declaration.place, *view.look_up(lookups.uses_of_tree, name.text))
     changes = tuple(Change(place, written(legal)) for place in places)
     return (Fix(f"Rename it to `{legal}` everywhere", changes),)
 

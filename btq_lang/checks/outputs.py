@@ -17,6 +17,8 @@ from btq_lang.syntax.tree import Entry, Pair, Port, Word, is_name
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -56,7 +58,7 @@ def literal_for_output(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def outputs(view: View, entry: Entry) -> Iterator[tuple[SeenNode, Pair, str]]:
     """What the nodes of a tree are given for their outputs, and the types of those; none is said for a tree's, which
     keep whatever they are given."""
-    return _outputs_in(view, view.seen(entry).given)
+    return _outputs_in(view, view.seen.given)
 
 
 def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNode, Pair, str]]:
@@ -70,9 +72,9 @@ def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNod
                 yield seen, pair, type_
 
 
-def _is_custom(view: View) -> bool:
+def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether the file gives values to outputs as a rule."""
-    counts = [view.ask(_counts, tree) for tree in view.look_up(lookups.trees)]
+    counts = [store.ask(_counts, viewpoint, tree) for tree in store.read(viewpoint, lookups.trees, viewpoint)]
     given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
     return values > 2 and (values > given / 2 or values > 9)
 
@@ -80,15 +82,17 @@ def _is_custom(view: View) -> bool:
 def _is_first_value(view: View, entry: Entry, pair: Pair) -> bool:
     """Whether no output of the file before this one is given a value."""
     values = (each for _, each, _ in outputs(view, entry) if each.value is not None and _is_literal(each.value))
-    return view.ask(_first_with_value) is view.facts(entry) and next(values, None) is pair
+    return view.ask(_first_with_value) is view.facts and next(values, None) is pair
 
 
-def _first_with_value(view: View) -> Facts | None:
-    return next((tree for tree in view.look_up(lookups.trees) if view.ask(_counts, tree)[1]), None)
+def _first_with_value(store: Store[Workspace], viewpoint: str) -> Facts | None:
+    trees = store.read(viewpoint, lookups.trees, viewpoint)
+    return next((tree for tree in trees if store.ask(_counts, viewpoint, tree)[1]), None)
 
 
-def _counts(view: View, tree: Facts) -> tuple[int, int]:
+def _counts(store: Store[Workspace], viewpoint: str, tree: Facts) -> tuple[int, int]:
     """How many outputs a tree gives something to, and how many of them a value."""
+    view = View(store, viewpoint)
     given = [pair.value for _, pair, _ in _outputs_in(view, view.seen_in(tree).given) if pair.value is not None]
     return len(given), sum(map(_is_literal, given))
 

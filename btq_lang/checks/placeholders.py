@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
     from btq_lang.checks.view import View
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 _BLANKS = " \t"
 _WHITE = " \t\r\n"
@@ -32,7 +34,7 @@ _NOT_A_KIND = CATEGORIES | NODE_CLAUSES | DIRECTIONS | HEADS | VERB_WORDS | {"xm
 
 def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A placeholder, with the same in the short form."""
-    for seen in view.seen(entry).placeholders:
+    for seen in view.seen.placeholders:
         if seen.name is None or seen.node.kind is None:
             continue
         name = _id_of(seen.name.text)
@@ -50,7 +52,7 @@ def classic_placeholder(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A name that becomes an ID which another name has become already, or which is taken."""
-    for seen in view.seen(entry).placeholders:
+    for seen in view.seen.placeholders:
         name = seen.name
         if name is None:
             continue
@@ -68,28 +70,28 @@ def placeholder_clash(view: View, entry: Entry) -> Iterator[Diagnostic]:
             )
 
 
-def _first_name(view: View, legal: str) -> str | None:
+def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | None:
     """The name of the first placeholder in scope that becomes an ID."""
-    return view.ask(_first_names).get(legal)
+    return store.ask(_first_names, viewpoint).get(legal)
 
 
-def _first_names(view: View) -> dict[str, str]:
+def _first_names(store: Store[Workspace], viewpoint: str) -> dict[str, str]:
     found: dict[str, str] = {}
-    for _, tree in reversed(view.look_up(lookups.trees_in_scope)):
-        found.update(view.ask(_names_in, tree))
+    for _, tree in reversed(store.read(viewpoint, lookups.trees_in_scope, viewpoint)):
+        found.update(store.ask(_names_in, tree))
     return found
 
 
-def _first_place(view: View, legal: str) -> Place | None:
-    """Where that placeholder's name stands."""
-    for path, tree in view.look_up(lookups.trees_in_scope):
-        if legal in view.ask(_names_in, tree):
+def _first_place(store: Store[Workspace], viewpoint: str, legal: str) -> Place | None:
+    """The place of that placeholder's name."""
+    for path, tree in store.read(viewpoint, lookups.trees_in_scope, viewpoint):
+        if legal in store.ask(_names_in, tree):
             name = next(name for name in _placeholders(tree) if _id_of(name.text) == legal)
             return Place(name.span, path, tree.item)
     return None
 
 
-def _names_in(_: View, tree: Facts) -> dict[str, str]:
+def _names_in(_: Store[Workspace], tree: Facts) -> dict[str, str]:
     """The IDs that the placeholders of a tree become, each with the name that the first of them has."""
     return {_id_of(name.text): name.text for name in reversed([*_placeholders(tree)])}
 
@@ -126,7 +128,7 @@ def _short_form(view: View, entry: Entry, seen: SeenNode, name: str) -> Fix | No
         head = f"{seen.category} {head}"
     if node.name.text != name:
         head = f"{head} {_as_label(node.name)}"
-    changes = _replace_head(view.text, entry.start, node, head)
+    changes = _replace_head(view.text, node, head)
     if changes is None:
         return None
     return Fix(f"Write `{head}`", changes, not view.has_names(Kind.MODEL))
@@ -147,37 +149,37 @@ def _looks_like_builtin(name: str) -> bool:
     return bool(near(name, (spelling for kind in BUILTINS.values() for spelling in spellings(kind))))
 
 
-def _replace_head(text: str, base: int, node: Node, head: str) -> tuple[Change, ...] | None:
-    """Put `head` where the kind and the name stand; `base` is where the item begins in the text."""
+def _replace_head(text: str, node: Node, head: str) -> tuple[Change, ...] | None:
+    """Put `head` in the place of the kind and the name."""
     assert node.kind is not None, "a placeholder has a kind"
     names = [pair for pair in node.attributes if pair.key.text == "name"]
     if node.label is not None:
-        if names or text[base + node.kind.end : base + node.label.start].strip(_BLANKS):
+        if names or text[node.kind.end : node.label.start].strip(_BLANKS):
             return None
         return (Change(Place(Span(node.kind.start, node.label.end)), head),)
     if len(names) != 1 or names[0] is not node.attributes[0]:
         return None
-    return _without_name(text, base, node.kind, names[0], head)
+    return _without_name(text, node.kind, names[0], head)
 
 
-def _without_name(text: str, base: int, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
+def _without_name(text: str, kind: Word, name: Pair, head: str) -> tuple[Change, ...] | None:
     """Replace the kind and take the name out of the brackets, where it is the first thing; empty ones go, too."""
-    start, end = base + name.span.start, base + name.span.end
-    if text[base + kind.end : start].strip(_WHITE) != "(":
+    start, end = name.span.start, name.span.end
+    if text[kind.end : start].strip(_WHITE) != "(":
         return None
     end = _behind(text, end, _BLANKS)
     if text[end : end + 1] == ",":
         end = _behind(text, end + 1, _BLANKS)
     following = _behind(text, end, _WHITE)
     if text[following : following + 1] == ")":
-        return (Change(Place(Span(kind.start, following + 1 - base)), head),)
+        return (Change(Place(Span(kind.start, following + 1)), head),)
     line = start
     while line > 0 and text[line - 1] in _BLANKS:
         line -= 1
     if text[end : end + 1] in ("\r", "\n") and text[line - 1] in "\r\n":
         start = line  # the name has a line of its own
         end += 2 if text.startswith("\r\n", end) else 1
-    return Change(Place(kind.span), head), Change(Place(Span(start - base, end - base)), "")
+    return Change(Place(kind.span), head), Change(Place(Span(start, end)), "")
 
 
 def _behind(text: str, at: int, blanks: str) -> int:

@@ -12,7 +12,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import is_port_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, OLD_PORTS
 from btq_lang.checks import lookups
-from btq_lang.checks.kinds import is_torn, written
+from btq_lang.checks.kinds import is_torn, model_related, written
 from btq_lang.checks.view import View, subtree_ports
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
@@ -23,13 +23,15 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 _OWN = frozenset(("ID", "name"))
 
 
 def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port that the built-in, the model or the tree behind a SubTree does not have."""
-    for seen in view.seen(entry).given:
+    for seen in view.seen.given:
         yield from _forbidden_id(seen)
         ports = _ports(view, seen)
         if ports is None or not (meant := _meant(seen, ports)) or _may_have_more(view, seen):
@@ -58,7 +60,7 @@ def unknown_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def missing_port(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A port without a value: one the engine asks for, or an input without default of a model."""
-    for seen in view.nodes(entry):
+    for seen in view.nodes:
         ports = _ports(view, seen)
         if ports is None or not ports.required:
             continue
@@ -103,7 +105,7 @@ def unknown_attribute(view: View, entry: Entry) -> Iterator[Diagnostic]:
             if kind is not None and kind.is_script:
                 message = f"`{pair.key.text}` has no effect on a BehaviorTree: move it to the tree's node"
                 yield Diagnostic("unknown-attribute", pair.key.span, message)
-    for seen in view.seen(entry).given:
+    for seen in view.seen.given:
         for pair in seen.node.attributes:
             key = pair.key.text
             if is_port_name(key) or key in _OWN or key in _KEPT:
@@ -215,7 +217,7 @@ def _ports(view: View, seen: SeenNode) -> KnownPorts | None:
     if seen.kind is not None:
         return _builtin_ports(seen.kind.tag)
     if seen.model is not None:
-        return _model_ports(view, seen.model)
+        return view.ask(_model_ports, seen.asked)
     return None
 
 
@@ -228,15 +230,13 @@ def _may_have_more(view: View, seen: SeenNode) -> bool:
     return any(view.look_up_name(lookups.is_torn, kind, name.text) for kind in kinds)
 
 
-def _model_ports(view: View, model: Model) -> KnownPorts:
-    known = view.model_ports.get(id(model))
-    if known is None:
-        known = view.model_ports[id(model)] = KnownPorts(
-            tuple(
-                [_declared_port(port, port.direction.raw == "input" and port.default is None) for port in model.ports]
-            )
-        )
-    return known
+def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:
+    """The ports of a node with a model."""
+    meaning = View(store, viewpoint).find(Kind.MODEL, name)
+    ports = meaning.ports if meaning is not None else ()
+    return KnownPorts(
+        tuple([_declared_port(port, port.direction.raw == "input" and port.default is None) for port in ports])
+    )
 
 
 @cache
@@ -299,10 +299,9 @@ def _is_off(value: Word | None) -> bool:
 
 
 def _declared(view: View, seen: SeenNode) -> tuple[Related, ...]:
-    definition = seen.definition
-    if seen.is_subtree and seen.node.id is not None:
-        definition = view.scope.find(Kind.TREE, seen.node.id.text)
-    return (view.defined_at(definition, "ports declared here"),) if definition else ()
+    if seen.is_subtree:
+        return view.declared_at(Kind.TREE, seen.node.id.text, _DECLARED) if seen.node.id is not None else ()
+    return model_related(view, seen, _DECLARED)
 
 
 def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPort]) -> tuple[Fix, ...]:
@@ -316,7 +315,7 @@ def _passing_on(view: View, entry: Entry, seen: SeenNode, missing: list[KnownPor
         end = node.attributes[-1].span.end
         return (replace_fix(title, Span(end, end), f" {pairs}"),)
     end = (node.label or node.kind or node.head).end
-    behind = view.text[entry.start + end : entry.start + node.end].lstrip(" \t")
+    behind = view.text[end : node.end].lstrip(" \t")
     return () if behind.startswith("(") else (replace_fix(title, Span(end, end), f" ({pairs})"),)
 
 
@@ -328,7 +327,7 @@ def _attribute_lists(view: View, entry: Entry) -> Iterator[tuple[tuple[Pair, ...
         for port in item.ports:
             if port.attributes:
                 yield port.attributes, _said(port)
-        for seen in view.seen(entry).given:
+        for seen in view.seen.given:
             node = seen.node
             if len(node.attributes) > 1 or node.label is not None or node.category is not None:
                 yield node.attributes, {"name": node.label, "ID": node.kind if node.category else None}
@@ -352,6 +351,7 @@ def _said(port: Port) -> dict[str, Word | None]:
     return {"name": port.name, "type": port.type, "default": port.default}
 
 
+_DECLARED = "ports declared here"
 _TYPES = (
     "string",
     "double",

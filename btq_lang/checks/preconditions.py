@@ -26,10 +26,10 @@ _PASS_SKIPPED_ON = frozenset(
 def one_shot_monitor(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`_failureIf`, which is asked once, on a node that runs; `_successIf` is a hint, for "do it unless it is done" is
     what most people use it for."""
-    for seen in view.seen(entry).marked:
+    for seen in view.seen.marked:
         for pair in seen.node.attributes:
             key = pair.key.text
-            if key not in ("_failureIf", "_successIf") or not result(view, entry, seen.node).ever & RUNNING:
+            if key not in ("_failureIf", "_successIf") or not result(view, seen.node).ever & RUNNING:
                 continue
             if pair.value is None or pair.value.text.strip() in ("true", "false", "1", "0"):
                 continue
@@ -55,9 +55,9 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
     Where another step has a `_while` or a `_skipIf` too, the steps are the branches of a choice, and that is meant.
     """
-    for seen in view.seen(entry).marked:
+    for seen in view.seen.marked:
         pair = next((pair for pair in seen.node.attributes if pair.key.text == "_while"), None)
-        if pair is None or not result(view, entry, seen.node).ever & RUNNING:
+        if pair is None or not result(view, seen.node).ever & RUNNING:
             continue
         step = seen
         while step.parent is not None and _passes_skipped_on(step.parent):
@@ -78,7 +78,7 @@ def while_skip_is_success(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def skipped_condition(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """`_skipIf` or `_while` on the condition of an IfThenElse or a WhileDoElse, which take no SKIPPED from it."""
-    for seen in view.seen(entry).marked:
+    for seen in view.seen.marked:
         pair = next((pair for pair in seen.node.attributes if pair.key.text in ("_skipIf", "_while")), None)
         if pair is None:
             continue

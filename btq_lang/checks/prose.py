@@ -8,23 +8,26 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
 from btq_lang.checks.strings import in_source
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.syntax.tree import Entry, Requirement, Signal, Word
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
-    from btq_lang.checks.view import View
     from btq_lang.requirements.constraints import Constraint
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A keyword with prose behind it, in a requirement that has no clause yet: told once, where it is defined."""
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
             continue
         found = _not_checked(view, entry, requirement, symbol.name)
-        first = view.scope.find(Kind.REQUIREMENT, symbol.name)
+        first = view.declaration(Kind.REQUIREMENT, symbol.name)
         if not found or (first is not None and first.symbol is not symbol):
             continue
         signals = _signals(view)
@@ -43,15 +46,19 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
     """What stands behind keywords and is neither a script nor clauses that mean something."""
     found = view.constraints(requirement)
-    if any(checkable for _, checkable in found) and name in (
-        view.look_up_in(_all_without_claims, id(entry.item)) or ()
-    ):
+    if any(checkable for _, checkable in found) and name in view.ask(_without_claims, view.facts):
         return [each for each, _ in found]
     return [each for each, checkable in found if not checkable]
 
 
-def _all_without_claims(view: View) -> dict[int, set[str]]:
-    """The requirements that claim nothing, by the item they are defined in."""
+def _without_claims(store: Store[Workspace], viewpoint: str, facts: Facts) -> frozenset[str]:
+    """The requirements of an item that claim nothing."""
+    return frozenset(store.ask(_all_without_claims, viewpoint).get(id(facts.item), ()))
+
+
+def _all_without_claims(store: Store[Workspace], viewpoint: str) -> dict[int, set[str]]:
+    """All of them, by the item."""
+    view = View(store, viewpoint)
     found: dict[int, set[str]] = {}
     for requirement in view.requirements.all.values() if view.requirements is not None else ():
         if not requirement.claims:
@@ -74,9 +81,9 @@ def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | N
 def _signals(view: View) -> dict[str, Dimension]:
     """The signals in scope, with what they measure."""
     found: dict[str, Dimension] = {}
-    for name in view.scope.names(Kind.SIGNAL):
-        definition = view.scope.find(Kind.SIGNAL, name)
-        signal = definition.symbol.target if definition is not None else None
+    for name in view.names(Kind.SIGNAL):
+        meaning = view.find(Kind.SIGNAL, name)
+        signal = meaning.target if meaning is not None else None
         if (
             isinstance(signal, Signal)
             and signal.unit is not None
@@ -94,7 +101,7 @@ def _notes(clauses: tuple[str, ...]) -> tuple[str, ...]:
 
 def _fixes(view: View, entry: Entry, text: Word, name: str, clauses: tuple[str, ...]) -> tuple[Fix, ...]:
     """Add the clauses; not where the text is repeated in other places, which would then say something else."""
-    if not clauses or entry.diagnostics or len(view.scope.all(Kind.REQUIREMENT, name)) > 1:
+    if not clauses or entry.diagnostics or view.is_repeated(Kind.REQUIREMENT, name):
         return ()
     added = " ".join(clauses)
     return (replace_fix(f"Add `{added}`", Span(text.end, text.end), f" {added}"),)

@@ -30,16 +30,15 @@ def unknown_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
     for use, match in _matches(view, entry):
         if match.kind != "unknown":
             continue
-        if (definition := view.scope.find(Kind.REQUIREMENT, use.name)) is not None:
+        if (meaning := view.find(Kind.REQUIREMENT, use.name)) is not None:
             from btq_lang.checks.attached import other_word  # few take one word for the other
 
-            target = definition.symbol.target
-            takes_arguments = isinstance(target, Requirement) and bool(target.parameters)
+            takes_arguments = isinstance(meaning.target, Requirement) and bool(meaning.target.parameters)
             yield other_word(view, entry, use, "unknown-quality", requirement=True, safe=not takes_arguments)
             continue
         own = tuple(written(name) for name in view.near(use.name, Kind.QUALITY))
         meant = tuple(dict.fromkeys((*own, *match.near)))[:3]
-        if not meant and not view.scope.complete:
+        if not meant and not view.is_complete:
             continue  # it may be declared in what could not be read
         yield Diagnostic(
             "unknown-quality",
@@ -106,7 +105,7 @@ def ambiguous_quality(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
     """Each quality named in an entry, but those that the files in scope declare themselves."""
-    for use in view.uses(entry, Kind.QUALITY):
+    for use in view.uses(Kind.QUALITY):
         if use.name and (match := view.quality(use.name)) is not None:
             yield use, match
 
@@ -114,11 +113,11 @@ def _matches(view: View, entry: Entry) -> Iterator[tuple[Use, QualityMatch]]:
 def _whole(view: View, entry: Entry, use: Use) -> Span:
     """The span to replace: of `performance <time-behavior>` with the `>`, which is no part of the name."""
     text = view.text
-    end = entry.start + use.span.end
-    if "<" in text[entry.start + use.span.start : end]:
+    end = use.span.end
+    if "<" in text[use.span.start : end]:
         closing = text.find(">", end)
         if closing >= 0 and not text[end:closing].strip():
-            return Span(use.span.start, closing + 1 - entry.start)
+            return Span(use.span.start, closing + 1)
     return use.span
 
 

@@ -31,7 +31,7 @@ _BEGIN_WITH_A_CHILD = _SEQUENCES | {"Inverter"}
 def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child of a reactive node that runs behind another one that runs: a warning where the other one certainly takes
     more than a tick, a hint where it does if a custom action does."""
-    for seen in view.seen(entry).tagged(*_REACTIVE):
+    for seen in view.seen.tagged(*_REACTIVE):
         if seen.kind is None:
             continue
         refused = _second_async_sequence(seen, view.project.target)
@@ -42,7 +42,7 @@ def reactive_multiple_async(view: View, entry: Entry) -> Iterator[Diagnostic]:
         first: Node | None = None
         surely = False
         for child in seen.node.nodes:
-            results = result(view, entry, child)
+            results = result(view, child)
             if first is not None and results.ever & RUNNING:
                 yield _never_gets_further(seen, first, child, surely)
                 break
@@ -58,7 +58,7 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
     Source: BehaviorTree.CPP 4.7 to 4.10, xml_parsing.cpp, where the tags of these children are looked up as nodes.
     """
     target = view.project.target
-    nodes = view.seen(entry)
+    nodes = view.seen
     if "ReactiveSequence" not in nodes.by_tag or not at_least(target, "4.8"):
         return
     for seen in nodes.all:
@@ -86,16 +86,16 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A Fallback at the top of a mission that chooses by a condition and then stays with its choice."""
-    choices = view.seen(entry).tagged("Fallback", "AsyncFallback")
-    if not choices or not view.is_main(entry):
+    choices = view.seen.tagged("Fallback", "AsyncFallback")
+    if not choices or not view.is_main:
         return
-    nodes = {id(seen.node): seen for seen in view.nodes(entry)}
+    nodes = {id(seen.node): seen for seen in view.nodes}
     for seen in choices:
         if not _is_at_the_top(seen):
             continue
         guard: SeenNode | None = None
         for child in seen.node.nodes:
-            if guard is not None and result(view, entry, child).usual & RUNNING:
+            if guard is not None and result(view, child).usual & RUNNING:
                 yield _not_asked_again(seen, guard, child, fixable=_can_be_asked_again(view, entry, nodes, seen))
                 break
             guard = guard or _guard(nodes, nodes[id(child)])
@@ -159,7 +159,7 @@ def _can_be_asked_again(view: View, entry: Entry, nodes: dict[int, SeenNode], se
     """Whether `R?` would start again only what its condition asks for: any other child that takes time and fails would
     start again at the next tick, and halt what was to follow it."""
     return all(
-        _guard(nodes, nodes[id(child)]) is not None or not result(view, entry, child).ever & RUNNING
+        _guard(nodes, nodes[id(child)]) is not None or not result(view, child).ever & RUNNING
         for child in seen.node.nodes[:-1]
     )
 

@@ -117,7 +117,7 @@ def _renewing(demanded: Demanded, tree: TreeNodes, key: str) -> tuple[set[int], 
 def _writers(demanded: Demanded, key: str) -> tuple[SourceNode, ...]:
     """The nodes that may write an entry of this name; none where others may, too, or no node surely does."""
     found, view, entries = demanded.requirements, demanded.view, demanded.entries
-    if found.mission is None or not view.scope.complete or not view.is_read:
+    if found.mission is None or not view.is_complete or not view.is_read:
         return ()
     if view.path in view.workspace.included_files or any(file.of_type(Verbatim) for file in demanded.files):
         return ()

@@ -51,8 +51,8 @@ def named_twice(view: View, entry: Entry) -> Iterator[Diagnostic]:
             named = [_Named(shape(part), span) for part, span in zip(elements, spans, strict=True)]
             yield from _repeated(view, entry, named)
     elif isinstance(item, Tree):
-        for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen(entry).demanding]):
-            if _names_several(clauses) and not view.is_torn(entry, clauses[0].start, clauses[-1].end):
+        for clauses in (item.clauses, *[seen.node.clauses for seen in view.seen.demanding]):
+            if _names_several(clauses) and not view.is_torn(clauses[0].start, clauses[-1].end):
                 yield from _repeated(view, entry, [named for clause in clauses for named in _of_clause(view, clause)])
 
 
@@ -71,7 +71,7 @@ def _repeated(view: View, entry: Entry, names: list[_Named]) -> Iterator[Diagnos
     for named in names:
         if first.setdefault(named.says, named.span) is named.span:
             continue
-        text = view.text[entry.start :]
+        text = view.text
         yield Diagnostic(
             "named-twice",
             named.span,

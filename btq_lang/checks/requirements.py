@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, written
-from btq_lang.diagnostics.model import Diagnostic, Tag, replace_fix
+from btq_lang.diagnostics.model import Diagnostic, Related, Tag, replace_fix
 from btq_lang.syntax.tree import Claim, Entry, OnViolation, Requirement
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.workspace.symbols import Symbol, same_requirement
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement that is named but defined nowhere."""
-    for use in view.uses(entry, Kind.REQUIREMENT):
+    for use in view.uses(Kind.REQUIREMENT):
         if view.defines(Kind.REQUIREMENT, use.name):
             continue
-        if not view.scope.complete:
+        if not view.is_complete:
             return
         elsewhere = view.elsewhere(Kind.REQUIREMENT, use.name)
         quality = view.quality(use.name)
@@ -41,21 +41,21 @@ def unknown_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def conflicting_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """One ID with two texts; one ID with one text is one requirement in several places."""
-    for first, second in view.clashes(entry, Kind.REQUIREMENT):
+    for first, second in view.clashes(Kind.REQUIREMENT):
         if _differ(second.symbol, first.symbol):
-            related = (view.defined_at(first, _COUNTS), view.defined_at(second, "other definition"))
+            related = (Related(first.place, _COUNTS), Related(second.place, "other definition"))
             message = f"this file includes a second requirement `{second.symbol.name}` with different content"
             yield Diagnostic("conflicting-requirement", include_place(entry), message, related=related)
-    for symbol in view.summary(entry).symbols:
-        if symbol.kind is not Kind.REQUIREMENT or not view.scope.is_repeated(symbol.kind, symbol.name):
+    for symbol in view.facts.summary.symbols:
+        if symbol.kind is not Kind.REQUIREMENT or not view.is_repeated(symbol.kind, symbol.name):
             continue
-        counts = view.scope.find(symbol.kind, symbol.name)
+        counts = view.declaration(symbol.kind, symbol.name)
         if counts is not None and counts.symbol is not symbol and _differ(symbol, counts.symbol):
             yield Diagnostic(
                 "conflicting-requirement",
                 symbol.span,
                 f"conflicting definitions of the requirement `{symbol.name}`",
-                related=(view.defined_at(counts, _COUNTS),),
+                related=(Related(counts.place, _COUNTS),),
                 notes=(_other_way(entry, symbol),),
             )
 
@@ -69,8 +69,7 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
     if not view.has_trees or view.is_included:
         return  # a file of requirements, or a library: its users may be anywhere
-    definition = view.scope.find(Kind.REQUIREMENT, requirement.name.text)
-    if definition is None or not view.is_this(definition, entry):
+    if not view.defines_here(Kind.REQUIREMENT, requirement.name.text):
         return
     if view.is_used(Kind.REQUIREMENT, requirement.name.text) or view.is_meant_as_requirement(requirement.name.text):
         return
@@ -87,14 +86,14 @@ def unused_requirement(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def requirement_without_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A requirement with neither a text nor a clause, or with nothing that its `on violation` could be about."""
-    for symbol in view.summary(entry).symbols:
+    for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement):
             continue
         action = _idle_action(view, requirement)
         if action is None and not _is_empty(requirement):
             continue
-        if view.is_torn(entry, requirement.start, requirement.end):
+        if view.is_torn(requirement.start, requirement.end):
             continue  # what it says may be what could not be read
         message = f"the requirement `{symbol.name}` demands nothing"
         if action is not None:

@@ -11,17 +11,16 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks import lookups
-from btq_lang.checks.calls import ask_of_called
 from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCESS, of_builtin
+from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
     from btq_lang.checks.seen import SeenNode
-    from btq_lang.checks.view import View
-    from btq_lang.syntax.tree import Entry
     from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Results(Record):
@@ -39,40 +38,42 @@ class Results(Record):
     ever: int
 
 
-def result(view: View, entry: Entry, node: object) -> Results:
+UNKNOWN: Final = Results(ANYTHING, ANYTHING, ANYTHING)
+
+
+def result(view: View, node: object) -> Results:
     """What a node of a tree can return; for verbatim XML that is anything."""
-    return results(view, entry).get(id(node), UNKNOWN)
+    return results(view).get(id(node), UNKNOWN)
 
 
-def results(view: View, entry: Entry) -> Mapping[int, Results]:
+def results(view: View) -> Mapping[int, Results]:
     """What the nodes of a tree can return, by their `id`; what is not in it is verbatim XML."""
-    view.ask_in_order(_of_tree)
-    return view.ask(_of_nodes, view.facts(entry))
+    return view.ask(_of_nodes, view.facts)
 
 
-def _of_tree(view: View, tree: str) -> Results:
-    """What the tree of a name can return."""
-    facts = view.look_up_name(lookups.owner, Kind.TREE, tree)
+@on_circle(UNKNOWN)
+def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
+    """What the tree of a name can return; one that runs itself, anything."""
+    facts = View(store, viewpoint).owner(Kind.TREE, tree)
     if facts is None or not isinstance(facts.item, Tree):
         return UNKNOWN
     roots = [child for child in facts.item.children if isinstance(child, Node)]
-    return view.ask(_of_nodes, facts)[id(roots[0])] if len(roots) == 1 else UNKNOWN
+    return _of_nodes(store, viewpoint, facts)[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
-def _of_nodes(view: View, facts: Facts) -> dict[int, Results]:
-    """What the nodes of a tree can return; in a circle of trees anything."""
+def _of_nodes(store: Store[Workspace], viewpoint: str, facts: Facts) -> dict[int, Results]:
+    """What the nodes of a tree can return.  `_of_tree` does not ask for it: it would be part of each circle."""
+    view = View(store, viewpoint)
     found: dict[int, Results] = {}
-    item = facts.item
-    tree = item.name.text if isinstance(item, Tree) and item.name is not None else ""
-    for seen in reversed(view.nodes_of(facts)):  # children before their parents
-        found[id(seen.node)] = _of_node(view, tree, seen, found)
+    for seen in reversed(view.seen_in(facts).all):  # children before their parents
+        found[id(seen.node)] = _of_node(view, seen, found)
     return found
 
 
-def _of_node(view: View, tree: str, seen: SeenNode, known: dict[int, Results]) -> Results:
+def _of_node(view: View, seen: SeenNode, known: dict[int, Results]) -> Results:
     found = UNKNOWN
     if seen.is_subtree:
-        found = ask_of_called(view, _of_tree, tree, seen) or UNKNOWN
+        found = view.ask(_of_tree, seen.id.text) if seen.id is not None and seen.id.text else UNKNOWN
     elif seen.kind is not None and not seen.is_placeholder:
         children = tuple([known.get(id(child), UNKNOWN) for child in seen.node.children])
         found = _of_builtin(seen.kind.tag, seen.node, children)
@@ -106,7 +107,6 @@ def _of_builtin(tag: str, node: Node, children: tuple[Results, ...]) -> Results:
 
 _FEW: Final = 4  # there are not many such combinations
 _without_ports: Final[dict[tuple[str | int, ...], Results]] = {}
-UNKNOWN: Final = Results(ANYTHING, ANYTHING, ANYTHING)
 _ANY_LEAF: Final = SUCCESS | FAILURE | RUNNING
 _UNKNOWN_LEAF: Final = Results(_ANY_LEAF, _ANY_LEAF, _ANY_LEAF)
 _CUSTOM: Final = {

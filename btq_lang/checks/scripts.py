@@ -22,7 +22,7 @@ def script_error(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """What is wrong with a script, in any version that the project is for: script-error, empty-script,
     script-version."""
     project = view.project
-    for seen in view.seen(entry).given:
+    for seen in view.seen.given:
         for pair in seen.node.attributes:
             expects_value = _expects_value(seen, pair)
             if expects_value is None or pair.value is None:

@@ -14,7 +14,6 @@ from btq_lang.workspace.placeholders import is_placeholder
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.syntax.tree import Model, Node, Tree, Word
-    from btq_lang.workspace.file import Definition
 
 
 class SeenNode:
@@ -24,7 +23,7 @@ class SeenNode:
         parent: the node whose child it is; None for a tree's own.
         index: which child of its parent it is.
         kind: the built-in it is, if it is one; for an older engine's word the one of today.
-        definition: where its model stands, where one is in scope.
+        is_defined: a model of it is in scope.
         model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
         id, name: those of the node, which are looked for in its attributes where they stand nowhere else.
@@ -36,9 +35,9 @@ class SeenNode:
     __slots__ = (
         "asked",
         "category",
-        "definition",
         "id",
         "index",
+        "is_defined",
         "is_placeholder",
         "is_subtree",
         "kind",
@@ -56,7 +55,7 @@ class SeenNode:
         parent: SeenNode | None,
         index: int,
         kind: NodeKind | None,
-        definition: Definition | None,
+        is_defined: bool,
         model: Model | None,
         category: str | None,
         asked: str,
@@ -67,7 +66,7 @@ class SeenNode:
         self.parent: Final = parent
         self.index: Final = index
         self.kind: Final = kind
-        self.definition: Final = definition
+        self.is_defined: Final = is_defined
         self.model: Final = model
         self.category: Final = category
         self.id: Final = id
@@ -128,7 +127,7 @@ class SeenNodes:
         self.subtrees: Final = [seen for seen in nodes if seen.is_subtree]
         self.placeholders: Final = [seen for seen in nodes if seen.is_placeholder]
         self.strangers: Final = [
-            seen for seen in nodes if seen.kind is None and seen.definition is None and not seen.is_subtree
+            seen for seen in nodes if seen.kind is None and not seen.is_defined and not seen.is_subtree
         ]
         self.by_tag: Final[dict[str, list[SeenNode]]] = {}
         for seen in nodes:

@@ -60,7 +60,7 @@ def _never_written(
     same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
     root blackboard, so what a tree writes into its own is another entry."""
     found, view = demanded.requirements, demanded.view
-    if not found.nodes.are_known or not view.scope.complete or not view.is_read:
+    if not found.nodes.are_known or not view.is_complete or not view.is_read:
         return
     if view.path in view.workspace.included_files:
         return  # who writes it may be in the files that include this one

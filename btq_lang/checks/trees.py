@@ -20,8 +20,8 @@ from btq_lang.util.text import Span
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
+    from btq_lang.checks.lookups import Meaning
     from btq_lang.checks.view import View
-    from btq_lang.workspace.file import Definition
 
 _MOST_NAMES = 5  # in one message
 _DEEPEST_OF_4_6 = 97  # below a BehaviorTree: its reader of XML (tinyxml2 8.0) ends where 100 elements are open
@@ -30,15 +30,15 @@ _LAST_WINS = "the engine does not report this: it runs the last one that it read
 
 def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A SubTree, or a Root, whose tree does not exist."""
-    for seen in view.seen(entry).subtrees:
+    for seen in view.seen.subtrees:
         word = seen.node.category
         is_nameless = seen.id is None or seen.id.text == ""
         if word is not None and is_nameless and not is_torn(view, entry, seen):
             yield Diagnostic("unknown-tree", word.span, "missing tree of this SubTree: write `SubTree <ID>`")
-    for use in view.uses(entry, Kind.TREE):
+    for use in view.uses(Kind.TREE):
         if use.name == "" or view.defines(Kind.TREE, use.name):
             continue
-        if not view.scope.complete or view.has_torn_tree:
+        if not view.is_complete or view.has_torn_tree:
             return
         if view.is_xml and view.look_up(lookups.is_tree_of_mission, use.name):
             continue  # the engine has read all files before it makes a tree, and nobody adds an include to others' XML
@@ -47,7 +47,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         likely = view.near(use.name, Kind.TREE)
         fixes += tuple(replace_fix(f"Replace `{use.name}` with `{name}`", use.span, written(name)) for name in likely)
         message = f"unknown tree `{use.name}`{NOWHERE if elsewhere or not likely else did_you_mean(likely)}"
-        model = view.scope.find(Kind.MODEL, use.name)
+        model = view.find(Kind.MODEL, use.name)
         if use.node is not None and (use.name in BUILTINS or (model is not None and not _is_subtree_model(model))):
             message = f"`{use.name}` is a node, not a tree"
             fixes = _as_node(use)
@@ -56,7 +56,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A node further down than 4.6 reads; what no version reads the parser tells."""
-    nodes, project = view.nodes(entry), view.project
+    nodes, project = view.nodes, view.project
     if len(nodes) <= _DEEPEST_OF_4_6 or at_least(project.engines[0], "4.7"):
         return
     levels: dict[int, int] = {}
@@ -77,26 +77,25 @@ def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 def duplicate_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A tree whose ID another tree has already: the engine silently takes the last one."""
-    for first, second in view.clashes(entry, Kind.TREE):
+    for first, second in view.clashes(Kind.TREE):
         yield Diagnostic(
             "duplicate-tree",
             include_place(entry),
             f"this file includes a second tree `{second.symbol.name}`",
-            related=(view.defined_at(first, "first one"), view.defined_at(second, "second one")),
+            related=(Related(first.place, "first one"), Related(second.place, "second one")),
             notes=(_LAST_WINS,),
         )
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name
-    if not view.scope.is_repeated(Kind.TREE, name.text):
+    if not view.is_repeated(Kind.TREE, name.text):
         return
-    first_one = view.scope.find(Kind.TREE, name.text)
-    if first_one is not None and not view.is_this(first_one, entry):
+    if not view.defines_here(Kind.TREE, name.text):
         yield Diagnostic(
             "duplicate-tree",
             name.span,
             f"duplicate tree `{name.text}`",
-            related=(view.defined_at(first_one, "first one"),),
+            related=view.declared_at(Kind.TREE, name.text, "first one"),
             notes=(_LAST_WINS,),
         )
 
@@ -106,12 +105,11 @@ def recursive_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name.text
-    circle = view.look_up_in(calls.circles, name)
-    definition = view.scope.find(Kind.TREE, name)
-    if circle is None or definition is None or not view.is_this(definition, entry):
+    circle = view.ask(calls.circle, name)
+    if circle is None or not view.defines_here(Kind.TREE, name):
         return
-    places = [(use.name, use.span) for use in view.uses(entry, Kind.TREE)]
-    places += [(seen.id.text, seen.id.span) for seen in view.seen(entry).subtrees if seen.id is not None]
+    places = [(use.name, use.span) for use in view.uses(Kind.TREE)]
+    places += [(seen.id.text, seen.id.span) for seen in view.seen.subtrees if seen.id is not None]
     span = next(span for called, span in places if called == circle[1])
     way = " → ".join(f"`{step}`" for step in circle)
     yield Diagnostic(
@@ -127,32 +125,30 @@ def unused_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None or view.is_included:
         return
     name = entry.item.name
-    definition = view.scope.find(Kind.TREE, name.text)
-    if not view.look_up_in(calls.missed, name.text):
+    if not view.ask(calls.is_missed, name.text):
         return
     main = view.main_tree
-    if definition is None or not view.is_this(definition, entry):
-        return  # another tree of that name counts, which is told
-    users = calls.callers(view, name.text)
+    if not view.defines_here(Kind.TREE, name.text):
+        return  # another tree of that name counts, which is reported
+    users = view.ask(calls.callers, name.text)
     if not users:
         message = f"unused tree `{name.text}`: nothing refers to it, and the main tree is `{main}`"
         yield Diagnostic("unused-tree", name.span, message, tags=(Tag.UNNECESSARY,))
         return
-    user = view.scope.find(Kind.TREE, users[0])
-    related = (view.defined_at(user, "used here, but the mission does not reach this tree either"),) if user else ()
+    related = view.declared_at(Kind.TREE, users[0], "used here, but the mission does not reach this tree either")
     message = f"unreachable tree `{name.text}`: the main tree `{main}` never reaches it"
     yield Diagnostic("unreachable-tree", name.span, message, related=related, tags=(Tag.UNNECESSARY,))
 
 
 def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """Several trees, and nothing says which of them is the mission; told at the first."""
-    if not isinstance(entry.item, Tree) or not view.is_first_tree(entry) or view.is_included:
+    if not isinstance(entry.item, Tree) or not view.is_first_tree or view.is_included:
         return
     if view.ask(calls.has_gaps) or not view.is_read:
         return  # the tree that runs the others may be what is misspelt
     if view.main_tree or view.look_up(lookups.has_root_of_tree):
         return
-    tops = [name for name in view.look_up(lookups.own_trees) if not calls.callers(view, name)]
+    tops = [name for name in view.look_up(lookups.own_trees) if not view.ask(calls.callers, name)]
     if len(tops) < 2:
         return  # without one at the top they run in circles, and that is told
     shown = [f"`{name}`" for name in tops[:_MOST_NAMES]]
@@ -164,9 +160,9 @@ def unknown_main_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
         span,
         f"ambiguous main tree: no other tree refers to {names}",
         related=tuple(
-            view.defined_at(other, "another tree without a reference")
+            related
             for name in tops[1:_MOST_NAMES]
-            if (other := view.scope.find(Kind.TREE, name)) is not None
+            for related in view.declared_at(Kind.TREE, name, "another tree without a reference")
         ),
         notes=(f"name the main tree with {way}",),
         fixes=tuple(_main_tree_fix(view, name) for name in tops[:3]),
@@ -208,7 +204,7 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(entry.item, Tree) or entry.item.name is None:
         return
     name = entry.item.name
-    model = view.scope.find(Kind.MODEL, name.text)
+    model = view.find(Kind.MODEL, name.text)
     if name.text in BUILTINS:
         message = f"a tree cannot have the name `{name.text}`: a built-in node has it"
         yield Diagnostic("tree-named-like-node", name.span, message)
@@ -217,7 +213,7 @@ def tree_named_like_node(view: View, entry: Entry) -> Iterator[Diagnostic]:
             "tree-named-like-node",
             name.span,
             f"a tree cannot have the name `{name.text}`: a node has it",
-            related=(view.defined_at(model, "node declared here"),),
+            related=view.declared_at(Kind.MODEL, name.text, "node declared here"),
         )
 
 
@@ -239,6 +235,5 @@ def _main_tree_fix(view: View, name: str) -> Fix:
     return Fix(f"Make `{name}` the main tree", (change,))
 
 
-def _is_subtree_model(definition: Definition) -> bool:
-    target = definition.symbol.target
-    return isinstance(target, Model) and target.category.raw == "SubTree"
+def _is_subtree_model(meaning: Meaning) -> bool:
+    return isinstance(meaning.target, Model) and meaning.target.category.raw == "SubTree"

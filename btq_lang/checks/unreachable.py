@@ -31,7 +31,7 @@ _BY_CONDITION = frozenset(("IfThenElse", "WhileDoElse"))
 
 def unreachable_child(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A child that can never run; told once for all those behind one place."""
-    for seen in view.nodes(entry):
+    for seen in view.nodes:
         if len(seen.node.children) < 2 or seen.kind is None:
             continue
         tag = seen.kind.tag
@@ -53,7 +53,7 @@ def _behind(
     view: View, entry: Entry, seen: SeenNode, children: tuple[Node | Verbatim, ...], goes_on: int
 ) -> Diagnostic | None:
     """The child behind one that can only end the node."""
-    known = results(view, entry)
+    known = results(view)
     for child, following in pairwise(children):
         if isinstance(child, Node) and not known.get(id(child), UNKNOWN).ever & (goes_on | SKIPPED):
             never = "succeeds" if goes_on == SUCCESS else "fails"
@@ -67,14 +67,14 @@ def _in_try_catch(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None
     found = _behind(view, entry, seen, tuple(tried), SUCCESS)
     if found is not None or seen.node.attribute("catch_on_halt") is not None:
         return found
-    if any(result(view, entry, child).ever & FAILURE for child in tried):
+    if any(result(view, child).ever & FAILURE for child in tried):
         return None
     return _unreachable(last, "nothing before it can fail", None)
 
 
 def _by_condition(view: View, entry: Entry, seen: SeenNode) -> Diagnostic | None:
     condition, *branches = seen.node.children
-    results = result(view, entry, condition).ever
+    results = result(view, condition).ever
     if not isinstance(condition, Node) or not results & (SUCCESS | FAILURE):
         return None
     if not results & SUCCESS:

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import lookups
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Tag
 from btq_lang.syntax.tree import Context, Entry, Signal
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
-    from btq_lang.checks.view import View
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 def unused_signal(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -35,11 +37,9 @@ def _unused(item: Signal | Context, rule: str, message: str) -> Iterator[Diagnos
 def _is_unused(view: View, entry: Entry, kind: Kind) -> bool:
     if not view.has_trees or view.is_included:
         return False  # a file of signals, or a library: their users may be anywhere
-    for symbol in view.summary(entry).symbols:
-        definition = view.scope.find(kind, symbol.name)
+    for symbol in view.facts.summary.symbols:
         return (
-            definition is not None
-            and view.is_this(definition, entry)
+            view.defines_here(kind, symbol.name)
             and not view.look_up(lookups.is_asked_for, symbol.name)
             and not _is_meant(view, symbol.name)
             and view.is_read  # else its user may be what could not be
@@ -52,9 +52,10 @@ def _is_meant(view: View, name: str) -> bool:
     return view.ask(_is_near, name)
 
 
-def _is_near(view: View, name: str) -> bool:
+def _is_near(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    view = View(store, viewpoint)
     asked = view.look_up(lookups.asked_for_in_vain)
-    declared = len(view.scope.names(Kind.SIGNAL)) + len(view.scope.names(Kind.CONTEXT))
+    declared = len(view.names(Kind.SIGNAL)) + len(view.names(Kind.CONTEXT))
     if len(asked) * declared > _MOST_COMPARED:
         return True  # among so much that nobody knows there is something like any name
     return bool(near(name, asked, limit=1))

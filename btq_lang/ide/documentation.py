@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.includes import include_fix
-from btq_lang.checks.view import View
+from btq_lang.checks.includes import include_line
+from btq_lang.checks.lookups import head
 from btq_lang.ide import describe
 from btq_lang.ide.meaning import defined_elsewhere, own_quality, quality_match
 from btq_lang.ide.ports import ports_of_kind, ports_of_tree
-from btq_lang.util.text import Edit
+from btq_lang.util.text import Edit, Span
 from btq_lang.workspace.file import Definition
 from btq_lang.workspace.workspace import Workspace
 
@@ -58,8 +58,8 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
     """
     if other not in workspace.files:
         return ()
-    fix = include_fix(View(workspace, path), other)
-    return tuple(Edit(change.place.span, change.text) for change in fix.changes)
+    at, line = include_line(head(workspace, path), path, other)
+    return (Edit(Span(at, at), line),)
 
 
 def _definition(workspace: Workspace, path: str, kind: Kind, name: str) -> Definition | None:

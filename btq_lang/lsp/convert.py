@@ -142,22 +142,23 @@ class Converter:
         return types.WorkspaceEdit(document_changes=[*documents])
 
     def findings(self, workspace: Workspace, path: str, found: Findings) -> Json:
-        """All that is told of a file, as JSON has a list of diagnostics.
+        """All that is reported of a file, as JSON has a list of diagnostics.
 
         At every key all of it is sent, and of most items nothing has changed, or but the lines: what was written of an
         item is kept with it for as long as it stands where it stood, and so does all that it refers to.
         """
         files, encoding = workspace.files, self.encoding
         written: list[str] = []
-        for told, starts in found.of_items:
-            begins = [files[at].item_places[id(item)] for at, item in told.items]
-            where = self._spellings, begins, [files[at].source_lines.ends(span, encoding) for at, span in told.fixed]
-            if told.written is not None and told.written[0] == where:
-                written.append(told.written[1])
+        for reported, starts in found.of_items:
+            begins = [files[at].item_places[id(item)] for at, item in reported.items]
+            ends = [files[at].source_lines.ends(span, encoding) for at, span in reported.fixed]
+            where = self._spellings, begins, ends
+            if reported.written is not None and reported.written[0] == where:
+                written.append(reported.written[1])
                 continue
-            written.append(self._diagnostics(workspace, path, told.placed(starts)))
-            if told.items:  # of a file that nobody edits it would only take room
-                told.written = where, written[-1]
+            written.append(self._diagnostics(workspace, path, reported.placed(starts)))
+            if reported.items:  # of a file that nobody edits it would only take room
+                reported.written = where, written[-1]
         return Json(f"[{', '.join(written)}]")
 
     def problems(self, text: str, found: Iterable[LoadProblem]) -> Json:

@@ -21,9 +21,8 @@ from btq_lang.workspace.item_index import Facts, Names, Tally
 
 if TYPE_CHECKING:
     from btq_lang.catalog.name_kinds import Kind
-    from btq_lang.diagnostics.model import Diagnostic, Place
+    from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.util.source_map import Places
-    from btq_lang.workspace.config import Project
     from btq_lang.workspace.item_index import Name
     from btq_lang.workspace.references import Mention
     from btq_lang.workspace.symbols import Summary, Symbol
@@ -39,11 +38,7 @@ class File:
     Attributes:
         text: in this language, whatever the file on the disk is written in.
         origin: that file, where it is written in another one.
-        known_errors: what was last found wrong with it for those that include it, behind the project, the files and
-            the names of trees that this rests on.
     """
-
-    known_errors: tuple[Project, tuple[File, ...], frozenset[str], tuple[tuple[Place, str], ...]] | None = None
 
     def __init__(self, path: str, text: str, origin: Origin | None = None) -> None:
         self.path = path

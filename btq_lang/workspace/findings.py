@@ -1,7 +1,7 @@
 """What was found in a file: of each item, counted from where it begins, and where that is.
 
-One invariant: what is told of an item is one object for as long as it says the same, however far the item moves.  So
-after an edit nothing is counted anew that only stands elsewhere, until somebody asks where it stands.
+One invariant: what is reported of an item is one object for as long as it says the same, however far the item moves.
+So after an edit nothing is counted anew that has only moved, until somebody asks where it is.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-class Told:
-    """What is told of an item.
+class Reported:
+    """What is reported of an item.
 
     Attributes:
         diagnostics: in the order of the text, counted from where the item begins.
@@ -39,6 +39,14 @@ class Told:
         self.fixed = tuple([(at.path, at.span) for at in related if at.path is not None and at.anchor is None])
         self.written: tuple[object, str] | None = None
 
+    def __eq__(self, other: object) -> bool:
+        """Whether both say the same of the very same item."""
+        return isinstance(other, Reported) and (
+            self.diagnostics == other.diagnostics and all(map(_is_same, self.items, other.items))
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # nobody looks for one
+
     def starts(self, workspace: Workspace) -> list[int]:
         """Where the items begin."""
         files = workspace.files
@@ -51,28 +59,28 @@ class Told:
 
 
 class Findings:
-    """What is told of a file.
+    """What is reported of a file.
 
     Attributes:
-        of_items: what is told of each item of which anything is, in the order of the text, and where the items begin
-            that it counts from.
+        of_items: what is reported of each item of which anything is, in the order of the text, and where the items
+            begin that it counts from.
     """
 
-    def __init__(self, of_items: list[tuple[Told, list[int]]]) -> None:
+    def __init__(self, of_items: list[tuple[Reported, list[int]]]) -> None:
         self.of_items = of_items
         self._diagnostics: tuple[Diagnostic, ...] | None = None
 
     @classmethod
     def placed(cls, diagnostics: Iterable[Diagnostic]) -> Findings:
-        """What is told of a file, where it is known already where all of it stands."""
-        told = Told(diagnostics)
-        return cls([(told, [])] if told.diagnostics else [])
+        """What is reported of a file, where all of it counts from the start of the file already."""
+        reported = Reported(diagnostics)
+        return cls([(reported, [])] if reported.diagnostics else [])
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """All of it in the order of the text, counted from the start of the file."""
         if self._diagnostics is None:
-            placed = (each for told, starts in self.of_items for each in told.placed(starts))
+            placed = (each for reported, starts in self.of_items for each in reported.placed(starts))
             self._diagnostics = in_order(placed)
         return self._diagnostics
 
@@ -80,6 +88,10 @@ class Findings:
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """In the order of the text, and where several stand at one place, of their rules."""
     return tuple(sorted(diagnostics, key=lambda each: (each.span, each.rule)))
+
+
+def _is_same(one: tuple[str, object], other: tuple[str, object]) -> bool:
+    return one[0] == other[0] and one[1] is other[1]
 
 
 def _placed(one: Diagnostic, by: int, starts: dict[int, int]) -> Diagnostic:

@@ -29,6 +29,7 @@ State = TypeVar("State")
 T = TypeVar("T")
 
 _CLEAN, _SUSPECT, _STALE = range(3)
+_FEW: Final = 10_000  # answers: to sort out fewer is not worth the time
 _DEEPEST: Final = 40  # queries that ask for each other; Python allows some twenty calls for each
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 
@@ -130,6 +131,16 @@ class Store(Generic[State]):
 
     # ---- what their owner uses ----
 
+    @property
+    def state(self) -> State:
+        """What inputs read."""
+        return self._state
+
+    @property
+    def topics(self) -> tuple[Hashable, ...]:
+        """Those of all inputs."""
+        return tuple(self._inputs)
+
     def advance(self, state: State, topics: Iterable[Hashable]) -> None:
         """There is a new state.
 
@@ -155,9 +166,9 @@ class Store(Generic[State]):
     def unpin(self, query: Callable[..., object], *key: Hashable) -> None:
         self._pinned.discard((query, *key))
 
-    def sweep(self) -> None:
-        """Forget what no pinned answer rests on, if that has become much."""
-        if len(self._answers) <= 2 * self._size:
+    def sweep(self, *, always: bool = False) -> None:
+        """Forget what no pinned answer rests on, if that has become much, or always."""
+        if not always and len(self._answers) <= max(2 * self._size, _FEW):
             return
         waiting = [self._answers[key] for key in self._pinned if key in self._answers]
         used = set(waiting)
@@ -166,9 +177,13 @@ class Store(Generic[State]):
                 if each not in used:
                     used.add(each)
                     waiting.append(each)
-        self._answers = {key: answer for key, answer in self._answers.items() if answer in used}
-        for answer in used:
-            answer.askers &= used
+        kept_answers = {key: answer for key, answer in self._answers.items() if answer in used}
+        for answer in self._answers.values():
+            if answer in used:
+                answer.askers &= used
+            else:  # else answers and what asked them would hold each other
+                answer.asked, answer.askers = (), set()
+        self._answers = kept_answers
         kept = {topic: [each for each in inputs if each in used] for topic, inputs in self._inputs.items()}
         self._inputs = {topic: inputs for topic, inputs in kept.items() if inputs}
         self._size = len(self._answers)

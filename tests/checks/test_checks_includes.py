@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, split_files, workspace_of
+from kept_checks import Kept
 
 from btq_lang.btcpp.opening import open_workspace
-from btq_lang.checks import check
+from btq_lang.checks import CHECKS, check
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.syntax.tree import Entry, Tree
 from btq_lang.util.text import Span
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.workspace import Workspace
@@ -198,19 +202,29 @@ def test_a_circle_through_included_xml_is_told_where_it_is_included() -> None:
     assert found.message == "the tree `Main` contains itself: `Main` → `Nav` → `Main`"
 
 
-def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_project_is_another() -> None:
+def test_included_xml_is_looked_at_again_when_it_or_what_it_includes_or_the_project_is_another(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+
+    def noting(view: View, _: Entry) -> Iterator[Diagnostic]:
+        asked.append(view.path)
+        yield from ()
+
+    monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
     nav = _TREE.format(include='<include path="more.xml"/>', node='<SubTree ID="More"/>')
     good, bad = _GOOD.replace("Nav", "More"), _GOOD.replace("Nav", "Other")
     workspace = workspace_of({"main.btq": 'include "nav.xml"\n', "nav.xml": nav, "more.xml": good})
-    assert check(workspace, "main.btq") == ()
-    known = workspace.files["nav.xml"].known_errors
+    kept = Kept()
+    assert kept.check(workspace, "main.btq").diagnostics == ()
+    assert sorted(asked) == ["more.xml", "nav.xml"]
     edited = workspace.with_file("main.btq", 'include "nav.xml"\n\n')
-    assert check(edited, "main.btq") == ()
-    assert edited.files["nav.xml"].known_errors is known
+    assert kept.check(edited, "main.btq").diagnostics == ()
+    assert len(asked) == 2
     other = Workspace({**edited.files, "more.xml": workspace_of({"more.xml": bad}).files["more.xml"]}, edited.project)
-    assert [each.rule for each in check(other, "main.btq")] == ["include-with-errors"]
+    assert [each.rule for each in kept.check(other, "main.btq").diagnostics] == ["include-with-errors"]
     ignoring = other.with_project(Project(ignore=("unknown-tree",)))
-    assert check(ignoring, "main.btq") == ()
+    assert kept.check(ignoring, "main.btq").diagnostics == ()
 
 
 def test_an_include_path_that_is_no_folder_is_shown_where_something_is_missing(tmp_path: Path) -> None:

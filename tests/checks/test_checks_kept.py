@@ -10,14 +10,14 @@ from pathlib import Path
 
 import missions
 import pytest
+from kept_checks import Kept
 
-from btq_lang.checks import CHECKS, Check, check, check_again
-from btq_lang.checks.answers import Answers
+from btq_lang.checks import CHECKS, Check, check, let_go
 from btq_lang.checks.demanded import Demanded
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.requirements.budgets import Budgets
-from btq_lang.syntax.tree import Entry, Include, Tree
+from btq_lang.syntax.tree import Entry, Tree
 from btq_lang.workspace.workspace import Workspace
 
 EVERY_FORM = (Path(__file__).parents[1] / "every_form.btq").read_text(encoding="utf-8")
@@ -153,7 +153,7 @@ PIECES = (
 def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
     chance = random.Random(seed)
     workspace = Workspace.of(files)
-    kept = {path: Answers() for path in files}
+    kept = {path: Kept() for path in files}
     for step in range(60):
         path = chance.choice(sorted(files))
         text = workspace.files[path].text
@@ -166,14 +166,14 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
         texts = {each: file.text for each, file in workspace.files.items()}
         fresh = Workspace.of(texts)
         for each in files:
-            assert check_again(workspace, each, kept[each]).diagnostics == check(fresh, each), (step, each, texts)
+            assert kept[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, texts)
 
 
 def test_what_no_quote_closes_is_not_empty() -> None:
     workspace = Workspace.of(
         {"/p/main.btq": 'QualityReq "Slowly\nQualityReq rq1 : safety "Calm"\n    takes at most 3 s\n'}
     )
-    anew, kept = check(workspace, "/p/main.btq"), check_again(workspace, "/p/main.btq", Answers()).diagnostics
+    anew, kept = check(workspace, "/p/main.btq"), Kept().check(workspace, "/p/main.btq").diagnostics
     assert [each.rule for each in anew] == [each.rule for each in kept] == ["unclosed-string"]
 
 
@@ -182,7 +182,7 @@ def test_trees_and_requirements_change_names_and_places(spelling: missions.Spell
     """In a file of so many trees that what is kept of all of them is brought up to date, and not made anew."""
     chance = random.Random(1)
     lines = missions.mission(300, 3, spelling).split("\n")
-    kept = Answers()
+    kept = Kept()
     workspace = Workspace.of({"/p/main.btq": "\n".join(lines)})
     for step in range(40):
         named = [at for at, line in enumerate(lines) if line.lstrip().startswith(("BehaviorTree", "QualityReq"))]
@@ -195,7 +195,7 @@ def test_trees_and_requirements_change_names_and_places(spelling: missions.Spell
         text = "\n".join(lines)
         workspace = workspace.with_file("/p/main.btq", text)
         fresh = Workspace.of({"/p/main.btq": text})
-        assert check_again(workspace, "/p/main.btq", kept).diagnostics == check(fresh, "/p/main.btq"), (step, text)
+        assert kept.check(workspace, "/p/main.btq").diagnostics == check(fresh, "/p/main.btq"), (step, text)
 
 
 def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: dict[str, str], path: str) -> list[str]:
@@ -209,13 +209,13 @@ def asked_after(monkeypatch: pytest.MonkeyPatch, before: dict[str, str], after: 
 
     monkeypatch.setitem(CHECKS, Tree, (*CHECKS[Tree], noting))
     workspace = Workspace.of(before)
-    answers = Answers()
-    check_again(workspace, path, answers)
+    answers = Kept()
+    answers.check(workspace, path)
     asked.clear()
     for other, text in after.items():
         workspace = workspace.with_file(other, text)
-    assert check_again(workspace, path, answers).diagnostics == check(Workspace.of({**before, **after}), path)
-    return asked[: len(asked) - len(workspace.files[path].parsed.trees)]  # without the check of the texts alone
+    assert answers.check(workspace, path).diagnostics == check(Workspace.of({**before, **after}), path)
+    return asked[: len(asked) - len(workspace.files[path].parsed.trees)]  # without those of the fresh workspace
 
 
 def test_an_edit_in_one_tree_asks_for_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -232,8 +232,7 @@ def test_a_model_that_changes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch
     "text", [EVERY_FORM, BOARDS, missions.mission(60, 2, "classic"), missions.mission(60, 2, "short")]
 )
 def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
-    """Else it would be asked again of every item after every edit, as those of an include are, which look at the other
-    files, and what renames a tree wherever it is named; with these all of an item are asked twice."""
+    """Else it would be asked again of every item after every edit."""
     asked: list[tuple[str, type]] = []
 
     def watched(check: Check) -> Check:
@@ -245,28 +244,28 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
 
     for item, checks in CHECKS.items():
         monkeypatch.setitem(CHECKS, item, tuple(map(watched, checks)))
-    answers = Answers()
+    answers = Kept()
     workspace = Workspace.of({"/p/main.btq": text})
-    check_again(workspace, "/p/main.btq", answers)
+    answers.check(workspace, "/p/main.btq")
     asked.clear()
-    check_again(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq", answers)
+    answers.check(workspace.with_file("/p/main.btq", f"{text}\n# the end\n"), "/p/main.btq")
     last = type(workspace.files["/p/main.btq"].parsed.entries[-1].item)
-    asked = [each for each in asked if each[1] is not Include and each[0] != "forbidden_name"]
     assert {item for _, item in asked} <= {last}
-    assert set(Counter(asked).values()) <= {1, 2}
+    assert set(Counter(asked).values()) <= {1}
 
 
 def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
     """What is found out of a workspace holds the whole of it: in a ring, all of the last thousand keys would stay."""
-    workspace, answers = Workspace.of(FILES), Answers()
+    workspace, answers = Workspace.of(FILES), Kept()
     gc.collect()
     gc.disable()
     try:
         for letter in "abc":
             workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
-            check_again(workspace, "/p/main.btq", answers)
-            answers.let_go()
+            answers.check(workspace, "/p/main.btq")
+            assert answers.store is not None
+            let_go(answers.store)
         kinds = [type(each) for each in gc.get_objects()]
-        assert (kinds.count(Demanded), kinds.count(Budgets)) == (0, 0)
+        assert (kinds.count(Demanded), kinds.count(Budgets)) == (0, 1)  # those of now
     finally:
         gc.enable()

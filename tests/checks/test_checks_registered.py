@@ -13,6 +13,7 @@ from btq_lang.checks import CHECKS, checks_of
 from btq_lang.checks.view import View
 from btq_lang.diagnostics import rules
 from btq_lang.syntax.tree import Entry, Model
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 BLOCK = re.compile(r"^```btq\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -42,6 +43,7 @@ def entries(page: Path) -> Iterator[tuple[View, Entry]]:
         files = split_files(block[1])
         workspace = Workspace.of(files)
         for path in files:
-            view = View(workspace, path)
-            for entry in view.file.parsed.entries:
-                yield view, entry
+            store = Store(workspace)
+            for facts in workspace.files[path].facts.values():
+                view = View(store, path, facts)
+                yield view, view.entry

@@ -3,7 +3,7 @@ return what the check believes to be impossible."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from random import Random
 
 from hypothesis import given
@@ -13,6 +13,7 @@ from btq_lang.checks.results import Results, result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 IDLE = 0
@@ -20,13 +21,19 @@ IDLE = 0
 
 def results(text: str) -> dict[str, Results]:
     """The results of every named node of a file."""
-    view = View(Workspace.of({"main.btq": text}), "main.btq")
     return {
-        seen.node.name.text: result(view, entry, seen.node)
-        for entry in view.file.parsed.entries
-        for seen in view.nodes(entry)
+        seen.node.name.text: result(view, seen.node)
+        for view in views({"main.btq": text})
+        for seen in view.nodes
         if seen.node.name is not None
     }
+
+
+def views(texts: Mapping[str, str]) -> list[View]:
+    """The items of the first of some files."""
+    store = Store(Workspace.of(texts))
+    (path, *_) = texts
+    return [View(store, path, facts) for facts in store.state.files[path].facts.values()]
 
 
 # ---- a small engine, written from the descriptions of BehaviorTree.CPP 4.10 ----
@@ -310,16 +317,15 @@ TREES = st.recursive(st.sampled_from(LEAVES), larger, max_leaves=8)
 
 @given(TREES, st.randoms(use_true_random=False), st.booleans())
 def test_no_node_returns_what_is_impossible(tree: str, random: Random, actions_take_time: bool) -> None:
-    view = View(Workspace.of({"main.btq": indented("BehaviorTree Main", [tree])}), "main.btq")
-    (entry,) = view.file.parsed.entries
-    top = Ticked(view.nodes(entry)[0].node, random.randrange)
+    (view,) = views({"main.btq": indented("BehaviorTree Main", [tree])})
+    top = Ticked(view.nodes[0].node, random.randrange)
     for ticked in top.all():
         ticked.actions_take_time = actions_take_time
     for _ in range(12):
         if top.tick() != RUNNING or random.randrange(6) == 0:
             top.halt()
     for ticked in top.all():
-        found = result(view, entry, ticked.node)
+        found = result(view, ticked.node)
         place = f"{ticked.node.head.text} in\n{tree}"
         assert ticked.seen & ~found.ever == 0, place
         if actions_take_time:
@@ -377,6 +383,5 @@ def test_an_included_tree() -> None:
         "main.btq": 'include "other.btq"\n\nBehaviorTree Main\n    SubTree Other\n',
         "other.btq": "BehaviorTree Other\n    AlwaysFailure\n",
     }
-    view = View(Workspace.of(texts), "main.btq")
-    entry = view.file.parsed.entries[1]
-    assert result(view, entry, view.nodes(entry)[0].node).ever == FAILURE
+    view = views(texts)[1]
+    assert result(view, view.nodes[0].node).ever == FAILURE

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems
+from kept_checks import Kept
 
-from btq_lang.checks import check_again
-from btq_lang.checks.answers import Answers
 from btq_lang.workspace.workspace import Workspace
 
 RETY = "warning unknown-node «Rety» unknown node `Rety`; did you mean `Retry`?"
@@ -97,14 +96,14 @@ def test_errors_after_which_a_file_is_not_read_as_it_stands_are_not_silenced() -
 def test_a_comment_counts_as_soon_as_it_is_typed() -> None:
     text = tree("Rety")
     at = text.index("Rety") + len("Rety")
-    workspace, answers = Workspace.of({"main.btq": text}), Answers()
+    workspace, answers = Workspace.of({"main.btq": text}), Kept()
     told: list[str] = []
     for letter in "  # btq: ignore":
-        told.append(", ".join(each.rule for each in check_again(workspace, "main.btq", answers).diagnostics))
+        told.append(", ".join(each.rule for each in answers.check(workspace, "main.btq").diagnostics))
         text = text[:at] + letter + text[at:]
         at += 1
         workspace = workspace.with_file("main.btq", text)
     assert told == ["unknown-node"] * len(told)
-    assert check_again(workspace, "main.btq", answers).diagnostics == ()
+    assert answers.check(workspace, "main.btq").diagnostics == ()
     workspace = workspace.with_file("main.btq", text.replace("btq:", "btq"))
-    assert [each.rule for each in check_again(workspace, "main.btq", answers).diagnostics] == ["unknown-node"]
+    assert [each.rule for each in answers.check(workspace, "main.btq").diagnostics] == ["unknown-node"]

@@ -6,9 +6,9 @@ import cProfile
 from collections.abc import Callable, Iterable
 
 import pytest
+from kept_checks import Kept
 
-from btq_lang.checks import check, check_again
-from btq_lang.checks.answers import Answers
+from btq_lang.checks import check
 from btq_lang.render import Finding, Report, render
 from btq_lang.workspace.workspace import Workspace
 
@@ -110,10 +110,10 @@ def calls(work: Callable[[], object]) -> int:
 
 def checked_again(text: str) -> object:
     """As an editor does, before and after an edit."""
-    answers = Answers()
+    answers = Kept()
     workspace = Workspace.of({MAIN: text})
-    check_again(workspace, MAIN, answers)
-    return check_again(workspace.with_file(MAIN, f"{text}# a comment\n"), MAIN, answers)
+    answers.check(workspace, MAIN)
+    return answers.check(workspace.with_file(MAIN, f"{text}# a comment\n"), MAIN)
 
 
 def checked_and_shown(text: str) -> object:

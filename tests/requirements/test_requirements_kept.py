@@ -8,9 +8,9 @@ from pathlib import Path
 
 import missions
 import pytest
+from kept_checks import Kept
 
-from btq_lang.checks import check, check_again
-from btq_lang.checks.answers import Answers
+from btq_lang.checks import check
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success
 from btq_lang.requirements.memory import Memory
@@ -176,7 +176,7 @@ LINES = (
 def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -> None:
     chance = random.Random(seed)
     workspace = Workspace.of(files)
-    answers = {path: Answers() for path in files}
+    answers = {path: Kept() for path in files}
     memories = {path: Memory() for path in files}
     for step in range(40):
         path = chance.choice(sorted(files))
@@ -187,7 +187,7 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
         for each in files:
             now = list(said(workspace, requirements(workspace, each, memories[each]), memories[each]))
             assert now == list(said(fresh, requirements(fresh, each))), (step, each, texts)
-            assert check_again(workspace, each, answers[each]).diagnostics == check(fresh, each), (step, each, texts)
+            assert answers[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, texts)
 
 
 def edited(text: str, chance: random.Random) -> str:

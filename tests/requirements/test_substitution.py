@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
+from kept_checks import Kept
 
 from btq_lang.btcpp.document import write
 from btq_lang.btcpp.enforcement import enforced
@@ -16,8 +17,7 @@ from btq_lang.btcpp.export import export
 from btq_lang.btcpp.importing import import_xml
 from btq_lang.btcpp.instances import instances
 from btq_lang.btcpp.side_file import Built, side_file
-from btq_lang.checks import check, check_again
-from btq_lang.checks.answers import Answers
+from btq_lang.checks import check
 from btq_lang.cli import main
 from btq_lang.diff import compare
 from btq_lang.graph import draw
@@ -72,11 +72,11 @@ def checked(workspace: Workspace) -> object:
 
 def checked_again(workspace: Workspace) -> object:
     """As an editor checks, which keeps answers from one edit to the next."""
-    answers = Answers()
-    check_again(workspace, MAIN, answers)
+    answers = Kept()
+    answers.check(workspace, MAIN)
     text = workspace.files[MAIN].text
     for edited in (text.replace("2 s", "3 s").replace("5 s", "6 s"), text.replace("> 3 %", "> 4 %")):
-        check_again(workspace.with_file(MAIN, edited), MAIN, answers)
+        answers.check(workspace.with_file(MAIN, edited), MAIN)
     return answers
 
 
