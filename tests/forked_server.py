@@ -1,6 +1,7 @@
 """Servers that are forked from a process which has imported the server already, for that takes longer than most tests.
 
-A forked server is a process of its own, with its own standard input and output, like one that an editor starts.
+A forked server is a process of its own, with its own standard input and output, like one that an editor starts.  An
+editor that starts its server itself is given `relay()` as the command.
 """
 
 from __future__ import annotations
@@ -12,25 +13,28 @@ import signal
 import socket
 import subprocess
 import sys
-from functools import cache
 from typing import NoReturn
 
-SERVE = "import sys; from btq_lang.server import main; sys.exit(main([]))"
-LONGEST_PROGRAM = 65_536
+_LONGEST_PROGRAM = 65_536
+_DIGITS = 10  # of a number that is answered
+_found: list[str] = []  # where the process that forks is asked, once it is there
+
+
+def serve(*arguments: str) -> str:
+    """The program that is the server, with these arguments."""
+    return f"import sys; from btq_lang.server import main; sys.exit(main({arguments!r}))"
 
 
 class Forked:
     """A process that runs a Python program, with the part of `subprocess.Popen` that tests ask for."""
 
     def __init__(self, program: str) -> None:
-        (stdin, typed), *others = (os.pipe() for _ in range(4))
-        parent = _parent()
-        socket.send_fds(parent, [program.encode()], [stdin, *(write for _, write in others)])
-        self.pid = int(parent.recv(32))
-        for end in (stdin, *(write for _, write in others)):
+        (stdin, write), (read, stdout), (read_errors, stderr) = os.pipe(), os.pipe(), os.pipe()
+        self._answers, self.pid = _fork(_place(), program, [stdin, stdout, stderr])
+        for end in (stdin, stdout, stderr):
             os.close(end)
-        self.stdin = os.fdopen(typed, "wb")
-        self.stdout, self.stderr, self._ended = (os.fdopen(read, "rb") for read, _ in others)
+        self.stdin = os.fdopen(write, "wb")
+        self.stdout, self.stderr = os.fdopen(read, "rb"), os.fdopen(read_errors, "rb")
         self.returncode: int | None = None
 
     def __enter__(self) -> Forked:
@@ -47,10 +51,10 @@ class Forked:
     def wait(self, timeout: float | None = None) -> int:
         """The exit code as soon as the process has ended, less than 0 after a signal."""
         if self.returncode is None:
-            if not select.select([self._ended], [], [], timeout)[0]:
-                raise subprocess.TimeoutExpired(SERVE, timeout or 0)
-            with self._ended:
-                self.returncode = int(self._ended.read())
+            if not select.select([self._answers], [], [], timeout)[0]:
+                raise subprocess.TimeoutExpired("the server", timeout or 0)
+            with self._answers:
+                self.returncode = _number(self._answers)
         return self.returncode
 
     def communicate(self, timeout: float | None = None) -> tuple[bytes, bytes]:
@@ -66,55 +70,83 @@ class Forked:
             file.close()
 
 
-@cache
-def _parent() -> socket.socket:
-    """A connection to the process that forks."""
-    ours, theirs = socket.socketpair()
-    process = subprocess.Popen([sys.executable, __file__], stdin=theirs)
-    theirs.close()
-
-    def end() -> None:
-        ours.close()
-        process.wait()
-
-    atexit.register(end)
-    return ours
+def relay() -> list[str]:
+    """A command that is a server: a forked one takes over its standard input and output, and its folder."""
+    return [sys.executable, "-S", "-E", __file__, _place()]
 
 
-def fork_on_request() -> None:
-    """Fork a process for each program that comes, with the ends of its pipes, over the standard input."""
-    import btq_lang.server  # noqa: F401  # what its children are to find imported
+def _fork(place: str, program: str, files: list[int]) -> tuple[socket.socket, int]:
+    """Have a program run with these standard files; where its exit code will be read, and its process."""
+    answers = socket.socket(socket.AF_UNIX)
+    answers.connect(place)
+    socket.send_fds(answers, [program.encode()], files)
+    return answers, _number(answers)
+
+
+def _number(answers: socket.socket) -> int:
+    return int(answers.recv(_DIGITS, socket.MSG_WAITALL))
+
+
+def _place() -> str:
+    """Start the process that forks, if it is not there; it ends when this one does."""
+    if not _found:
+        import tempfile  # not where this module is a relay, which is to start at once
+
+        folder = tempfile.TemporaryDirectory(prefix="btq-")
+        place = os.path.join(folder.name, "fork")
+        with socket.socket(socket.AF_UNIX) as listening:
+            listening.bind(place)
+            listening.listen()
+            command = [sys.executable, __file__, "--listen", str(listening.fileno())]
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, pass_fds=[listening.fileno()])
+        atexit.register(folder.cleanup)
+        atexit.register(process.communicate)
+        _found.append(place)
+    return _found[0]
+
+
+def _listen(listening: socket.socket) -> None:
+    """Fork a process for each program that is sent with its files, until the standard input ends."""
+    import btq_lang.server  # noqa: F401  # what is forked is to find it imported
 
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for those that wait for a server
-    requests = socket.socket(fileno=os.dup(0))
-    while True:
-        program, ends, _, _ = socket.recv_fds(requests, LONGEST_PROGRAM, 4)
-        if not program:
-            return
+    while listening in select.select([listening, 0], [], [])[0]:
+        answers, _ = listening.accept()
         if os.fork() == 0:
+            listening.close()
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            _run_and_wait(program.decode(), ends, requests)
-        for end in ends:
-            os.close(end)
+            _run_and_wait(answers)
+        answers.close()
 
 
-def _run_and_wait(program: str, ends: list[int], requests: socket.socket) -> NoReturn:
-    """Fork a process that runs a program; answer who it is, and write its exit code to the last pipe."""
+def _run_and_wait(answers: socket.socket) -> NoReturn:
+    """Fork a process that runs a program; answer which it is, and its exit code when it has ended."""
+    program, files, _, _ = socket.recv_fds(answers, _LONGEST_PROGRAM, 3)
     child = os.fork()
     if child == 0:
-        requests.close()
-        os.close(ends.pop())
-        for number, end in enumerate(ends):
-            os.dup2(end, number)
-            os.close(end)
+        answers.close()
+        for number, file in enumerate(files):
+            os.dup2(file, number)
+            os.close(file)
         exec(compile(program, "<string>", "exec"), {"__name__": "__main__"})
         sys.exit()
-    for end in ends[:3]:
-        os.close(end)
-    requests.send(str(child).encode())
-    os.write(ends[3], str(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])).encode())
+    for file in (0, *files):
+        os.close(file)
+    answers.send(b"%*d" % (_DIGITS, child))
+    answers.send(b"%*d" % (_DIGITS, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])))
     os._exit(0)
 
 
+def _be_served(place: str, arguments: list[str]) -> int:
+    program = f"import os; os.chdir({os.getcwd()!r})\n{serve(*arguments)}"
+    answers, _ = _fork(place, program, [0, 1, 2])
+    for file in (0, 1):
+        os.close(file)  # who closes the other end is to see the server's alone
+    return _number(answers)
+
+
 if __name__ == "__main__":
-    fork_on_request()
+    if sys.argv[1] == "--listen":
+        _listen(socket.socket(fileno=int(sys.argv[2])))
+    else:
+        sys.exit(_be_served(sys.argv[1], sys.argv[2:]))

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from forked_server import SERVE, Forked
+from forked_server import Forked, serve
 
 SERVER = (sys.executable, "-m", "btq_lang.server", "--stdio")
 
@@ -27,7 +27,7 @@ class Editor:
 
     Args:
         command: what starts the server as an editor does; without one it is forked, which takes a tenth of the time.
-        program: what a forked one runs.
+        program: what a forked one runs, if not the server as it comes.
 
     Attributes:
         settings: what it answers when the server asks for the section `btq`.
@@ -39,11 +39,11 @@ class Editor:
         root: Path,
         *,
         command: tuple[str, ...] | None = None,
-        program: str = SERVE,
+        program: str | None = None,
         capabilities: Message | None = None,
         **more: Any,
     ) -> None:
-        self.process: subprocess.Popen[bytes] | Forked = _started(command) if command else Forked(program)
+        self.process: subprocess.Popen[bytes] | Forked = _started(command) if command else Forked(program or serve())
         self.root = root
         self.count = 0
         self.kept: list[Message] = []

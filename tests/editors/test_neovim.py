@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from forked_server import relay
 from installed import ROOT, there
 
 PLUGIN = ROOT / "editors" / "nvim"
@@ -32,7 +33,7 @@ class Neovim:
         for name, text in files.items():
             (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
             (self.folder / name).write_text(text, encoding="utf-8", newline="")
-        server = f"let g:btq_cmd = {json.dumps([sys.executable, '-m', 'btq_lang.server'])}"
+        server = f"let g:btq_cmd = {json.dumps(relay())}"
         setup = [f"set rtp^={PLUGIN}", server if lsp else "let g:btq_no_lsp = v:true"]
         command = [str(self.program), "--headless", "--clean", *(word for line in setup for word in ("--cmd", line))]
         run = subprocess.run(

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from forked_server import Forked
+from forked_server import Forked, serve
 from lsp_editor import SERVER, Editor, Message
 
 from btq_lang.lsp import editor as btq_editor
@@ -145,7 +145,7 @@ def test_it_lives_as_long_as_the_process_of_its_editor(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("port", ["99999", "-1", "port", "example.invalid:5007", ""])
 def test_what_is_no_port_is_a_usage_error(port: str) -> None:
-    with Forked(f"import sys; from btq_lang.server import main; sys.exit(main(['--tcp={port}']))") as server:
+    with Forked(serve(f"--tcp={port}")) as server:
         said = server.communicate(timeout=60)
     assert (server.returncode, *said) == (2, b"", f"btq-lsp: {no_port(port)}".encode())
 
