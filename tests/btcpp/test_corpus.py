@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from btq_lang.btcpp.importing import Imported, import_xml
 from btq_lang.btcpp.opening import file_of
 from btq_lang.btcpp.reader import read
 from btq_lang.checks import check
+from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.formatter import format_text
 from btq_lang.parser import parse
@@ -47,24 +50,38 @@ def verdicts(shared: Path) -> dict[str, str]:
         return {row["file"]: row["engine_4_10"] for row in csv.DictReader(file, delimiter="\t")}
 
 
-def imported(corpus: dict[str, str], keep_v3: bool) -> dict[str, Imported]:
-    """Those whose document element is root."""
-    done = {name: import_xml(text, keep_v3) for name, text in corpus.items()}
-    refused = {name for name, each in done.items() if not each.is_complete}
-    assert len(refused) == 5
-    assert all([each.rule for each in done[name].diagnostics] == ["xml-root"] for name in refused)
-    return {name: each for name, each in done.items() if name not in refused}
+@pytest.fixture(scope="module")
+def found(corpus: dict[str, str]) -> dict[str, tuple[Diagnostic, ...]]:
+    """What is found in each file."""
+    return {name: check(Workspace({name: file_of(name, text)}, Project()), name) for name, text in corpus.items()}
+
+
+@pytest.fixture(scope="module")
+def imported(corpus: dict[str, str]) -> Callable[[bool], dict[str, Imported]]:
+    """Those whose document element is root, by whether they stay what version 3 reads."""
+
+    @cache
+    def imported(keep_v3: bool) -> dict[str, Imported]:
+        done = {name: import_xml(text, keep_v3) for name, text in corpus.items()}
+        refused = {name for name, each in done.items() if not each.is_complete}
+        assert len(refused) == 5
+        assert all([each.rule for each in done[name].diagnostics] == ["xml-root"] for name in refused)
+        return {name: each for name, each in done.items() if name not in refused}
+
+    return imported
 
 
 @pytest.mark.parametrize("keep_v3", [True, False])
-def test_an_import_has_no_mistake_and_is_formatted(corpus: dict[str, str], keep_v3: bool) -> None:
-    for name, each in imported(corpus, keep_v3).items():
+def test_an_import_has_no_mistake_and_is_formatted(
+    imported: Callable[[bool], dict[str, Imported]], keep_v3: bool
+) -> None:
+    for name, each in imported(keep_v3).items():
         assert parse(each.text).diagnostics == (), name
         assert format_text(each.text).edits == (), name
 
 
-def test_xml_to_btq_to_the_same_xml(corpus: dict[str, str]) -> None:
-    for name, each in imported(corpus, keep_v3=True).items():
+def test_xml_to_btq_to_the_same_xml(corpus: dict[str, str], imported: Callable[[bool], dict[str, Imported]]) -> None:
+    for name, each in imported(True).items():
         workspace = Workspace.of({"main.btq": each.text})
         done = export(workspace, "main.btq", verbatim=True)
         assert (done.problems, done.repairs) == ((), ()), name
@@ -76,10 +93,10 @@ def test_xml_to_btq_to_the_same_xml(corpus: dict[str, str]) -> None:
         assert [change.message for change in each.changes if name not in LOST] == [], name
 
 
-def test_what_was_version_3_can_be_built(corpus: dict[str, str]) -> None:
+def test_what_was_version_3_can_be_built(imported: Callable[[bool], dict[str, Imported]]) -> None:
     """A translated file says that it is for version 4, and translating it again changes nothing."""
     count = 0
-    for name, each in imported(corpus, keep_v3=False).items():
+    for name, each in imported(False).items():
         if not any("BTCPP_format" in change.message for change in each.changes):
             continue
         count += 1
@@ -90,12 +107,13 @@ def test_what_was_version_3_can_be_built(corpus: dict[str, str]) -> None:
     assert count > 100
 
 
-def test_diagnostics_point_at_the_words_of_the_xml(corpus: dict[str, str]) -> None:
+def test_diagnostics_point_at_the_words_of_the_xml(
+    corpus: dict[str, str], found: dict[str, tuple[Diagnostic, ...]]
+) -> None:
     """Every place is a place of the XML, and the commonest rules point at the very word they speak of."""
     pointed = 0
     for name, text in corpus.items():
-        workspace = Workspace({name: file_of(name, text)}, Project())
-        for each in check(workspace, name):
+        for each in found[name]:
             assert 0 <= each.span.start <= each.span.end <= len(text), name
             assert each.fixes == ()
             if each.rule in ("unknown-node", "unknown-tree", "forbidden-name", "not-an-engine-node"):
@@ -105,15 +123,14 @@ def test_diagnostics_point_at_the_words_of_the_xml(corpus: dict[str, str]) -> No
     assert pointed > 200
 
 
-def test_verdicts_as_the_engine_has_them(corpus: dict[str, str], verdicts: dict[str, str]) -> None:
+def test_verdicts_as_the_engine_has_them(found: dict[str, tuple[Diagnostic, ...]], verdicts: dict[str, str]) -> None:
     """No error in what the engine loads; an error in what it refuses.
 
     The files were taken out of their folders, so what they include is not there and says nothing here.
     """
     cried_wolf, passed = [], []
-    for name, text in corpus.items():
-        workspace = Workspace({name: file_of(name, text)}, Project())
-        errors = {each.rule for each in check(workspace, name) if each.effective_severity is Severity.ERROR}
+    for name, diagnostics in found.items():
+        errors = {each.rule for each in diagnostics if each.effective_severity is Severity.ERROR}
         if verdicts[name] == "OK" and errors - {"missing-include"}:
             cried_wolf.append(name)
         elif verdicts[name] != "OK" and not errors:
