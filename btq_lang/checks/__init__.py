@@ -258,7 +258,17 @@ def check(workspace: Workspace, path: str) -> tuple[Diagnostic, ...]:
     Raises:
         KeyError: there is no such file.
     """
-    return findings(Store(workspace), path).diagnostics
+    (found,) = check_each(workspace, (path,))
+    return found
+
+
+def check_each(workspace: Workspace, paths: Iterable[str]) -> Iterator[tuple[Diagnostic, ...]]:
+    """The same of many files, which share what they ask of each other."""
+    store = Store(workspace)
+    for path in paths:
+        yield findings(store, path).diagnostics
+        store.sweep()
+    store.sweep(always=True)  # answers and what they rest on hold each other, and so the workspace
 
 
 def findings(store: Store[Workspace], path: str) -> Findings:

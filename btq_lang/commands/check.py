@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.checks import check
+from btq_lang.checks import check, check_each
 from btq_lang.checks.includes import is_told_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
@@ -104,7 +104,7 @@ def _found(group: Group, jobs: int) -> Iterator[tuple[str, tuple[Diagnostic, ...
 
             results = check_all(group.workspace, group.given, workers)
         else:
-            results = (check(group.workspace, path) for path in group.given)
+            results = check_each(group.workspace, group.given)
         for path, found in zip(group.given, results, strict=True):
             progress.step()
             yield path, found
@@ -125,7 +125,8 @@ def _fix(
             path for path in group.given if path not in group.damaged and group.workspace.files[path].origin is None
         )
         for _ in range(_ROUNDS):
-            found = {path: tuple(d for d in check(workspace, path) if _is_wanted(d, options)) for path in writable}
+            each = zip(writable, check_each(workspace, writable), strict=True)
+            found = {path: tuple(d for d in of_file if _is_wanted(d, options)) for path, of_file in each}
             texts, count = fixed(workspace, found)
             if not count:
                 break

@@ -9,15 +9,16 @@ import multiprocessing
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 
-from btq_lang.checks import check
+from btq_lang.checks import findings
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.workspace.config import Project
 from btq_lang.workspace.file import File
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 _CHUNK = 20  # files sent to a process at a time
 
-_workspace: Workspace | None = None
+_store: Store[Workspace] | None = None
 
 
 def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Iterator[tuple[Diagnostic, ...]]:
@@ -29,10 +30,12 @@ def check_all(workspace: Workspace, paths: tuple[str, ...], workers: int) -> Ite
 
 
 def _begin(files: Mapping[str, File], project: Project) -> None:
-    global _workspace
-    _workspace = Workspace(files, project)
+    global _store
+    _store = Store(Workspace(files, project))
 
 
 def _check(path: str) -> tuple[Diagnostic, ...]:
-    assert _workspace is not None, "every process begins with _begin"
-    return check(_workspace, path)
+    assert _store is not None, "every process begins with _begin"
+    found = findings(_store, path).diagnostics
+    _store.sweep()
+    return found

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
-from btq_lang.checks import check
+from btq_lang.checks import check_each
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.trace import write
@@ -106,4 +106,5 @@ def built_ways(
 def _errors(workspace: Workspace, given: Sequence[str]) -> list[tuple[str, int]]:
     """How many errors each file has, those that are included too."""
     paths = dict.fromkeys(path for each in given for path in workspace.closure(each))
-    return [(path, sum(each.effective_severity is Severity.ERROR for each in check(workspace, path))) for path in paths]
+    found = zip(paths, check_each(workspace, paths), strict=True)
+    return [(path, sum(each.effective_severity is Severity.ERROR for each in of_file)) for path, of_file in found]
