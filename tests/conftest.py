@@ -9,6 +9,7 @@ import pytest
 from build_command import btq as btq  # a fixture of every folder
 from damage_seed import CASES, seed_of
 from hypothesis import settings
+from strict_queries import strict_queries as strict_queries  # a fixture of some tests
 
 # Without a deadline: how long one example takes on a busy machine says nothing about the code.  The usual run invents
 # the same inputs every time, so that what failed fails again; the thorough one looks for new ones.

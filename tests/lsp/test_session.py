@@ -34,6 +34,19 @@ BehaviorTree Carry
 REQUIREMENTS = """QualityReq rq1 : safety "Slowly"
     takes at most 3 s
 """
+XML = """<root BTCPP_format="4">
+  <BehaviorTree ID="Nav">
+    <Sequence><Pick from="{a}"/><SubTree ID="Carry"/><AlwaysSuccess name=""/></Sequence>
+  </BehaviorTree>
+</root>
+"""
+PROJECTS = (
+    "",
+    'include-paths = ["lib"]\n',
+    'engine = "4.6"\n',
+    'ignore = ["unknown-node", "missing-include"]\n',
+    'select = ["unused-tree", "unknown-requirement", "include-with-errors"]\n',
+)
 OTHER = "BehaviorTree Alone\n    Pick\n"
 FILES = {"main.btq": MAIN, "skills.btq": SKILLS, "requirements.btq": REQUIREMENTS, "other.btq": OTHER}
 PIECES = (
@@ -72,6 +85,7 @@ def session_of(folder: Path, texts: dict[str, str]) -> Session:
     return session
 
 
+@pytest.mark.usefixtures("strict_queries")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btq_lang.lsp.session._MOST_IDLE", 0 if seed % 2 else 100_000)
@@ -113,6 +127,41 @@ def test_what_is_told_is_what_a_new_session_finds(folder: Path, seed: int, monke
             assert patched(known.get(path, coloured).data, delta(known.get(path, coloured), coloured)) == coloured.data
             if chance.random() < 0.5:  # an editor asks for what several edits have changed, in several places
                 known[path] = coloured
+
+
+@pytest.mark.usefixtures("strict_queries")
+@pytest.mark.parametrize("seed", range(4))
+def test_files_come_and_go_and_the_project_changes(folder: Path, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.workspace.queries._FEW", 0 if seed % 2 else 10_000)
+    chance = random.Random(seed)
+    (folder / "lib").mkdir()
+    texts = {f"{folder}/main.btq": MAIN, f"{folder}/skills.btq": SKILLS}
+    session = session_of(folder, texts)
+    places = [folder / name for name in (*FILES, "lib/skills.btq", "lib/requirements.btq", "nav.xml")]
+    for step in range(60):
+        place, change = chance.choice(places), chance.randrange(6)
+        if change == 0:
+            place.write_text(XML if place.suffix == ".xml" else chance.choice([*FILES.values()]), encoding="utf-8")
+        elif change == 1:
+            place.unlink(missing_ok=True)
+        elif change == 2 and place.suffix == ".btq" and place.exists():
+            place.rename(chance.choice(places[:-1]))
+        elif change == 3:
+            (folder / "btq.toml").write_text(chance.choice(PROJECTS), encoding="utf-8")
+        else:
+            path = chance.choice(sorted(texts))
+            at = chance.randrange(len(texts[path]) + 1)
+            texts[path] = texts[path][:at] + chance.choice((*PIECES, 'include "nav.xml"\n')) + texts[path][at:]
+            if chance.random() < 0.2:
+                texts[path] = MAIN
+            session.edit(path, texts[path])
+        if change < 4:
+            session.reload()
+        new = session_of(folder, texts)
+        assert session.paths() == new.paths()
+        for path in chance.sample(new.paths(), chance.randrange(len(new.paths()) + 1)):
+            assert session.diagnostics(path) == new.diagnostics(path), (seed, step, path, texts)
+        session.let_go()
 
 
 def shown_by(session: Session, path: str, convert: Converter) -> str:
@@ -252,7 +301,8 @@ def test_an_edit_of_one_file_names_those_that_it_may_break(folder: Path) -> None
     assert session.close(skills) == (skills,)
 
 
-def test_what_edits_replace_goes_at_once(folder: Path) -> None:
+def test_what_edits_replace_goes_at_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btq_lang.workspace.queries._FEW", 0)
     main = f"{folder}/main.btq"
     session = session_of(folder, {})
 
@@ -313,8 +363,8 @@ def test_a_check_after_all_was_read_again_asks_nothing_again(folder: Path) -> No
     path = str(folder / "main.btq")
     session.edit(path, MAIN)
     found = session.diagnostics(path)
-    kept = [id(found) for found, *_ in session._answers[path].told.values()]
+    kept = [each for each, _ in session.findings(path).of_items]
     session.reload()
     assert found != ()
     assert session.diagnostics(path) == found
-    assert [id(found) for found, *_ in session._answers[path].told.values()] == kept
+    assert [id(each) for each, _ in session.findings(path).of_items] == [*map(id, kept)]

@@ -1,0 +1,47 @@
+"""A fixture: while a query is computed, nothing of the workspace is read but through the inputs of the store."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any
+
+import pytest
+
+from btq_lang.checks import lookups
+from btq_lang.workspace.file import File
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Scope, Workspace
+
+
+@pytest.fixture
+def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a query reads otherwise raises; only one that has read `lookups.everything` may read what it likes."""
+    may_read: list[bool] = []  # each query that is open, and each input that is read
+    compute: Callable[..., object] = Store._compute
+    read: Callable[..., object] = Store.read
+
+    def computed(store: Store[Workspace], answer: object) -> object:
+        may_read.append(False)
+        try:
+            return compute(store, answer)
+        finally:
+            may_read.pop()
+
+    def reading(store: Store[Workspace], topic: Hashable, of: Callable[..., object], *key: Hashable) -> object:
+        may_read.append(True)
+        try:
+            return read(store, topic, of, *key)
+        finally:
+            may_read.pop()
+            if of is lookups.everything and may_read:
+                may_read[-1] = True
+
+    def attribute(owner: object, name: str) -> Any:
+        if may_read and not may_read[-1] and not name.startswith("__"):
+            raise AssertionError(f"a query reads `{name}` of a {type(owner).__name__} past the store")
+        return object.__getattribute__(owner, name)
+
+    monkeypatch.setattr(Store, "_compute", computed)
+    monkeypatch.setattr(Store, "read", reading)
+    for kind in (Workspace, File, Scope):
+        monkeypatch.setattr(kind, "__getattribute__", attribute)
