@@ -14,17 +14,15 @@ from btq_lang.btcpp.constants import fitting
 from btq_lang.btcpp.descriptions import description, said_elsewhere
 from btq_lang.btcpp.document import Attribute, Element, escape
 from btq_lang.btcpp.source import Source
-from btq_lang.catalog.kinds import CATEGORIES, at_least
+from btq_lang.catalog.kinds import CATEGORIES
 from btq_lang.catalog.names import is_port_name, is_xml_name, legal_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS, PLACEHOLDERS, NodeKind, xml_tag
+from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, UNIQUE_SUBTREES
 from btq_lang.syntax.tree import Entry, Node, Tree, Verbatim, Word
 from btq_lang.workspace.comments import NO_COMMENTS
 from btq_lang.workspace.custom_nodes import likely_category
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.port_types import is_number
-
-_UNIQUE_SINCE: Final = "4.8"  # 4.8.4 brought unique names of SubTrees
-_NO_EXPLICIT_SINCE: Final = "4.7"  # directly in a ReactiveSequence
 
 
 class Trees:
@@ -137,7 +135,7 @@ class Trees:
         if parent.tag != "ReactiveSequence" or source.verbatim or word is None:
             return Element(category, attributes)
         if not is_xml_name(name) or model_name_problem(name, source.target) is not None:
-            if at_least(source.target, _NO_EXPLICIT_SINCE):
+            if NO_EXPLICIT_CHILD.holds(source.target):
                 self._refused_here(entry, word)
             return Element(category, attributes)
         message = f"`{category} {name}` is written in the short form: here the engine refuses the explicit one"
@@ -152,7 +150,7 @@ class Trees:
         name = node.head.text
         if source.verbatim:
             source.problem(entry, node.head, f"`{name}` cannot be an XML tag: write `{category} {node.head.raw}`")
-        elif parent.tag == "ReactiveSequence" and at_least(source.target, _NO_EXPLICIT_SINCE):
+        elif parent.tag == "ReactiveSequence" and NO_EXPLICIT_CHILD.holds(source.target):
             self._refused_here(entry, node.head)
         else:
             source.repair(entry, node.head, f"`{name}` is written as `{category} {name}`: it cannot be an XML tag")
@@ -197,7 +195,7 @@ class Trees:
                 attributes[in_brackets] = Attribute("ID", raw)
             if not source.verbatim:
                 attributes = [self._constant(entry, node, name.text, each) for each in attributes]
-        if not source.verbatim and node.name is not None and at_least(source.target, _UNIQUE_SINCE):
+        if not source.verbatim and node.name is not None and UNIQUE_SUBTREES.holds(source.target):
             return self._with_unique_name(entry, node.name, attributes)
         return attributes
 

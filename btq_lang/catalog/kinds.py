@@ -1,4 +1,4 @@
-"""What the catalog says of a node kind and of a port: the records, the categories, and the engine's versions.
+"""What the catalog says of a node kind and of a port: the records and the categories.
 
 One invariant: a record describes BehaviorTree.CPP's newest version; what older ones do otherwise is said beside it
 (`since`, `type_before`).  It knows no particular node: those are rows of `engine_nodes`.
@@ -6,15 +6,9 @@ One invariant: a record describes BehaviorTree.CPP's newest version; what older 
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Final, Literal, TypeAlias
 
 from btq_lang.util.record import Record
-
-# The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
-VERSIONS: Final = ("4.6", "4.8", "4.10")
-DEFAULT_VERSION: Final = "4.10"
-
 
 # The engine's five categories, as the word in a file and the tag of the explicit XML form have them.
 Category: TypeAlias = "Literal['Action', 'Condition', 'Control', 'Decorator', 'SubTree']"
@@ -96,13 +90,3 @@ class NodeKind(Record):
             if port.name == name:
                 return port
         return None
-
-
-@cache
-def at_least(version: str, since: str) -> bool:
-    """Is `version` the version `since` or a later one?  Both are numbers with points; a `4.8` is older than 4.10."""
-    return _numbers(version) >= _numbers(since)
-
-
-def _numbers(version: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in version.split("."))

@@ -12,7 +12,8 @@ import re
 from functools import lru_cache
 from typing import Final, Literal
 
-from btq_lang.catalog.kinds import DEFAULT_VERSION, RESULT, at_least
+from btq_lang.catalog.kinds import RESULT
+from btq_lang.catalog.versions import BOOL_LISTS, DEFAULT_VERSION, JSON_LISTS, STRICT_NUMBERS
 from btq_lang.util.record import Record
 
 
@@ -106,7 +107,7 @@ def _check_real(plain: str, text: str, version: str) -> LiteralProblem | None:
     """std::from_chars since 4.9; before, std::stod, which takes blanks and a `+` in front, and hexadecimal digits."""
     if len(text) < 16 and text.isascii() and text.replace(".", "", 1).isdecimal():
         return None  # as nearly all are
-    number = (_REAL if at_least(version, "4.9") else _OLD_REAL).match(text)
+    number = (_REAL if STRICT_NUMBERS.holds(version) else _OLD_REAL).match(text)
     if number is None:
         return LiteralProblem("refused", _bare("a number", text))
     value = _value(number[0])
@@ -133,9 +134,9 @@ def _rest(text: str, end: int, expected: str) -> LiteralProblem | None:
 def _check_list(port_type: str, item: str, text: str, version: str) -> LiteralProblem | None:
     """Items between semicolons, the last one perhaps followed by one; since 4.9 also `json:[1, 2]`."""
     is_queue = "deque" in port_type
-    if item == "bool" and not is_queue and not at_least(version, "4.7.3"):
+    if item == "bool" and not is_queue and not BOOL_LISTS.holds(version):
         return LiteralProblem("refused", "a blackboard entry (4.6 reads no list of bool from text)")
-    if text.startswith("json:") and not is_queue and at_least(version, "4.9"):
+    if text.startswith("json:") and not is_queue and JSON_LISTS.holds(version):
         return _check_json(item, text[len("json:") :])
     items = text.split(";")
     if items[-1] == "":

@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Final
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
-from btq_lang.catalog.kinds import DEFAULT_VERSION, at_least
+from btq_lang.catalog.versions import DEFAULT_VERSION, NAME_RULES
 
 _KEPT: Final = 1_000  # the answers about so many names: a mission says the same ones again and again
 
@@ -23,7 +23,7 @@ def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 
     The ID of the explicit form, `<Action ID="my node"/>`, is not checked by any version.
     """
-    if not at_least(version, _RULES_SINCE):
+    if not NAME_RULES.holds(version):
         return None
     if name == "":
         return "it is empty"
@@ -34,7 +34,7 @@ def model_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 
 def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the name of a port in the model of a SubTree; None: it does not."""
-    if not at_least(version, _RULES_SINCE):
+    if not NAME_RULES.holds(version):
         return None
     if name == "":
         return "it is empty"
@@ -46,7 +46,7 @@ def port_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
 @lru_cache(_KEPT)
 def instance_name_problem(name: str, version: str = DEFAULT_VERSION) -> str | None:
     """Why the engine refuses the `name` of a node; None: it does not.  Only control characters are refused."""
-    if _UNPRINTABLE.isdisjoint(name) or not at_least(version, _RULES_SINCE):
+    if _UNPRINTABLE.isdisjoint(name) or not NAME_RULES.holds(version):
         return None
     control = next(character for character in name if character in _UNPRINTABLE)
     return f"it contains the control character {_code(control)}"
@@ -57,7 +57,7 @@ def is_port_name(name: str, version: str = DEFAULT_VERSION) -> bool:
     """Does the engine take an attribute of that name for a port?  If not, it keeps it and nothing reads it."""
     if name[:1] not in _LETTERS or name in ("name", "ID"):
         return False
-    return not at_least(version, _RULES_SINCE) or _forbidden_character(name) is None
+    return not NAME_RULES.holds(version) or _forbidden_character(name) is None
 
 
 def is_xml_name(name: str) -> bool:
@@ -104,8 +104,6 @@ def _code(character: str) -> str:
     return f"U+{ord(character):04X}"
 
 
-# 4.8.4, the last of the 4.8 line, brought the rules; 4.6 has none but IsAllowedPortName.
-_RULES_SINCE: Final = "4.8"
 _FORBIDDEN: Final = " <>&\"'/\\:*?|."
 _CONTROLS: Final = "".join(map(chr, range(32))) + "\x7f"
 _REFUSED: Final = frozenset(_FORBIDDEN + _CONTROLS)

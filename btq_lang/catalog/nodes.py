@@ -10,32 +10,21 @@ from collections.abc import Mapping
 from typing import Final
 
 from btq_lang.catalog.engine_nodes import ENGINE_NODES
-from btq_lang.catalog.kinds import (
-    DEFAULT_VERSION,
-    VERSIONS,
-    Category,
-    Direction,
-    Execution,
-    NodeKind,
-    PortKind,
-    at_least,
-)
+from btq_lang.catalog.kinds import Category, Direction, Execution, NodeKind, PortKind
+from btq_lang.catalog.versions import at_least
 from btq_lang.catalog.words import KNOWN_WORDS, OLD_PORTS, PLACEHOLDERS, KnownWord
 
 __all__ = [
     "BUILTINS",
-    "DEFAULT_VERSION",
     "KNOWN_WORDS",
     "OLD_PORTS",
     "PLACEHOLDERS",
-    "VERSIONS",
     "Category",
     "Direction",
     "Execution",
     "KnownWord",
     "NodeKind",
     "PortKind",
-    "at_least",
     "available",
     "lookup",
     "port_type",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_port_name
+from btq_lang.catalog.versions import TYPED_CONSTANTS
 from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
@@ -17,13 +17,10 @@ from btq_lang.workspace.port_types import is_number
 if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
-# Before, the engine kept the text and whoever read it converted it.
-_TYPED_SINCE = "4.9.1"
-
 
 def number_for_text(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A number that a SubTree gives to a port, or that is a port's default, where a node below takes a text."""
-    if not at_least(view.project.target, _TYPED_SINCE):
+    if not TYPED_CONSTANTS.holds(view.project.target):
         return
     for seen in view.seen.subtrees:
         if seen.id is None:
@@ -52,7 +49,7 @@ def _told(value: Word, met: tuple[Place, str, str], severity: Severity | None) -
     place, name, node = met
     port = f"`{name}` of `{node}`"
     message = (
-        f"BehaviorTree.CPP {_TYPED_SINCE} and later refuse to load this tree: `{value.text}` is a number, "
+        f"BehaviorTree.CPP {TYPED_CONSTANTS.since} and later refuse to load this tree: `{value.text}` is a number, "
         f"{port} a string"
     )
     return Diagnostic(

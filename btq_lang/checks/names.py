@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import instance_name_problem, legal_name, model_name_problem, port_name_problem
+from btq_lang.catalog.versions import UNIQUE_SUBTREES
 from btq_lang.checks import lookups
 from btq_lang.checks.kinds import likely_category, written
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from btq_lang.checks.view import View
 
 _NO_NAMESPACES = ("it does not support XML namespaces: the prefix is part of the name",)
-_UNIQUE_SINCE = "4.8"  # 4.8.4 brought both the rules for names and unique names of SubTrees
 
 
 def forbidden_name(view: View, entry: Entry) -> Iterator[Diagnostic]:
@@ -92,7 +91,7 @@ def _is_prefixed(name: str) -> bool:
 def _of_instance(view: View, entry: Entry, seen: SeenNode, label: Word, version: str) -> Iterator[Diagnostic]:
     if reason := instance_name_problem(label.text, version):
         yield _refused("instance name", label, reason)
-    if label.text == "" and seen.is_subtree and at_least(version, _UNIQUE_SINCE) and view.is_main:
+    if label.text == "" and seen.is_subtree and UNIQUE_SUBTREES.holds(version) and view.is_main:
         refused = _refused("instance name", label, "it is empty, like the name of the main tree")
         note = "`btq build` leaves it out"
         yield refused if view.is_xml else replace(refused, severity=Severity.WARNING, notes=(note,))

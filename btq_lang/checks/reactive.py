@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.names import is_xml_name, model_name_problem
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import NO_EXPLICIT_CHILD, ONE_ASYNC_SEQUENCE
 from btq_lang.checks.results import result
 from btq_lang.checks.statuses import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btq_lang.checks.view import View, called
@@ -59,7 +59,7 @@ def explicit_in_reactive(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """
     target = view.project.target
     nodes = view.seen
-    if "ReactiveSequence" not in nodes.by_tag or not at_least(target, "4.8"):
+    if "ReactiveSequence" not in nodes.by_tag or not NO_EXPLICIT_CHILD.holds(target):
         return
     for seen in nodes.all:
         parent, category, name = seen.parent, seen.node.category, seen.id
@@ -104,7 +104,8 @@ def condition_without_recheck(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def _second_async_sequence(seen: SeenNode, version: str) -> Diagnostic | None:
     """The engine looks for these tags alone, and for children alone."""
     found = [child for child in seen.node.nodes if child.kind is not None and child.kind.text in _ASYNC_SEQUENCE]
-    if seen.kind is None or seen.kind.tag != "ReactiveSequence" or len(found) < 2 or not at_least(version, "4.7"):
+    is_reactive = seen.kind is not None and seen.kind.tag == "ReactiveSequence"
+    if not is_reactive or len(found) < 2 or not ONE_ASYNC_SEQUENCE.holds(version):
         return None
     return Diagnostic(
         "reactive-multiple-async",

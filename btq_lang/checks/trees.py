@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from btq_lang.catalog.kinds import at_least
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import DEEP_TREES
 from btq_lang.checks import calls, lookups
 from btq_lang.checks.includes import NOWHERE, include_fix
 from btq_lang.checks.kinds import include_place, is_torn, written
@@ -57,7 +57,7 @@ def unknown_tree(view: View, entry: Entry) -> Iterator[Diagnostic]:
 def nested_too_deep(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A node further down than 4.6 reads; what no version reads the parser tells."""
     nodes, project = view.nodes, view.project
-    if len(nodes) <= _DEEPEST_OF_4_6 or at_least(project.engines[0], "4.7"):
+    if len(nodes) <= _DEEPEST_OF_4_6 or DEEP_TREES.holds(project.engines[0]):
         return
     levels: dict[int, int] = {}
     for seen in nodes:

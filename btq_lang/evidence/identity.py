@@ -13,7 +13,7 @@ from btq_lang.btcpp.export import is_mission
 from btq_lang.btcpp.outputs import as_xml
 from btq_lang.btcpp.side_file import Built, RunningTree
 from btq_lang.btcpp.wrappers import MARK
-from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.evidence.model import LoggedTree
 from btq_lang.requirements.resolve import requirements
 from btq_lang.util.record import Record, replace

@@ -23,7 +23,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from btq_lang.catalog.kinds import VERSIONS, at_least
+from btq_lang.catalog.versions import VERSIONS, at_least
 from btq_lang.diagnostics.rules import RULES, UNREADABLE, Severity
 from btq_lang.util.record import Record, replace
 from btq_lang.util.spelling import did_you_mean, near

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btq_lang.catalog.literals import check_literal, is_pointer
-from btq_lang.catalog.nodes import BUILTINS, VERSIONS, port_type
+from btq_lang.catalog.nodes import BUILTINS, port_type
+from btq_lang.catalog.versions import VERSIONS
 
 INT_RANGE = "expected an integer from -2147483648 to 2147483647"
 VECTOR = "std::vector<int, std::allocator<int> >"

@@ -13,7 +13,8 @@ from btq_lang.catalog.names import (
     model_name_problem,
     port_name_problem,
 )
-from btq_lang.catalog.nodes import BUILTINS, VERSIONS
+from btq_lang.catalog.nodes import BUILTINS
+from btq_lang.catalog.versions import VERSIONS
 
 
 @pytest.mark.parametrize(

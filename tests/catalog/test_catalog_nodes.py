@@ -11,13 +11,10 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.kinds import RESULT
 from btq_lang.catalog.nodes import (
     BUILTINS,
-    DEFAULT_VERSION,
     KNOWN_WORDS,
     OLD_PORTS,
     PLACEHOLDERS,
-    VERSIONS,
     NodeKind,
-    at_least,
     available,
     lookup,
     port_type,
@@ -25,6 +22,7 @@ from btq_lang.catalog.nodes import (
     xml_tag,
 )
 from btq_lang.catalog.units import parse_unit
+from btq_lang.catalog.versions import DEFAULT_VERSION, VERSIONS, at_least
 from btq_lang.syntax.tokens import SYMBOLS
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 from check_asserts import assert_clean, assert_fix, assert_problems, problems
 
-from btq_lang.catalog.kinds import VERSIONS
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.workspace.config import Project
 
 PICK = "BehaviorTree Pick\n    X\n"

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btq_lang.catalog.kinds import VERSIONS
 from btq_lang.catalog.qualities import DEFAULT_EDITION, EDITIONS
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import RULES, Severity
 from btq_lang.util.text import LineIndex, Span

@@ -13,7 +13,7 @@ what they hold.
     check.py     all problems of a script for given versions
 """
 
-from btq_lang.syntax.script.check import ALL_VERSIONS, check_script
+from btq_lang.syntax.script.check import check_script
 from btq_lang.syntax.script.parser import MAX_DEPTH, parse_script
 from btq_lang.syntax.script.tree import (
     Assign,
@@ -35,7 +35,6 @@ from btq_lang.syntax.script.tree import (
 )
 
 __all__ = [
-    "ALL_VERSIONS",
     "MAX_DEPTH",
     "Assign",
     "Binary",

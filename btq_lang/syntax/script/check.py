@@ -6,8 +6,7 @@ else; in particular no key is known here, so that a key that nobody writes is an
 
 from __future__ import annotations
 
-from typing import Final
-
+from btq_lang.catalog.versions import VERSIONS
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.script import mistakes
@@ -15,11 +14,9 @@ from btq_lang.syntax.script.tree import Assign, Expression, Number, Script, Tern
 from btq_lang.syntax.script.versions import version_problems
 from btq_lang.util.text import Span
 
-ALL_VERSIONS: Final = ("4.6", "4.8", "4.10")
-
 
 def check_script(
-    script: Script, *, versions: tuple[str, ...] = ALL_VERSIONS, expects_value: bool = False
+    script: Script, *, versions: tuple[str, ...] = VERSIONS, expects_value: bool = False
 ) -> tuple[Diagnostic, ...]:
     """What is wrong with a script, in the order of the text; spans and fixes count from its start.
 

@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from itertools import combinations, pairwise, zip_longest
 from typing import Final, TypeGuard
 
+from btq_lang.catalog.versions import NEW_SCRIPTS, SCRIPT_RANKS
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.script.tree import (
@@ -59,10 +60,10 @@ class _Targets(Record):
 
 
 def _targets(versions: Iterable[str]) -> _Targets:
-    numbered = [(tuple(int(part) for part in version.split(".")[:2]), version) for version in versions]
-    early = tuple(version for number, version in numbered if number < (4, 7))
-    middle = tuple(version for number, version in numbered if (4, 7) <= number < (4, 9))
-    return _Targets(early, middle, early + middle, len(numbered))
+    given = tuple(versions)
+    old = tuple(version for version in given if not NEW_SCRIPTS.holds(version))
+    early = tuple(version for version in old if not SCRIPT_RANKS.holds(version))
+    return _Targets(early, tuple(version for version in old if SCRIPT_RANKS.holds(version)), old, len(given))
 
 
 def _node(node: Expression, parent: Expression | None, text: str, targets: _Targets) -> Iterable[Diagnostic]:

@@ -1,0 +1,55 @@
+"""The versions of BehaviorTree.CPP that missions are written for, and what changed between them: one row a change.
+
+One invariant: what a version does otherwise than another is asked of a row here, or of a row of `engine_nodes`, which
+says since when there is a node; nothing else compares versions.  Read in the sources of the releases, and run.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Final
+
+from btq_lang.util.record import Record
+
+# The lines of the engine that ROS distributions ship; each stands for its last release (4.6.2, 4.8.4, 4.10.0).
+VERSIONS: Final = ("4.6", "4.8", "4.10")
+DEFAULT_VERSION: Final = "4.10"
+
+
+class Change(Record):
+    """What one version does for the first time, and all later ones.
+
+    Attributes:
+        since: the version.
+        what: what it does.
+    """
+
+    since: str
+    what: str
+
+    def holds(self, version: str) -> bool:
+        """Whether a version does it."""
+        return at_least(version, self.since)
+
+
+DEEP_TREES: Final = Change("4.7", "reads trees of any depth; before, no node may have 97 others above it")
+ONE_ASYNC_SEQUENCE: Final = Change("4.7", "refuses a second AsyncSequence in a ReactiveSequence")
+NO_EXPLICIT_CHILD: Final = Change("4.7", "refuses the explicit form of a node directly in a ReactiveSequence")
+SCRIPT_RANKS: Final = Change("4.7", "ranks the operators of scripts otherwise than 4.6 does")
+BOOL_LISTS: Final = Change("4.7.3", "reads a list of bool from text")
+NAME_RULES: Final = Change("4.8", "refuses names of trees, nodes and ports with characters that it forbids")
+UNIQUE_SUBTREES: Final = Change("4.8", "refuses two SubTrees of one name in one tree")
+NEW_SCRIPTS: Final = Change("4.9", "reads scripts by a grammar of its own, which knows no groups that cannot be mixed")
+STRICT_NUMBERS: Final = Change("4.9", "reads numbers as std::from_chars does: no blank, no `+`, no hexadecimal digits")
+JSON_LISTS: Final = Change("4.9", "reads a list from `json:[1, 2]`")
+TYPED_CONSTANTS: Final = Change("4.9.1", "keeps a number that a SubTree gives to a port as a number")
+
+
+@cache
+def at_least(version: str, since: str) -> bool:
+    """Is `version` the version `since` or a later one?  Both are numbers with points; a `4.8` is older than 4.10."""
+    return _numbers(version) >= _numbers(since)
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in version.split("."))
