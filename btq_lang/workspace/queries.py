@@ -31,6 +31,7 @@ T = TypeVar("T")
 _CLEAN, _SUSPECT, _STALE = range(3)
 _FEW: Final = 10_000  # answers: to sort out fewer is not worth the time
 _DEEPEST: Final = 40  # queries that ask for each other; Python allows some twenty calls for each
+_NEAR: Final = 3  # levels of questions
 _ON_CIRCLE: dict[Callable[..., Any], object] = {}
 
 
@@ -192,6 +193,8 @@ class Store(Generic[State]):
 
     def _settle(self, answer: _Answer) -> bool:
         """Bring an answer up to date, unless it is part of a circle that is open: whether it is."""
+        if _is_as_before(answer, _NEAR):
+            return False
         if answer.low is None:
             if self._path:
                 self._open(answer)
@@ -302,6 +305,17 @@ class Store(Generic[State]):
                 if asker.state == _CLEAN:
                     asker.state = _SUSPECT
                     waiting.append(asker)
+
+
+def _is_as_before(answer: _Answer, levels: int) -> bool:
+    """Whether a suspect answer stays, seen from what is near: most do, and to open each takes longer."""
+    if answer.state != _SUSPECT or answer.is_circular or answer.low is not None:
+        return False
+    for each in answer.asked:
+        if each.state != _CLEAN and not (levels and _is_as_before(each, levels - 1)):
+            return False
+    answer.state = _CLEAN
+    return True
 
 
 def _declared(answer: _Answer) -> Any:

@@ -201,7 +201,7 @@ def test_what_nothing_rests_on_is_forgotten() -> None:
     store.pin(total, 0)
     for node in graph.edges:
         store.ask(total, node)
-    store.sweep()
+    store.sweep(always=True)
     RUNS.clear()
     for node in graph.edges:
         store.ask(total, node)
