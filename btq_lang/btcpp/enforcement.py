@@ -213,7 +213,7 @@ class _Planner:
         self._others: Final = others
         self._keys: Final = Keys()
         is_shared = path in workspace.included_files
-        self._budgets: Final = budgets or Budgets(found)
+        self._budgets: Final = budgets or Budgets(found.store, found.viewpoint)
         looks = _Looks(found, self._budgets, _begins(workspace, found, path, files))
         self._judge: Final = Judge(looks, files=files, is_shared=is_shared)
 
@@ -239,7 +239,8 @@ class _Planner:
         except Elsewhere as elsewhere:
             bundled = self._bundled.held(applied, claim)
             is_helped = bundled.way == "enforced"
-            return replace(held, why=where_else(self._workspace, elsewhere.node) if is_helped else bundled.why)
+            is_xml = self._workspace.files[elsewhere.node.path].origin is not None
+            return replace(held, why=where_else(elsewhere.node, is_xml=is_xml) if is_helped else bundled.why)
         except NotEnforced as reason:
             return replace(held, why=str(reason))
         return known

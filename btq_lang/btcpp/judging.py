@@ -16,10 +16,9 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import Applied, Claim, Mission, Requirement, Signal, SourceNode, Span, Target
 
 if TYPE_CHECKING:
-    from btq_lang.workspace.workspace import Workspace
 
     class Looks(Protocol):
-        """How to look at nodes and at the mission; who keeps what was found has a way of their own."""
+        """How to look at nodes and at the mission."""
 
         def waits(self, node: SourceNode) -> bool:
             """Whether a node can be RUNNING."""
@@ -132,9 +131,9 @@ class Judge:
         return made, first
 
 
-def where_else(workspace: Workspace, node: SourceNode) -> str:
+def where_else(node: SourceNode, *, is_xml: bool) -> str:
     """Why nothing is put around a node of another file where each file is written by itself."""
-    if workspace.files[node.path].origin is not None:
+    if is_xml:
         return f"{node.shown} is in an XML file, which the build does not change; --bundle enforces it"
     return f"{node.shown} is in an included file, which other missions may include; --bundle enforces it"
 

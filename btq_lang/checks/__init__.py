@@ -7,7 +7,7 @@ which function looks at which items.  What a check asks, it asks its view, and s
 how findings are printed.
 
     view.py, seen.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
-    lookups.py, resolving.py   what it looks up in the files, and the requirements there
+    lookups.py   what it looks up in the files
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
@@ -49,7 +49,6 @@ from btq_lang.checks import (
     reactive,
     repeated,
     requirements,
-    resolving,
     scripts,
     trees,
     unreachable,
@@ -298,20 +297,17 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
 def keep(store: Store[Workspace], path: str) -> None:
     """Keep what is found in a file from one edit to the next."""
     store.pin(reported_in_file, path, False)
-    resolving.keep(store, path)
 
 
 def forget(store: Store[Workspace], path: str) -> None:
     """Nobody asks for a file any more."""
     store.unpin(reported_in_file, path, False)
     store.sweep(always=True)
-    resolving.forget(store, path)
 
 
 def let_go(store: Store[Workspace]) -> None:
     """Nobody waits: let go of what edits have replaced."""
     store.sweep()
-    resolving.let_go(store)
 
 
 def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) -> tuple[Reported, ...]:

@@ -60,7 +60,7 @@ def timeout_never_succeeds(demanded: Demanded) -> Iterator[Found]:
 
 
 def _held_against(claim: Claim, budget: Budget) -> Range | None:
-    """What of a budget a claim speaks of."""
+    """What of a budget a claim is about."""
     return budget.success if VERBS[claim.verb].limits == "success" else budget.completes
 
 

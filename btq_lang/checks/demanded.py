@@ -1,30 +1,26 @@
-"""What the rules about demands share: which claims hold for which nodes, where to tell of them, and in which words."""
+"""What the rules about demands share: which claims hold for which nodes, where to report them, and in which words."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import inf
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place
-from btq_lang.requirements.memory import Asker
+from btq_lang.requirements.attach import applied_in
+from btq_lang.requirements.budgets import Budgets
 from btq_lang.requirements.model import Applied, Bounded, Claim, Signal, SourceNode, Span, Table, Value
-from btq_lang.syntax.tree import Model, Tree
-from btq_lang.util.record import Record
+from btq_lang.requirements.nodes import mission
+from btq_lang.requirements.trees import tree_nodes
 
 if TYPE_CHECKING:
     from btq_lang.btcpp.judging import Judge
-    from btq_lang.checks.swallowing import WaysUp
-    from btq_lang.checks.view import View
-    from btq_lang.checks.writers import Entries
-    from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.durations import Term
-    from btq_lang.requirements.memory import Question
-    from btq_lang.requirements.resolved import Requirements
-    from btq_lang.requirements.trees import TreeNodes
-    from btq_lang.syntax.tree import Port
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 Found: TypeAlias = tuple[Place, Diagnostic]
 
@@ -32,192 +28,78 @@ Found: TypeAlias = tuple[Place, Diagnostic]
 Guard: TypeAlias = tuple[tuple[Signal, ...], Place]
 
 
-class Demanded(Asker):
-    """What is demanded in a file.  Rules look at one tree after the other; what they want to know of other trees, they
-    ask, and it is noted.
+class Demanded:
+    """What is demanded of the nodes of a tree.
 
     Attributes:
-        files: those whose names the file can use.
-        budgets: how long the nodes take if they all hold.
-        tree: the tree that is looked at.
-        claims: all that hold for nodes of it and can be told of in this file: what is applied, the claim, the node (of
-            a span the one that takes as long), and where to tell of it.
-        hard: all that are to be enforced, for whichever node of it; the place is None where nothing in this file speaks
-            of it; and why the engine does not hold it, if it does not.
-        noted: what was asked of other trees.
-        ways_up, ways_up_before: what is found out of the ways from trees to the mission's root, and what was.
-        renewing: by the `id` of a tree and the name of an entry, the `id`s of the nodes that write it there, and of
-            those with such a node in them, or in a tree that they run.
-        turned: the trees of whose callers others were known then: what was found of a way through one holds no more.
-        ends_at: of SubTree nodes on these ways, what a failure below them ends at.
+        view: whose file the findings are about.
+        tree: the tree.
+        budgets: how long nodes take if what is demanded of all nodes holds.
+        claims: all that hold for nodes of the tree and can be reported in this file: what is applied, the claim, the
+            node (of a span the one that takes as long), and where to report it.
+        hard: all that are to be enforced, for whichever node of the tree; the place is None where nothing in this file
+            is about it; and why the engine does not hold it, if it does not.
     """
 
-    tree: TreeNodes
-    claims: tuple[tuple[Applied, Claim, SourceNode, Place], ...]
-    hard: tuple[tuple[Applied, Claim, SourceNode, Place | None, str | None], ...]
-
-    def __init__(self, view: View) -> None:
-        assert view.requirements is not None, "the rules are asked only where there are requirements"
-        assert view.budgets is not None, "there are budgets where there are requirements"
-        self.view = view
-        self.files = [view.workspace.files[path] for path in view.workspace.scope(view.path).paths]
-        self.requirements: Requirements = view.requirements
-        self.budgets: Budgets = view.budgets
-        self.noted: dict[Question, object] = {}
-        self.news: dict[object, frozenset[object]] = {}
-        self._answers: dict[Question, object] = {}
-        self.ways_up: dict[str | None, WaysUp] = {}
-        mission = self.requirements.mission
-        of_ways = Callers(self.requirements.nodes.callers_by_tree, mission.tree if mission is not None else None)
-        self.ways_up_before: dict[str | None, WaysUp] = view.resolved.ways_up[0]
-        self.turned: frozenset[str | None] = of_ways.turned_since(view.resolved.ways_up[1])
-        self.ends_at: dict[SourceNode, Any] = {}
-        self.renewing: dict[tuple[int, str], tuple[set[int], set[int]]] = {}
-        self._ports: dict[str, tuple[Port, ...]] | None = None
-        self._entries: list[Entries] | None = None
-        view.resolved.ways_up = self.ways_up, of_ways
-
-    def look_at(self, tree: TreeNodes) -> None:
-        """What follows is about the nodes of this tree."""
-        self.tree = tree
-        self.claims = tuple(_claims(self.view, self.requirements.in_tree(tree), self.budgets))
-        for _, _, node, _ in self.claims:
-            if node.category == "SubTree":
-                self.ask((_root, node))  # budgets of it name the root
-        self.hard = tuple(_hard_claims(self))
-
-    def ask(self, question: Question) -> Any:
-        """What is so outside of the tree: a function, called with this and with what it is asked about."""
-        answer = self.noted[question] = self.answer(question)
-        return answer
-
-    def answer(self, question: Question) -> Any:
-        """What the answer is now."""
-        if question not in self._answers:
-            what, about = question
-            self._answers[question] = what(self, about)
-        return self._answers[question]
-
-    @property
-    def entries(self) -> list[Entries]:
-        """The entries that nodes name, for each tree in scope."""
-        if self._entries is None:
-            from btq_lang.checks.writers import entries_of  # few missions have a signal
-
-            noted, self.noted = self.noted, {}
-            table = self.view.resolved.table("entries", self)
-            trees = self.requirements.nodes.trees
-            self._entries = table.all(trees, [None] * len(trees), lambda at: entries_of(self, trees[at]))
-            self.noted = noted
-        return self._entries
-
-    @property
-    def ports(self) -> dict[str, tuple[Port, ...]]:
-        """Those that the trees and models in scope declare, by their names; of a tree that has none, a model's."""
-        if self._ports is None:
-            self._ports = {}
-            for kind in (Kind.MODEL, Kind.TREE):
-                counting: dict[str, object] = {}  # of several of one name the first one
-                for file in self.files:
-                    for symbol in file.names.symbols[kind]:
-                        counting.setdefault(symbol.name, symbol.target)
-                for name, target in counting.items():
-                    if isinstance(target, (Tree, Model)) and target.ports:
-                        self._ports[name] = target.ports
-        return self._ports
-
-
-class Callers(Record):
-    """Which SubTree nodes run each tree, and the mission's tree, which is looked at no further."""
-
-    by_tree: dict[str, tuple[SourceNode, ...]]
-    mission: str | None
-
-    def turned_since(self, before: Callers | None) -> frozenset[str | None]:
-        """The trees of which others were said then."""
-        known = before.by_tree if before is not None else {}
-        if known is self.by_tree and before is not None and before.mission == self.mission:
-            return frozenset()
-        names = [*known, *(self.by_tree.keys() - known.keys())]
-        turned = [name for name in names if known.get(name) is not self.by_tree.get(name)]
-        was = before.mission if before is not None else None
-        return frozenset((*turned, *((was, self.mission) if was != self.mission else ())))
+    def __init__(self, view: View, path: str, facts: Facts) -> None:
+        self.view: Final = view
+        self.tree: Final = view.ask(tree_nodes, path, facts)
+        self.budgets: Final = Budgets(view.store, view.viewpoint)
+        applied = view.ask(applied_in, path, facts).applied
+        self.claims: Final = tuple(_claims(view, applied, self.budgets))
+        self.hard: Final = tuple(_hard_claims(view, applied, self.budgets))
 
 
 def _hard_claims(
-    demanded: Demanded,
+    view: View, in_tree: Iterable[Applied], budgets: Budgets
 ) -> Iterator[tuple[Applied, Claim, SourceNode, Place | None, str | None]]:
-    in_tree = demanded.requirements.in_tree(demanded.tree)
     held = [applied for applied in in_tree if applied.requirement.action in ("fail", "halt")]
     if not held:
         return
-    judge = judge_of(demanded)
+    judge = judge_of(view)
     for applied in held:
         for claim in applied.requirement.claims:
-            node = _node(applied, claim, demanded.budgets) or applied.nodes[0]
-            place = told_at(demanded.view, applied, claim)
-            if place is None and node.path == demanded.view.path:
+            node = _node(applied, claim, budgets) or applied.nodes[0]
+            place = reported_at(view, applied, claim)
+            if place is None and node.path == view.path:
                 place = node.place
             yield applied, claim, node, place, judge.why_not(applied, claim)
 
 
-def _root(demanded: Demanded, node: SourceNode) -> SourceNode | None:
-    return demanded.requirements.nodes.run_by(node)
-
-
-def judge_of(demanded: Demanded) -> Judge:
-    """Who judges what is written if all files are written as one.  `demanded` must not hold it, for it is held by it:
-    both would stay until Python looks for garbage."""
+def judge_of(view: View) -> Judge:
+    """Who judges what is written if all files are written as one."""
     from btq_lang.btcpp.judging import Judge  # few missions have a claim that is to be enforced
 
-    is_shared = bool(demanded.ask((_is_included, demanded.view.path)))
-    return Judge(_Looks(demanded), files=None, is_shared=is_shared)
+    return Judge(_Looks(view), files=None, is_shared=view.is_included)
 
 
 class _Looks:
-    """As of a judge; what is so in other trees is noted.  No functions within a function: compiled ones
-    hold each other."""
+    """As of a judge."""
 
-    def __init__(self, demanded: Demanded) -> None:
-        self._demanded: Final = demanded
+    def __init__(self, view: View) -> None:
+        self._view: Final = view
+        self._budgets: Final = Budgets(view.store, view.viewpoint)
 
     def waits(self, node: SourceNode) -> bool:
-        return self._demanded.budgets.composed(node).waits
+        return self._budgets.composed(node).waits
 
     def is_skipped(self, node: SourceNode) -> bool:
-        demanded = self._demanded
-        ask = demanded.answer if node.item is demanded.tree.item else demanded.ask
-        return bool(ask((_is_skipped, node)))
+        return self._view.ask(_is_skipped, node)
 
     def of_span(self, span: Span) -> SourceNode | None:
         from btq_lang.requirements.spans import node_of
 
-        return node_of(span, self._demanded.budgets)
+        return node_of(span, self._budgets)
 
     def begins(self) -> bool:
-        return bool(self._demanded.ask((_begins, "")))
+        return self.mission() is not None
 
     def mission(self) -> SourceNode | None:
-        mission: SourceNode | None = self._demanded.ask((_mission, ""))
-        return mission
+        return self._view.ask(mission)
 
 
-def _is_skipped(demanded: Demanded, node: SourceNode) -> bool | None:
-    """None: the node is gone."""
-    nodes = demanded.requirements.nodes
-    return demanded.budgets.composed(node).skip is not None if nodes.has(node.item) else None
-
-
-def _is_included(demanded: Demanded, path: str) -> int:
-    return int(path in demanded.view.workspace.included_files)
-
-
-def _begins(demanded: Demanded, _: str) -> int:
-    return int(demanded.requirements.mission is not None)
-
-
-def _mission(demanded: Demanded, _: str) -> SourceNode | None:
-    return demanded.requirements.mission
+def _is_skipped(store: Store[Workspace], viewpoint: str, node: SourceNode) -> bool:
+    return Budgets(store, viewpoint).composed(node).skip is not None
 
 
 def _claims(
@@ -226,7 +108,7 @@ def _claims(
     for applied in held:
         for claim in applied.requirement.claims:
             node = _node(applied, claim, budgets)
-            place = told_at(view, applied, claim) if node is not None else None
+            place = reported_at(view, applied, claim) if node is not None else None
             if node is not None and place is not None:
                 yield applied, claim, node, place
 
@@ -234,13 +116,13 @@ def _claims(
 def _node(applied: Applied, claim: Claim, budgets: Budgets) -> SourceNode | None:
     """The node that a claim is about; of a span the one that takes as long."""
     if isinstance(applied.subject, Span) and VERBS[claim.verb].limits == "completion":
-        from btq_lang.requirements.spans import node_of  # few claims speak of a way between two nodes
+        from btq_lang.requirements.spans import node_of  # few claims are about a way between two nodes
 
         return node_of(applied.subject, budgets)
     return applied.node
 
 
-def told_at(view: View, applied: Applied, claim: Claim) -> Place | None:
+def reported_at(view: View, applied: Applied, claim: Claim) -> Place | None:
     """The claim, or the reference that gave it its values or brought it into this file."""
     if claim.place.path == view.path and not (applied.arguments and applied.how != "subject"):
         return claim.place
@@ -248,7 +130,7 @@ def told_at(view: View, applied: Applied, claim: Claim) -> Place | None:
 
 
 def is_enforced(applied: Applied) -> bool:
-    """Whether the robot is to do something about it, and not only to say so."""
+    """Whether the robot is to do something about it, and not only to report it."""
     return applied.requirement.action in ("fail", "halt") and applied.requirement.odds is None
 
 

@@ -1,8 +1,7 @@
 """What is wrong with what requirements demand, seen from the nodes that they hold for.
 
-One invariant: a finding stands in the file that is checked: at the claim, or where the claim is somebody else's, at the
-reference that attaches it.  The rules are in modules by their subject; this one only brings them together: what they
-find of the nodes of a tree is kept for as long as what they look at stays the same.
+One invariant: a finding is in the file that is checked: at the claim, or where the claim is in another file, at the
+reference that attaches it.  The rules are in modules by their subject; this one only brings them together.
 """
 
 from __future__ import annotations
@@ -10,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks.measures import is_measured
 from btq_lang.checks.view import View
 
 if TYPE_CHECKING:
-    from btq_lang.checks.demanded import Demanded, Found, Guard
+    from btq_lang.checks.demanded import Found, Guard
     from btq_lang.diagnostics.model import Diagnostic
-    from btq_lang.requirements.attach import Held
-    from btq_lang.requirements.model import Requirement
-    from btq_lang.requirements.trees import TreeNodes
     from btq_lang.syntax.tree import Entry
+    from btq_lang.util.text import Span
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
@@ -28,49 +27,43 @@ ByItem: TypeAlias = "dict[int, list[Diagnostic]]"
 
 def demands(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """All that these rules find in an entry."""
-    yield from view.ask(_demands, view.facts)
+    if view.ask(is_measured):
+        yield from view.ask(_in_item, view.facts)
 
 
-def _demands(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
-    return store.ask(_all_demands, viewpoint).get(id(facts.item), ())
+def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
+    return store.ask(_by_item, viewpoint).get(id(facts.item), ())
 
 
-def _all_demands(store: Store[Workspace], viewpoint: str) -> ByItem:
+def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     """What the rules find in the file, by the item that it is in."""
-    view = View(store, viewpoint)
-    if view.requirements is None:
-        return {}
-    from btq_lang.checks.demanded import Demanded  # few files need it
-    from btq_lang.checks.signals import of_signals
+    from btq_lang.requirements import inputs  # few files need it
 
-    demanded = Demanded(view)
-    memory = view.resolved
-    found: list[ByItem] = []
-    guards: list[Guard] = []
-    table = memory.table("demands of trees", demanded)
-    held = demanded.requirements.by_tree
-    trees = [tree for tree in demanded.requirements.nodes.trees if tree.timeouts or id(tree.item) in held]
-    budgets = [*map(demanded.budgets.in_tree, trees)]  # another one where what is applied is another
-    for known in table.all(trees, budgets, lambda at: _of_tree(demanded, trees[at])):
-        if known[0]:
-            found.append(known[0])
-        if known[1]:
-            guards += known[1]
-    table = memory.table("demands by themselves", demanded)
-    pairs = zip(demanded.requirements.all.values(), demanded.requirements.held, strict=True)
-    told = [(each, _between(each, held)) for each, held in pairs]
-    told = [(each, held) for each, held in told if each.goal is not None or each.window is not None or held is not None]
-    lonely, between = [each for each, _ in told], [held for _, held in told]
-    found += table.all(lonely, between, lambda at: _of_requirement(demanded, lonely[at], between[at]))
-    found.append(_by_item(view, of_signals(demanded, guards, memory)))
-    return _together(found)
+    found: list[Found] = []
+    for tree in inputs.trees(store, viewpoint):
+        found += store.ask(_of_tree, viewpoint, *tree)[0]
+    found += (*store.ask(_of_requirements, viewpoint), *store.ask(_of_signals, viewpoint))
+    # Each once, for a claim may hold for nodes of many trees.  They are compared, for to hash one is to hash the whole
+    # items that its places are in.
+    known: dict[tuple[int, str, Span, str], list[Diagnostic]] = {}
+    for place, diagnostic in found:
+        same = known.setdefault((id(place.anchor), diagnostic.rule, diagnostic.span, diagnostic.message), [])
+        if diagnostic not in same:
+            same.append(diagnostic)
+    by_item: ByItem = {}
+    for (item, *_), same in known.items():
+        by_item.setdefault(item, []).extend(same)
+    return by_item
 
 
-def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
+def _of_tree(
+    store: Store[Workspace], viewpoint: str, path: str, facts: Facts
+) -> tuple[tuple[Found, ...], tuple[Guard, ...]]:
     """What the rules find of the nodes of a tree, and the claims about them for which the engine reads signals."""
     from btq_lang.checks import budgets, limits, odds, renewals, signals, swallowing, unenforced  # as above
+    from btq_lang.checks.demanded import Demanded
 
-    demanded.look_at(tree)
+    demanded = Demanded(View(store, viewpoint), path, facts)
     rules = (
         limits.limit_too_small,
         limits.limit_on_synchronous_node,
@@ -85,50 +78,42 @@ def _of_tree(demanded: Demanded, tree: TreeNodes) -> tuple[ByItem, list[Guard]]:
         unenforced.not_enforced,
         renewals.guard_never_renewed,
     )
-    found = [each for rule in rules for each in rule(demanded)]
-    return _by_item(demanded.view, found), list(signals.guards(demanded))
+    found = (each for rule in rules for each in rule(demanded))
+    return _here(viewpoint, found), tuple(signals.guards(demanded))
 
 
-def _between(requirement: Requirement, held: Held) -> Held | None:
-    """What a requirement holds for that is to be enforced, if there is more of it than what nodes are held to."""
-    is_hard = requirement.action in ("fail", "halt")
-    return held if is_hard and len(held.applied) > len(held.by_tree) else None
+def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
+    from btq_lang.requirements import inputs  # as above
+
+    names = inputs.names(store, viewpoint, Kind.REQUIREMENT)
+    return tuple([each for name in names for each in store.ask(_of_requirement, viewpoint, name)])
 
 
-def _of_requirement(demanded: Demanded, requirement: Requirement, between: Held | None) -> ByItem:
+def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Found, ...]:
     """What is wrong with a requirement, whatever it holds for."""
     from btq_lang.checks import limits, odds, unenforced  # as above
+    from btq_lang.requirements.definitions import requirement
 
-    view = demanded.view
-    found = [*limits.goal_beyond_bound(view, requirement), *odds.window_too_small(requirement)]
-    if between is not None:
-        found += unenforced.not_enforced_between(demanded, between)
-    return _by_item(view, found)
-
-
-def _by_item(view: View, found: Iterable[Found]) -> ByItem:
-    by_item: ByItem = {}
-    for place, diagnostic in found:
-        if place.path == view.path:
-            by_item.setdefault(id(place.anchor), []).append(diagnostic)
-    return {item: _once([diagnostics]) for item, diagnostics in by_item.items()}
+    view = View(store, viewpoint)
+    of_name, _ = store.ask(requirement, viewpoint, name)
+    if of_name is None:
+        return ()
+    found = [*limits.goal_beyond_bound(view, of_name), *odds.window_too_small(of_name)]
+    if of_name.action in ("fail", "halt"):
+        found += unenforced.not_enforced_between(view, name)
+    return _here(viewpoint, found)
 
 
-def _together(found: list[ByItem]) -> ByItem:
-    """All of it, each once: a claim may hold for nodes of many trees."""
-    lists: dict[int, list[list[Diagnostic]]] = {}
-    for by_item in found:
-        for item, diagnostics in by_item.items():
-            lists.setdefault(item, []).append(diagnostics)
-    return {item: same[0] if len(same) == 1 else _once(same) for item, same in lists.items()}
+def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
+    """What is wrong with signals, and with the guards that read them."""
+    from btq_lang.checks.signals import of_signals  # as above
+    from btq_lang.requirements import inputs
+
+    trees = inputs.trees(store, viewpoint)
+    guards = [guard for tree in trees for guard in store.ask(_of_tree, viewpoint, *tree)[1]]
+    return _here(viewpoint, of_signals(View(store, viewpoint), guards))
 
 
-def _once(lists: list[list[Diagnostic]]) -> list[Diagnostic]:
-    """They are compared, for to hash one is to hash the whole items that its places stand in."""
-    known: dict[tuple[object, ...], list[Diagnostic]] = {}
-    for diagnostics in lists:
-        for each in diagnostics:
-            same = known.setdefault((each.rule, each.span, each.message), [])
-            if each not in same:
-                same.append(each)
-    return [each for same in known.values() for each in same]
+def _here(viewpoint: str, found: Iterable[Found]) -> tuple[Found, ...]:
+    """What is in the file that is checked."""
+    return tuple([(place, diagnostic) for place, diagnostic in found if place.path == viewpoint])

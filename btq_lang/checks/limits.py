@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements import inputs
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
 from btq_lang.syntax.tree import Goal
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def limit_too_small(demanded: Demanded) -> Iterator[Found]:
-    """A limit that the engine takes for none: it counts whole milliseconds, and 0 is no limit to it."""
+    """A limit that the engine does not take for one: it counts whole milliseconds, and 0 is no limit to it."""
     for applied, claim, _, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits and is_enforced(applied) else None
         if most is None or most[0] >= 0.001:
@@ -61,8 +63,8 @@ def limit_on_synchronous_node(demanded: Demanded) -> Iterator[Found]:
 
 
 def dead_bound(demanded: Demanded) -> Iterator[Found]:
-    """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is told
-    for that."""
+    """A bound beyond what a Timeout around the node allows: it is never reached.  A Timeout that never succeeds is
+    reported for that."""
     for _, claim, node, place in demanded.claims:
         most = highest(claim) if VERBS[claim.verb].limits else None
         timeout = next(_timeouts(node), None) if most is not None else None
@@ -111,9 +113,9 @@ def outbid_bound(demanded: Demanded) -> Iterator[Found]:
 def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
     """A goal that is worse than what the requirement allows: who misses the bound would reach it."""
     goal = requirement.goal
-    if not isinstance(goal, Value) or requirement.path != view.path:
+    if not isinstance(goal, Value) or requirement.place.path != view.path:
         return
-    clause = _goal_clause(view, requirement)
+    clause = _goal_clause(view, requirement.name)
     if clause is None:
         return
     dimension = goal.unit.dimension
@@ -127,7 +129,7 @@ def goal_beyond_bound(view: View, requirement: Requirement) -> Iterator[Found]:
             message = f"the goal `{goal.text}` is worse than the bound, which is at least `{least[1]}`"
         else:
             continue
-        place = Place(Span(clause.start, clause.end), requirement.path, requirement.item)
+        place = Place(Span(clause.start, clause.end), requirement.place.path, requirement.place.anchor)
         related = (Related(claim.place, "bound"),)
         yield place, Diagnostic("goal-beyond-bound", place.span, message, related=related)
 
@@ -172,7 +174,7 @@ def contradicting_bounds(demanded: Demanded) -> Iterator[Found]:
             if key not in least or key not in most or least[key][0] <= most[key][0]:
                 continue
             if before_least is not None and before_most is not None and before_least[0] > before_most[0]:
-                continue  # told
+                continue  # reported
             other = least[key] if high is not None and most[key][2] is place else most[key]
             related = () if other[2] is place else (Related(other[2], "other bound"),)
             message = f"{node.shown} cannot keep both bounds: at least `{least[key][1]}` and at most `{most[key][1]}`"
@@ -238,13 +240,12 @@ def _loops(node: SourceNode, top: SourceNode) -> list[tuple[SourceNode, int]]:
     return []
 
 
-def _goal_clause(view: View, requirement: Requirement) -> Goal | None:
-    """The clause that a goal stands in."""
-    for symbol in view.workspace.files[view.path].facts[id(requirement.item)].summary.symbols:
-        written = symbol.target
-        if symbol.span == requirement.place.span and isinstance(written, WrittenRequirement):
-            return next((clause for clause in written.clauses if isinstance(clause, Goal)), None)
-    return None
+def _goal_clause(view: View, name: str) -> Goal | None:
+    """The clause of a requirement that says its goal."""
+    found = inputs.definition(view.store, view.viewpoint, Kind.REQUIREMENT, name)
+    written = inputs.symbol(found[1], Kind.REQUIREMENT, name).target if found is not None else None
+    clauses = written.clauses if isinstance(written, WrittenRequirement) else ()
+    return next((clause for clause in clauses if isinstance(clause, Goal)), None)
 
 
 def _dimension(claim: Claim) -> Dimension | None:

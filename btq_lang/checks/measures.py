@@ -2,71 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.syntax.tree import Entry, Requirement
 
 if TYPE_CHECKING:
-    from btq_lang.workspace.item_index import Facts
+    from btq_lang.requirements.model import Claim
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 
+def is_measured(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether any requirement in scope has a clause, or anything is declared for one: else nothing is resolved."""
+    view = View(store, viewpoint)
+    if view.has_names(Kind.SIGNAL) or view.has_names(Kind.CONTEXT):
+        return True
+    names = view.names(Kind.REQUIREMENT)
+    return any(view.ask(_has_clauses, name) for name in names) or view.look_up(lookups.has_apply)
+
+
+def _has_clauses(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    view = View(store, viewpoint)
+    meaning = view.find(Kind.REQUIREMENT, name)
+    written = meaning.target if meaning is not None else None
+    return isinstance(written, Requirement) and bool(
+        written.clauses or written.parameters or any(checkable for _, checkable in view.constraints(written))
+    )
+
+
 def unresolved(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """What the resolved requirements complain of in an entry: units, signals, paths, arguments."""
-    yield from view.ask(_unresolved, view.facts)
+    """What is wrong with the requirements of an entry, once resolved: units, signals, paths, arguments."""
+    if not view.ask(is_measured):
+        return
+    from btq_lang.requirements.resolve import problems_in  # a file without clauses needs none of it
+
+    yield from [problem.diagnostic for problem in view.ask(problems_in, view.path, view.facts)]
 
 
 def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """A claim about nothing, in a requirement that has other claims with subjects of their own; without any the whole
-    requirement is unused, and told for that.  And what only a node can do, of a time between events or of a sum."""
-    found = view.ask(_without_subject, view.facts)
-    if found and view.is_read and not view.is_included:
-        yield from found
+    requirement is unused, and reported for that.  And what only a node can do, of a time between events or of a sum."""
+    if not isinstance(entry.item, Requirement) or not view.ask(is_measured):
+        return
+    for symbol in view.facts.summary.symbols:
+        if view.defines_here(Kind.REQUIREMENT, symbol.name) and view.is_read and not view.is_included:
+            yield from _without_subject(view, symbol.name)
 
 
-def _unresolved(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
-    return store.ask(_all_unresolved, viewpoint).get(id(facts.item), ())
+def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
+    from btq_lang.requirements.definitions import requirement  # as above
+    from btq_lang.requirements.model import Span, Total
+    from btq_lang.requirements.nodes import has_nodes
+
+    found, _ = view.ask(requirement, name)
+    claims = found.claims if found is not None and view.ask(has_nodes) else ()
+    is_about_nothing = all(claim.subject is None for claim in claims)
+    for claim in claims:
+        if isinstance(claim.subject, Span | Total) and VERBS[claim.verb].limits != "completion":
+            of = "the time from one event to another" if isinstance(claim.subject, Span) else "a sum of durations"
+            message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
+            note = "write `takes` after it, or a node before the verb"
+            yield _found(claim, message, note)
+        elif claim.subject is None and not is_about_nothing and not view.ask(_is_attached, name):
+            message = f"missing subject of `{claim.text}`"
+            note = "write a node before the verb, or attach the requirement to a node with `satisfies`"
+            yield _found(claim, message, note)
 
 
-def _all_unresolved(store: Store[Workspace], viewpoint: str) -> dict[int, list[Diagnostic]]:
-    view = View(store, viewpoint)
-    found: dict[int, list[Diagnostic]] = {}
-    for problem in view.requirements.problems if view.requirements is not None else ():
-        found.setdefault(id(problem.item), []).append(problem.diagnostic)
-    return found
+def _found(claim: Claim, message: str, note: str) -> Diagnostic:
+    return Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
 
 
-def _without_subject(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[Diagnostic]:
-    return store.ask(_all_without_subject, viewpoint).get(id(facts.item), ())
+def _is_attached(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    from btq_lang.requirements.attach import attached_names  # as above
 
-
-def _all_without_subject(store: Store[Workspace], viewpoint: str) -> dict[int, list[Diagnostic]]:
-    requirements = View(store, viewpoint).requirements
-    if requirements is None or not requirements.nodes.are_known:
-        return {}
-    from btq_lang.requirements.model import Span, Total  # a file without clauses needs none
-
-    found: dict[int, list[Diagnostic]] = {}
-    for requirement in requirements.all.values():
-        if not isinstance(requirement.item, Requirement):
-            continue
-        is_attached = requirement.name in requirements.attached
-        is_about_nothing = all(claim.subject is None for claim in requirement.claims)
-        for claim in requirement.claims:
-            if isinstance(claim.subject, Span | Total) and VERBS[claim.verb].limits != "completion":
-                of = "the time from one event to another" if isinstance(claim.subject, Span) else "a sum of durations"
-                message = f"`{claim.verb}` is about a node, not about {of}, so nothing can check it"
-                note = "write `takes` after it, or a node before the verb"
-            elif claim.subject is None and not is_attached and not is_about_nothing:
-                message = f"missing subject of `{claim.text}`"
-                note = "write a node before the verb, or attach the requirement to a node with `satisfies`"
-            else:
-                continue
-            diagnostic = Diagnostic("requirement-without-subject", claim.place.span, message, notes=(note,))
-            found.setdefault(id(requirement.item), []).append(diagnostic)
-    return found
+    return name in store.ask(attached_names, viewpoint)

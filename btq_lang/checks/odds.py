@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def odds_beyond_children(demanded: Demanded) -> Iterator[Found]:
     """A node that is to do in time, or to succeed, more often than what is demanded of its children ensures.
 
-    A limit without odds is none of them: a step that is late now and then leaves the whole with time to spare.
+    A limit without odds is another matter: a step that is late now and then leaves the whole with time to spare.
     """
     for applied, claim, node, place in demanded.claims:
         odds = applied.requirement.odds
@@ -65,7 +65,7 @@ def _ensured(
     budgets: Budgets, claim: Claim, node: SourceNode
 ) -> tuple[float, list[tuple[SourceNode, float]], str] | None:
     """How likely what is demanded below a node makes a claim true, what each child may miss, and what that leaves out;
-    None: nobody says, or it takes too long anyway."""
+    None: it is unknown, or it takes too long anyway."""
     most = highest(claim)
     limit = most[0] if most is not None else inf
     limits = VERBS[claim.verb].limits

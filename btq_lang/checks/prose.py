@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in a requirement's description: what stands behind them is for people, or for tools."""
+"""SuccessIf and FailureIf in a requirement's description: what follows them is for people, or for tools."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, parse_unit
+from btq_lang.checks.measures import is_measured
 from btq_lang.checks.strings import in_source
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Fix, replace_fix
@@ -15,13 +16,12 @@ from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from btq_lang.requirements.constraints import Constraint
-    from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 
 def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """A keyword with prose behind it, in a requirement that has no clause yet: told once, where it is defined."""
+    """A keyword with prose after it, in a requirement that has no clause yet: reported once, where it is defined."""
     for symbol in view.facts.summary.symbols:
         requirement = symbol.target
         if not isinstance(requirement, Requirement) or requirement.text is None or requirement.clauses:
@@ -44,30 +44,24 @@ def prose_constraint(view: View, entry: Entry) -> Iterator[Diagnostic]:
 
 
 def _not_checked(view: View, entry: Entry, requirement: Requirement, name: str) -> list[Constraint]:
-    """What stands behind keywords and is neither a script nor clauses that mean something."""
+    """What follows keywords and is neither a script nor clauses that mean something."""
     found = view.constraints(requirement)
-    if any(checkable for _, checkable in found) and name in view.ask(_without_claims, view.facts):
+    is_checked = any(checkable for _, checkable in found) and view.ask(is_measured)
+    if is_checked and view.defines_here(Kind.REQUIREMENT, name) and view.ask(_claims_nothing, name):
         return [each for each, _ in found]
     return [each for each, checkable in found if not checkable]
 
 
-def _without_claims(store: Store[Workspace], viewpoint: str, facts: Facts) -> frozenset[str]:
-    """The requirements of an item that claim nothing."""
-    return frozenset(store.ask(_all_without_claims, viewpoint).get(id(facts.item), ()))
+def _claims_nothing(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    """Whether a requirement, once resolved, claims nothing."""
+    from btq_lang.requirements.definitions import requirement  # a file without clauses needs none of it
 
-
-def _all_without_claims(store: Store[Workspace], viewpoint: str) -> dict[int, set[str]]:
-    """All of them, by the item."""
-    view = View(store, viewpoint)
-    found: dict[int, set[str]] = {}
-    for requirement in view.requirements.all.values() if view.requirements is not None else ():
-        if not requirement.claims:
-            found.setdefault(id(requirement.item), set()).add(requirement.name)
-    return found
+    found, _ = store.ask(requirement, viewpoint, name)
+    return found is not None and not found.claims
 
 
 def _as_clause(constraint: Constraint, signals: dict[str, Dimension]) -> str | None:
-    """The clause that stands for prose; a condition of a requirement needs but its verb."""
+    """The clause that says the same as prose; a condition of a requirement needs but its verb."""
     from btq_lang.checks.wording import as_clause  # few requirements are prose
     from btq_lang.requirements.constraints import clauses_of
 

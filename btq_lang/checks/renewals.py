@@ -1,4 +1,4 @@
-"""Guards on values that nobody writes while the node runs that they guard: they are as good as asked once.
+"""Guards on values that nothing writes while the guarded node runs: they are as good as checked once.
 
 One invariant: whatever may run beside a node is taken to do so, and whatever may write an entry to write it, so what is
 found is found for every run of the mission.  It does not know what the robot's program writes.
@@ -10,16 +10,21 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found
-from btq_lang.checks.writers import isolated, key_of
+from btq_lang.checks.view import View
+from btq_lang.checks.writers import all_entries, declared_ports, isolated, key_of
 from btq_lang.diagnostics.model import Diagnostic, Related
+from btq_lang.requirements import inputs, nodes
 from btq_lang.requirements.reading import signals_in
-from btq_lang.syntax.tree import Verbatim
+from btq_lang.requirements.trees import tree_nodes, trees_called
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim, Requirement, Signal, SourceNode
-    from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 # While a child of these runs no other one does, and what ran before has come to its end.
 _ONE_AT_A_TIME = frozenset(
@@ -37,17 +42,17 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
         keys = dict.fromkeys([(signal.key or "").removeprefix("@") for signal in signals])
         if not keys or not all(_is_fixed(demanded, node, key) for key in keys):
             continue
-        writers = [*dict.fromkeys([writer for key in keys for writer in demanded.ask((_writers, key))])]
+        writers = [*dict.fromkeys([writer for key in keys for writer in demanded.view.ask(_writers, key)])]
         places = (place, *(writer.place for writer in writers))
-        told = next((each for each in places if each is not None and each.path == demanded.view.path), None)
-        if told is None:
+        shown = next((each for each in places if each is not None and each.path == demanded.view.path), None)
+        if shown is None:
             continue
         names = " and ".join(f"`{key}`" for key in keys)
         yield (
-            told,
+            shown,
             Diagnostic(
                 "guard-never-renewed",
-                told.span,
+                shown.span,
                 f"no node writes {names} while {node.shown} runs, so the result is fixed when the node starts",
                 related=(
                     *(Related(writer.place, "writes it, but not while the node runs") for writer in writers[:3]),
@@ -62,7 +67,7 @@ def guard_never_renewed(demanded: Demanded) -> Iterator[Found]:
 
 
 def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
-    """The signals that are read again after the node has started; none where nobody can say which."""
+    """The signals that are read again after the node has started; none where it is unknown which."""
     if requirement.classic:
         return ()
     judged = VERBS[claim.verb].judged
@@ -74,17 +79,21 @@ def _watched(requirement: Requirement, claim: Claim) -> Iterable[Signal]:
 
 def _is_fixed(demanded: Demanded, node: SourceNode, key: str) -> bool:
     """Whether an entry that nodes write stays as it is while a node of the tree runs."""
-    if not demanded.ask((_writers, key)):
+    view, tree = demanded.view, demanded.tree
+    if not view.ask(_writers, key):
         return False
-    demanded.ask((_carrying, key))
-    if id(node) in _renewing(demanded, demanded.tree, key)[1] or _is_renewed_beside(demanded, demanded.tree, node, key):
+    writing, carrying = view.ask(_renewing, tree.path, tree.facts, key)
+    if id(node) in carrying or _is_renewed_beside(writing, carrying, node):
         return False
-    return not demanded.ask((_is_renewed_above, (node.tree, key)))
+    return not view.ask(_is_renewed_above, node.tree, key)
 
 
-def _is_renewed_beside(demanded: Demanded, tree: TreeNodes, node: SourceNode, key: str) -> bool:
-    """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these."""
-    writing, carrying = _renewing(demanded, tree, key)
+def _is_renewed_beside(writing: frozenset[int], carrying: frozenset[int], node: SourceNode) -> bool:
+    """Whether an entry may be written while a node runs, by one above it in the tree, or below one of these.
+
+    Args:
+        writing, carrying: as `_renewing` says of the tree.
+    """
     below, at = node, node.parent
     while at is not None:
         if id(at) in writing:
@@ -95,71 +104,80 @@ def _is_renewed_beside(demanded: Demanded, tree: TreeNodes, node: SourceNode, ke
     return False
 
 
-def _renewing(demanded: Demanded, tree: TreeNodes, key: str) -> tuple[set[int], set[int]]:
-    """As `demanded.renewing` says."""
-    known = demanded.renewing.get((id(tree), key))
-    if known is None:
-        writers = [writer for writer in demanded.answer((_writers, key)) or () if writer.item is tree.item]
-        trees = demanded.answer((_carrying, key))
-        carrying: set[int] = set()
-        for node in (*writers, *(node for name, node in tree.calls if name in trees)):
-            at: SourceNode | None = node
-            while at is not None and id(at) not in carrying:
-                carrying.add(id(at))
-                at = at.parent
-        known = demanded.renewing[id(tree), key] = set(map(id, writers)), carrying
-    return known
+# ---- queries ----
 
 
-# ---- what is so in other trees ----
+def _renewing(
+    store: Store[Workspace], viewpoint: str, path: str, facts: Facts, key: str
+) -> tuple[frozenset[int], frozenset[int]]:
+    """The `id`s of the nodes of a tree that write an entry, and of those with such a node in them, or in a tree that
+    they run."""
+    tree = store.ask(tree_nodes, viewpoint, path, facts)
+    writers = [writer for writer in store.ask(_writers, viewpoint, key) if writer.facts is facts]
+    trees = store.ask(_carrying, viewpoint, key)
+    carrying: set[int] = set()
+    for node in (*writers, *(node for name, node in tree.calls if name in trees)):
+        at: SourceNode | None = node
+        while at is not None and id(at) not in carrying:
+            carrying.add(id(at))
+            at = at.parent
+    return frozenset(map(id, writers)), frozenset(carrying)
 
 
-def _writers(demanded: Demanded, key: str) -> tuple[SourceNode, ...]:
+def _writers(store: Store[Workspace], viewpoint: str, key: str) -> tuple[SourceNode, ...]:
     """The nodes that may write an entry of this name; none where others may, too, or no node surely does."""
-    found, view, entries = demanded.requirements, demanded.view, demanded.entries
-    if found.mission is None or not view.is_complete or not view.is_read:
+    view = View(store, viewpoint)
+    if view.ask(nodes.mission) is None or not view.is_complete or not view.is_read:
         return ()
-    if view.path in view.workspace.included_files or any(file.of_type(Verbatim) for file in demanded.files):
+    if view.is_included or inputs.has_xml(store, viewpoint):
         return ()
-    if any(each.is_open or key in each.mentioned for each in entries):
+    entries = view.ask(all_entries)
+    if any(each.is_open or key in each.mentioned for each in entries) or key in view.ask(_keys_of_defaults):
         return ()
-    for port in (port for ports in demanded.ports.values() for port in ports if port.default is not None):
-        text = port.default.text if port.default is not None else ""
-        if is_pointer(text) and key_of(text, port.name.text if port.name is not None else "").removeprefix("@") == key:
-            return ()
     writing = [each for each in entries if key in each.written]
     writers = [node for each in writing for node, name in each.writes if name.removeprefix("@") == key]
-    if not all(_is_reached(demanded, writer.tree) for writer in writers):
+    reached = view.ask(_reached)
+    if not all(writer.tree in reached for writer in writers):
         return ()  # perhaps another mission, that runs beside this one
     sure = [write for each in writing for write in each.sure]
-    if not any(name.removeprefix("@") == key for _, name in sure) or isolated(found, sure, key) is not None:
+    if not any(name.removeprefix("@") == key for _, name in sure) or isolated(view, sure, key) is not None:
         return ()
     return tuple(dict.fromkeys(writers))
 
 
-def _carrying(demanded: Demanded, key: str) -> frozenset[str]:
+def _keys_of_defaults(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
+    """The entries, without their `@`, that ports of trees and models in scope have by default."""
+    view = View(store, viewpoint)
+    found: set[str] = set()
+    for name in (*view.names(Kind.TREE), *view.names(Kind.MODEL)):
+        for port in declared_ports(view, name):
+            text = port.default.text if port.default is not None else ""
+            if is_pointer(text):
+                found.add(key_of(text, port.name.text if port.name is not None else "").removeprefix("@"))
+    return frozenset(found)
+
+
+def _carrying(store: Store[Workspace], viewpoint: str, key: str) -> frozenset[str]:
     """The trees that write an entry themselves or by those that they run."""
-    waiting = [writer.tree for writer in demanded.answer((_writers, key))]
+    waiting = [writer.tree for writer in store.ask(_writers, viewpoint, key)]
     carrying = {*waiting}
     while waiting:
-        for caller in demanded.requirements.nodes.callers(waiting.pop()):
+        for caller in _callers(store, viewpoint, waiting.pop()):
             if caller.tree not in carrying:
                 carrying.add(caller.tree)
                 waiting.append(caller.tree)
     return frozenset([tree for tree in carrying if tree is not None])
 
 
-def _is_renewed_above(demanded: Demanded, about: tuple[str | None, str]) -> bool:
+def _is_renewed_above(store: Store[Workspace], viewpoint: str, tree: str | None, key: str) -> bool:
     """Whether an entry may be written while a tree runs, by nodes above it or beside it; or nothing runs the tree."""
-    tree, key = about
-    nodes = demanded.requirements.nodes
-    if not _is_reached(demanded, tree):
+    if tree not in store.ask(_reached, viewpoint):
         return True
     waiting, seen = [tree], {tree}
     while waiting:
-        for caller in nodes.callers(waiting.pop()):
-            home = nodes.within(caller.item)
-            if id(caller) in _renewing(demanded, home, key)[0] or _is_renewed_beside(demanded, home, caller, key):
+        for caller in _callers(store, viewpoint, waiting.pop()):
+            writing, carrying = store.ask(_renewing, viewpoint, caller.path, caller.facts, key)
+            if id(caller) in writing or _is_renewed_beside(writing, carrying, caller):
                 return True
             if caller.tree not in seen:
                 seen.add(caller.tree)
@@ -167,21 +185,19 @@ def _is_renewed_above(demanded: Demanded, about: tuple[str | None, str]) -> bool
     return False
 
 
-def _is_reached(demanded: Demanded, tree: str | None) -> bool:
-    """Whether a tree is the mission's, or that runs it."""
-    reached: frozenset[str | None] = demanded.answer((_reached, ""))
-    return tree in reached
+def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[SourceNode, ...]:
+    return store.ask(nodes.callers, viewpoint, tree) if tree is not None else ()
 
 
-def _reached(demanded: Demanded, _: str) -> frozenset[str | None]:
-    mission = demanded.requirements.mission
-    called: dict[str | None, tuple[str, ...]] = {}
-    for tree in demanded.requirements.nodes.trees:
-        called.setdefault(tree.name, tree.called)
-    waiting: list[str | None] = [mission.tree] if mission is not None else []
+def _reached(store: Store[Workspace], viewpoint: str) -> frozenset[str | None]:
+    """The mission's tree, and those that it runs."""
+    main = store.ask(nodes.mission, viewpoint)
+    waiting: list[str | None] = [main.tree] if main is not None else []
     reached = {*waiting}
     while waiting:
-        others = [name for name in called.get(waiting.pop(), ()) if name not in reached]
+        name = waiting.pop()
+        called = store.ask(trees_called, viewpoint, name) if name is not None else ()
+        others = [each for each in called if each not in reached]
         reached.update(others)
         waiting += others
     return frozenset(reached)

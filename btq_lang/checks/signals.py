@@ -2,44 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.verbs import words
 from btq_lang.checks.demanded import Demanded, Found, Guard, is_enforced
-from btq_lang.checks.writers import declared_port, isolated
+from btq_lang.checks.view import View
+from btq_lang.checks.writers import all_entries, declared_port, isolated, written_keys
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements import inputs, reader
+from btq_lang.requirements.nodes import has_nodes, mission
 from btq_lang.util.spelling import near
 from btq_lang.workspace.port_types import is_text
 
 if TYPE_CHECKING:
-    from btq_lang.checks.writers import Entries
-    from btq_lang.requirements.memory import Memory
     from btq_lang.requirements.model import Signal
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 _READING = words(operands=("condition", "use"))
 
 
-def of_signals(demanded: Demanded, guards: Iterable[Guard], memory: Memory) -> Iterator[Found]:
+def of_signals(view: View, guards: Sequence[Guard]) -> Iterator[Found]:
     """What these rules find.
 
     Args:
         guards: all claims for which the engine reads signals.
     """
-    signals = demanded.requirements.signals.values()
-    here = [each for each in signals if each.place.path == demanded.view.path and each.key is not None]
-    guards = list(guards)
-    yield from _may_be_unset(demanded, guards)
-    if not here:
-        return
-    entries = demanded.entries
-    yield from _never_written(demanded, here, entries, guards, memory)
-    yield from _of_text(demanded, here, entries)
+    names = inputs.names(view.store, view.viewpoint, Kind.SIGNAL)
+    signals = [found for name in names if (found := view.ask(reader.signal, name)[0]) is not None]
+    here = [each for each in signals if each.place.path == view.path and each.key is not None]
+    yield from _may_be_unset(view, guards)
+    if here:
+        yield from _never_written(view, here, guards)
+        yield from _of_text(view, here)
 
 
 def guards(demanded: Demanded) -> Iterator[Guard]:
-    """The signals that the engine reads to enforce a claim, each once, and where to tell of it."""
+    """The signals that the engine reads to enforce a claim, each once, and where to report it."""
     known: dict[tuple[int, ...], tuple[Signal, ...]] = {}
     for applied, claim, _, place in demanded.claims:
         if claim.verb not in _READING or not is_enforced(applied):
@@ -53,28 +55,20 @@ def guards(demanded: Demanded) -> Iterator[Guard]:
         yield known[key], place
 
 
-def _never_written(
-    demanded: Demanded, here: list[Signal], entries: list[Entries], guards: list[Guard], memory: Memory
-) -> Iterator[Found]:
+def _never_written(view: View, here: list[Signal], guards: Sequence[Guard]) -> Iterator[Found]:
     """A signal whose blackboard entry no port and no script of the mission writes, where another entry has nearly the
     same name, or where a guard reads it; the robot's program may write it, so then it is a hint.  A guard reads the
     root blackboard, so what a tree writes into its own is another entry."""
-    found, view = demanded.requirements, demanded.view
-    if not found.nodes.are_known or not view.is_complete or not view.is_read:
+    if not view.ask(has_nodes) or not view.is_complete or not view.is_read:
         return
-    if view.path in view.workspace.included_files:
-        return  # who writes it may be in the files that include this one
-    written = frozenset().union(*(each.written for each in entries))
-    writes = [write for each in entries for write in each.writes] if guards else []
+    if view.is_included:
+        return  # what writes it may be in the files that include this one
+    written = view.ask(written_keys)
+    writes = [write for each in view.ask(all_entries) for write in each.writes] if guards else []
     guarding = {signal.name for signals, _ in guards for signal in signals}
-    unwritten = [signal for signal in here if (signal.key or "").removeprefix("@") not in written]
-    keys = [(signal.key or "").removeprefix("@") for signal in unwritten]
-    table = memory.table("near", demanded)
-    near_keys = table.all(unwritten, [written] * len(unwritten), lambda at: near(keys[at], written))
-    likely_keys = dict(zip(keys, near_keys, strict=True))
     for signal in here:
         key = (signal.key or "").removeprefix("@")
-        if key in written and signal.name in guarding and (writer := isolated(found, writes, key)) is not None:
+        if key in written and signal.name in guarding and (writer := isolated(view, writes, key)) is not None:
             message = f"`{signal.name}` reads the root's `{key}`, but the tree `{writer.tree}` writes its own `{key}`"
             notes = (f"write `{{@{key}}}`, or pass the entry on to the tree: `{key} = {{{key}}}`",)
             related = (Related(writer.place, "written here"),)
@@ -82,7 +76,7 @@ def _never_written(
             continue
         if key in written:
             continue
-        likely = likely_keys[key]
+        likely = view.ask(_near_keys, key)
         if not (likely or signal.name in guarding):
             continue
         yield (
@@ -99,17 +93,22 @@ def _never_written(
         )
 
 
-def _of_text(demanded: Demanded, here: list[Signal], entries: list[Entries]) -> Iterator[Found]:
+def _near_keys(store: Store[Workspace], viewpoint: str, key: str) -> tuple[str, ...]:
+    """The entries that are written and have nearly the same name as one."""
+    return near(key, store.ask(written_keys, viewpoint))
+
+
+def _of_text(view: View, here: list[Signal]) -> Iterator[Found]:
     """A signal that is a number, whose entry a port of texts writes: a script that compares it converts the text, and
     throws where it is no number."""
-    mission = demanded.requirements.mission
+    main = view.ask(mission)
     numbers = {(signal.key or "").removeprefix("@"): signal for signal in here if signal.sort == "number"}
-    entries = [each for each in entries if not numbers.keys().isdisjoint(each.pointers)]
+    entries = [each for each in view.ask(all_entries) if not numbers.keys().isdisjoint(each.pointers)]
     for key, signal in numbers.items():
         for node, pair, is_of_root in (pointer for each in entries for pointer in each.pointers.get(key, ())):
-            if not is_of_root and (mission is None or node.tree != mission.tree):
+            if not is_of_root and (main is None or node.tree != main.tree):
                 continue
-            port = declared_port(demanded, node, pair.key.text)
+            port = declared_port(view, node, pair.key.text)
             if port is None or port.type is None or port.direction.raw == "input" or not is_text(port.type.text):
                 continue
             port_of_node = f"the port `{pair.key.text}` of `{node.node.head.text}`"
@@ -123,19 +122,19 @@ def _of_text(demanded: Demanded, here: list[Signal], entries: list[Entries]) -> 
             break
 
 
-def _may_be_unset(demanded: Demanded, guards: Iterable[Guard]) -> Iterator[Found]:
-    """A guard on a signal without a first value: until somebody writes it, the engine ends the mission."""
-    told: dict[str, list[Related]] = {}
+def _may_be_unset(view: View, guards: Iterable[Guard]) -> Iterator[Found]:
+    """A guard on a signal without a first value: until something writes it, the engine ends the mission."""
+    reported: dict[str, list[Related]] = {}
     signals: dict[str, Signal] = {}
     for read, place in guards:
         for signal in read:
             if signal.key is None or signal.initially is not None:
                 continue
             signals[signal.name] = signal
-            told.setdefault(signal.name, []).append(Related(place, "the engine checks this"))
-    for name, related in told.items():
+            reported.setdefault(signal.name, []).append(Related(place, "the engine checks this"))
+    for name, related in reported.items():
         signal = signals[name]
-        place = signal.place if signal.place.path == demanded.view.path else related[0].place
+        place = signal.place if signal.place.path == view.path else related[0].place
         yield (
             place,
             Diagnostic(

@@ -9,13 +9,13 @@ from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.requirements.composition import port_count
 from btq_lang.requirements.model import SourceNode
+from btq_lang.requirements.nodes import callers, mission
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.resolved import Requirements
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 Swallower: TypeAlias = tuple[SourceNode, str]  # the node that does not fail when something below it does, and why
-# Where a failure ends, and the trees on the ways up: of whose callers that holds.
-WaysUp: TypeAlias = "tuple[Swallower | None, set[str | None]]"
 
 _NEVER_ENFORCED = frozenset(("runs", "starts", "ends"))
 
@@ -27,7 +27,7 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
             continue
         if claim.limit is not None and highest(claim) is None:
             continue  # what takes too little time is only seen when it is over
-        swallower = _in_tree(node) or _above(demanded, node.tree)
+        swallower = _in_tree(node) or (demanded.view.ask(_above, node.tree) if node.tree is not None else None)
         if swallower is None:
             continue
         above, reason = swallower
@@ -43,48 +43,37 @@ def swallowed_failure(demanded: Demanded) -> Iterator[Found]:
         )
 
 
-def _above(demanded: Demanded, tree: str | None) -> Swallower | None:
-    answer: Swallower | None = demanded.ask((_above_tree, tree))
-    return answer
-
-
-def _above_tree(demanded: Demanded, tree: str | None) -> Swallower | None:
+def _above(store: Store[Workspace], viewpoint: str, tree: str) -> Swallower | None:
     """Where a failure of a tree ends, if it ends on every way up."""
-    known = demanded.ways_up_before.get(tree)
-    if known is None or not known[1].isdisjoint(demanded.turned):
-        known = _end_of_ways(demanded, tree)
-    demanded.ways_up[tree] = known
-    return known[0]
-
-
-def _end_of_ways(demanded: Demanded, tree: str | None) -> WaysUp:
-    found, ends_at = demanded.requirements, demanded.ends_at
     first: Swallower | None = None
     seen: set[int] = set()
-    trees = {tree}
-    waiting = [*_callers(found, tree)]
+    waiting = [*_callers(store, viewpoint, tree)]
     ends = not waiting
     while waiting:
         at = waiting.pop()
         if id(at) in seen:
             continue
         seen.add(id(at))
-        if at not in ends_at:
-            ends_at[at] = _in_tree(at)
-        end = ends_at[at]
+        end = _in_tree(at)
         first = first or end
         if end is None:
-            callers = _callers(found, at.tree)
-            trees.add(at.tree)
-            ends = ends or not callers
-            waiting += callers
-    return None if ends else first, trees
+            above = _callers(store, viewpoint, at.tree)
+            ends = ends or not above
+            waiting += above
+    return None if ends else first
 
 
-def _callers(found: Requirements, tree: str | None) -> tuple[SourceNode, ...]:
+def _callers(store: Store[Workspace], viewpoint: str, tree: str | None) -> tuple[SourceNode, ...]:
     """The SubTree nodes that run a tree; none where that is the mission's, from which a failure goes nowhere."""
-    is_mission = found.mission is not None and tree == found.mission.tree
-    return () if is_mission else found.nodes.callers(tree)
+    if tree is None or tree == store.ask(_main_tree, viewpoint):
+        return ()
+    return store.ask(callers, viewpoint, tree)
+
+
+def _main_tree(store: Store[Workspace], viewpoint: str) -> str | None:
+    """The name of the mission's tree."""
+    root = store.ask(mission, viewpoint)
+    return root.tree if root is not None else None
 
 
 def _in_tree(node: SourceNode) -> Swallower | None:
@@ -115,7 +104,7 @@ def _swallows(parent: SourceNode, child: SourceNode) -> str | None:
 
 
 def _failures_needed(parallel: SourceNode) -> int:
-    """How many children must fail for it to fail; 1 where nobody knows."""
+    """How many children must fail for it to fail; 1 where that is unknown."""
     n = len(parallel.node.children)
     if parallel.tag == "ParallelAll":
         most = port_count(parallel, "max_failures", 1)

@@ -6,20 +6,25 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.catalog.verbs import VERBS
-from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, told_at
+from btq_lang.checks import lookups
+from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, reported_at
+from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
+from btq_lang.requirements import inputs
+from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
 from btq_lang.requirements.model import Target
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Applied, Claim, SourceNode
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 def not_enforced(demanded: Demanded) -> Iterator[Found]:
     """A claim about a node that no build enforces, or only one that writes all files as one."""
     for applied, claim, node, place, why in demanded.hard:
-        if place is None or _is_told_otherwise(demanded, claim, node, place):
+        if place is None or _is_reported_otherwise(demanded, claim, node, place):
             continue
         related = () if place == node.place else (Related(node.place, "node"),)
         if why is not None:
@@ -29,18 +34,19 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
         if elsewhere is not None:
             from btq_lang.btcpp.judging import where_else  # few missions ask for what is in other files
 
-            why = where_else(demanded.view.workspace, elsewhere)
+            path = elsewhere.path
+            why = where_else(elsewhere, is_xml=demanded.view.store.read(path, lookups.is_xml, path))
             yield place, _found(applied, place, why, related, is_bundled=True)
 
 
-def not_enforced_between(demanded: Demanded, held: Held) -> Iterator[Found]:
-    """The same of claims about no node in particular."""
-    placed = {id(applied) for _, applied in held.by_tree}
-    judge = judge_of(demanded)
-    for applied in held.applied:
-        for claim in applied.requirement.claims if id(applied) not in placed else ():
-            place = told_at(demanded.view, applied, claim)
-            why = judge.why_not(applied, claim) if place is not None else None
+def not_enforced_between(view: View, name: str) -> Iterator[Found]:
+    """The same of the claims of a requirement about no node in particular."""
+    between = view.ask(claimed_of_no_tree, name)
+    judge = judge_of(view) if between else None
+    for applied in between:
+        for claim in applied.requirement.claims:
+            place = reported_at(view, applied, claim)
+            why = judge.why_not(applied, claim) if place is not None and judge is not None else None
             if place is not None and why is not None:
                 yield place, _found(applied, place, why, ())
 
@@ -64,7 +70,7 @@ def _found(
     )
 
 
-def _is_told_otherwise(demanded: Demanded, claim: Claim, node: SourceNode, place: Place) -> bool:
+def _is_reported_otherwise(demanded: Demanded, claim: Claim, node: SourceNode, place: Place) -> bool:
     """Whether a rule of its own says why the engine does not hold it."""
     if claim.signal is not None:
         return claim.signal.behaviour == "gauge"
@@ -84,18 +90,13 @@ def _is_built(demanded: Demanded, applied: Applied, claim: Claim, node: SourceNo
     """Whether what is put around a node is written: in this file, or because the node's own file asks for it."""
     if node.path == demanded.view.path:
         return True
-    seen = demanded.ask((_seen_in, node.path))
-    asking = demanded.ask((_asking, (applied.requirement.name, node)))
+    view = demanded.view
+    seen = frozenset(inputs.paths(view.store, node.path))
+    asking = view.ask(_asking, applied.requirement.name, node)
     return not seen.isdisjoint(asking) or (applied.how == "subject" and claim.place.path in seen)
 
 
-def _seen_in(demanded: Demanded, path: str) -> frozenset[str]:
-    """The files whose requirements a file sees."""
-    return frozenset(demanded.view.workspace.closure(path))
-
-
-def _asking(demanded: Demanded, about: tuple[str, SourceNode]) -> frozenset[str]:
+def _asking(store: Store[Workspace], viewpoint: str, name: str, node: SourceNode) -> frozenset[str | None]:
     """The files that attach a requirement to a node."""
-    name, node = about
-    uses = demanded.view.resolved.uses[1].get(name, ())
-    return frozenset([use.path for use in uses if use.target.node is node])
+    uses = uses_of_nodes(store, viewpoint, node.path, node.facts)
+    return frozenset([use.place.path for use in uses if use.requirement == name and use.target.node is node])

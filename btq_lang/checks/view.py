@@ -24,10 +24,7 @@ from btq_lang.util.spelling import near
 if TYPE_CHECKING:
     from btq_lang.checks.entries import Mention
     from btq_lang.checks.lookups import Declaration, Meaning
-    from btq_lang.requirements.budgets import Budgets
     from btq_lang.requirements.constraints import Constraint
-    from btq_lang.requirements.memory import Memory
-    from btq_lang.requirements.resolved import Requirements
     from btq_lang.syntax.script import Script
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.item_index import Facts
@@ -281,29 +278,6 @@ class View:
     def workspace(self) -> Workspace:
         """Everything."""
         return self.look_up(lookups.everything)
-
-    @property
-    def requirements(self) -> Requirements | None:
-        """The requirements in scope, resolved; None where none has a clause and nothing is declared for one."""
-        from btq_lang.checks.resolving import resolved  # it uses views, too
-
-        return self.ask(resolved).requirements
-
-    @property
-    def resolved(self) -> Memory:
-        """What was resolved and found of the requirements before; nothing where nobody keeps it."""
-        from btq_lang.checks.resolving import resolved  # as above
-
-        memory = self.ask(resolved).memory
-        assert memory is not None, "there are requirements"
-        return memory
-
-    @property
-    def budgets(self) -> Budgets | None:
-        """How long the nodes take if what is demanded of those below them holds; None where nothing is demanded."""
-        from btq_lang.checks.resolving import resolved  # as above
-
-        return self.ask(resolved).budgets
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """What follows SuccessIf and FailureIf in a description, and whether it is more than prose."""

@@ -11,14 +11,18 @@ from typing import TYPE_CHECKING
 
 from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks.view import View
+from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements.trees import tree_nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim
 from btq_lang.util.record import Record
 
 if TYPE_CHECKING:
-    from btq_lang.checks.demanded import Demanded
     from btq_lang.requirements.model import SourceNode
-    from btq_lang.requirements.resolved import Requirements
-    from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.workspace.item_index import Facts
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Entries(Record):
@@ -41,8 +45,19 @@ class Entries(Record):
     is_open: bool
 
 
-def entries_of(demanded: Demanded, tree: TreeNodes) -> Entries:
-    """Those of a tree."""
+def written_keys(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
+    """The entries that something in scope may write, without their `@`."""
+    return frozenset().union(*[each.written for each in store.ask(all_entries, viewpoint)])
+
+
+def all_entries(store: Store[Workspace], viewpoint: str) -> tuple[Entries, ...]:
+    """The entries that nodes name, for each tree in scope."""
+    return tuple([store.ask(_entries_in, viewpoint, *tree) for tree in inputs.trees(store, viewpoint)])
+
+
+def _entries_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Entries:
+    view = View(store, viewpoint)
+    tree = view.ask(tree_nodes, path, facts)
     writes: list[tuple[SourceNode, str]] = []
     perhaps: list[tuple[SourceNode, str]] = []
     pointers: dict[str, list[tuple[SourceNode, Pair, bool]]] = {}
@@ -66,14 +81,14 @@ def entries_of(demanded: Demanded, tree: TreeNodes) -> Entries:
                 writes.append((node, text.strip("{}")))
                 is_open = is_open or is_entry
             elif is_entry:
-                may_write = _writes(demanded, node, port)
+                may_write = _writes(view, node, port)
                 if may_write is not False:
                     (writes if may_write else perhaps).append((node, key))
             elif node.tag == "UnsetBlackboard" or (node.kind is None and text.isidentifier()):
                 mentioned.add(text.removeprefix("@"))
-    told = (*writes, *perhaps)
-    written = frozenset([name.removeprefix("@") for _, name in told])
-    return Entries(told, tuple(writes), written, pointers, frozenset(mentioned), is_open)
+    every = (*writes, *perhaps)
+    written = frozenset([name.removeprefix("@") for _, name in every])
+    return Entries(every, tuple(writes), written, pointers, frozenset(mentioned), is_open)
 
 
 def key_of(pointer: str, port: str) -> str:
@@ -82,20 +97,21 @@ def key_of(pointer: str, port: str) -> str:
     return port if key == "=" else key
 
 
-def isolated(found: Requirements, writes: Sequence[tuple[SourceNode, str]], key: str) -> SourceNode | None:
-    """One that writes an entry of this name in the blackboard of its own tree, where nobody writes that of the root.
+def isolated(view: View, writes: Sequence[tuple[SourceNode, str]], key: str) -> SourceNode | None:
+    """One that writes an entry of this name in the blackboard of its own tree, where nothing writes that of the root.
 
     Args:
         writes: as of `Entries`; at least one is of the entry.
     """
-    if found.mission is None:
+    main = view.ask(nodes.mission)
+    if main is None:
         return None
     calls: dict[str | None, list[tuple[str, SourceNode]]] = {}
-    for tree in found.nodes.trees:
+    for tree in view.ask(nodes.nodes).trees:
         calls.setdefault(tree.name, []).extend(tree.calls)
     # Which name the root's entry has in which tree.
-    names = {(found.mission.tree, key)}
-    waiting = [found.mission.tree]
+    names = {(main.tree, key)}
+    waiting = [main.tree]
     while waiting:
         at = waiting.pop()
         for called, node in calls.get(at, ()):
@@ -109,11 +125,20 @@ def isolated(found: Requirements, writes: Sequence[tuple[SourceNode, str]], key:
     return writers[0]
 
 
-def declared_port(demanded: Demanded, node: SourceNode, port: str) -> Port | None:
-    """The port as the node's model, or the tree behind a SubTree, declares it."""
+def declared_port(view: View, node: SourceNode, port: str) -> Port | None:
+    """The port as the node's model, or the tree of a SubTree, declares it."""
     name = node.node.id
-    ports: tuple[Port, ...] = demanded.ask((_ports, name.text)) if name is not None else ()
+    ports = declared_ports(view, name.text) if name is not None else ()
     return next((each for each in ports if each.name is not None and each.name.text == port), None)
+
+
+def declared_ports(view: View, name: str) -> tuple[Port, ...]:
+    """The ports that a tree declares, or if it declares none, a model of the same name."""
+    for kind in (Kind.TREE, Kind.MODEL):
+        meaning = view.find(kind, name)
+        if meaning is not None and meaning.ports:
+            return meaning.ports
+    return ()
 
 
 def _is_script(node: SourceNode, key: str) -> bool:
@@ -130,12 +155,12 @@ def _assigned(script: str) -> Iterator[str]:
             yield variable.name
 
 
-def _writes(demanded: Demanded, node: SourceNode, port: str) -> bool | None:
-    """Whether a port is written, which is no input; None: nobody says."""
+def _writes(view: View, node: SourceNode, port: str) -> bool | None:
+    """Whether a port is written, which is so unless it is an input; None: that is not declared."""
     if node.kind is not None:
         builtin = node.kind.port(port)
         return builtin is not None and builtin.direction != "input"
-    declared = declared_port(demanded, node, port)
+    declared = declared_port(view, node, port)
     return declared.direction.raw != "input" if declared is not None else None
 
 
@@ -147,7 +172,3 @@ def _passed_on(node: SourceNode, names: set[str]) -> Iterator[str]:
             yield port
     if given.get("_autoremap", "false").lower() not in ("false", "0"):
         yield from (name for name in names if name not in given and not name.startswith("_"))
-
-
-def _ports(demanded: Demanded, name: str) -> tuple[Port, ...]:
-    return demanded.ports.get(name, ())

@@ -128,7 +128,9 @@ def _by_subject(workspace: Workspace, mission: str) -> dict[tuple[str, str], tup
     held: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":
-            nodes = held.setdefault((applied.requirement.name, applied.requirement.path), {})
+            defined_in = applied.requirement.place.path
+            assert defined_in is not None, "a definition is in a file"
+            nodes = held.setdefault((applied.requirement.name, defined_in), {})
             for source in applied.nodes:
                 word = source.node.head
                 nodes[source.path, word.span.shifted(workspace.files[source.path].start_of(source.item))] = None

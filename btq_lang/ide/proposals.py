@@ -23,11 +23,12 @@ from btq_lang.ide.measures import Measured, parameters_at
 from btq_lang.ide.outline import requirement_detail
 from btq_lang.ide.place import LineNode, Place, word_text
 from btq_lang.ide.ports import NodePort, declared_ports, ports_of_kind, ports_of_tree
-from btq_lang.requirements.nodes import Nodes
+from btq_lang.requirements.nodes import nodes as nodes_in_scope
 from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import Definition
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 
@@ -234,7 +235,7 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """What may stand behind `every`: kinds of nodes, be they only declared; a tree where its name is one."""
-    known = Nodes(workspace, workspace.scope(path))
+    known = Store(workspace).ask(nodes_in_scope, path)
     names = [one for one in node_names(workspace, path) if one.kind == "node" or known.every(one.label)]
     yield from (one for one in names if one.kind != "tree")
     used = {node.kind.tag: node.kind for node in known.all if node.kind is not None}

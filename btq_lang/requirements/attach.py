@@ -6,18 +6,18 @@ where two are equally specific and differ, a problem says so and neither counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final, TypeVar
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements import model
-from btq_lang.requirements.memory import is_same
+from btq_lang.requirements import inputs, model, nodes
+from btq_lang.requirements.definitions import requirement
 from btq_lang.requirements.model import (
     Applied,
     Argument,
     Bounded,
-    Claim,
     Every,
     InContext,
     Mission,
@@ -31,16 +31,20 @@ from btq_lang.requirements.model import (
     Use,
 )
 from btq_lang.requirements.paths import Problem
-from btq_lang.syntax.tree import Apply, Entry, NodeClause, ReqRef, Selector, Tree, Word, is_name
+from btq_lang.requirements.reader import Problems, Reader
+from btq_lang.requirements.trees import tree_nodes
+from btq_lang.syntax.tree import Apply, NodeClause, ReqRef, Selector, Tree, Word, is_name
 from btq_lang.syntax.tree import Argument as WrittenArgument
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span as TextSpan
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import requirements_at
+from btq_lang.workspace.workspace import Workspace
 
-if TYPE_CHECKING:
-    from btq_lang.requirements.reader import Reader
+T = TypeVar("T")
 
 
 class Uses(Record):
@@ -52,120 +56,195 @@ class Uses(Record):
 
     found: tuple[Use, ...]
     mentioned: frozenset[str]
+    problems: Problems
 
 
-class Held(Record):
-    """What a requirement holds for.
+class Attached(Record):
+    """What holds for nodes by its attachments.
 
     Attributes:
         traces: `satisfies` at nodes, where all claims name their subjects themselves.
-        by_tree: the same as `applied` with the `id` of the tree that it stands in, if it does in one.
-        filled: the requirement with arguments, by these, or with some of its claims, by their `id`s.
     """
 
-    applied: tuple[Applied, ...]
-    traces: tuple[Trace, ...]
-    by_tree: tuple[tuple[int, Applied], ...]
-    filled: dict[object, Requirement]
+    applied: tuple[Applied, ...] = ()
+    traces: tuple[Trace, ...] = ()
+    problems: Problems = ()
 
 
-NO_USES: Final = Uses((), frozenset())
+# ---- what an item attaches ----
 
 
-def uses_in(reader: Reader, path: str, entry: Entry) -> Uses:
-    """What an entry attaches to which nodes."""
+def uses_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Uses:
+    """What a tree or an `apply` attaches to which nodes."""
+    reader = Reader(store, viewpoint, path, facts)
     uses: list[Use] = []
     mentioned: set[str] = set()
-    reader.begin(path, entry)
-    if isinstance(entry.item, Tree):
-        _at_nodes(reader, entry.item, uses, mentioned)
-    elif isinstance(entry.item, Apply):
-        _applies(reader, entry.item, uses, mentioned)
-    return Uses(tuple(uses), frozenset(mentioned)) if mentioned else NO_USES
+    if isinstance(facts.item, Tree):
+        _at_nodes(reader, facts.item, uses, mentioned)
+    elif isinstance(facts.item, Apply):
+        _applies(reader, facts.item, uses, mentioned)
+    return Uses(tuple(uses), frozenset(mentioned), reader.problems)
 
 
-def held_by(
-    reader: Reader, requirement: Requirement, uses: tuple[Use, ...], before: tuple[Held, object] | None
-) -> Held:
-    """What a requirement holds for.
-
-    Args:
-        uses: its attachments, all of them.
-        before: what it held for when there were others, to share with; and what was wrong with that.
-    """
-    known = before[0] if before is not None else None
-    filled = _Filled(known.filled if known is not None else {})
-    applied = [*_by_subject(reader, requirement, filled)]
-    attached = [claim for claim in requirement.claims if claim.subject is None]
-    counting = _most_specific(reader, requirement, uses) if uses else []
-    if requirement.claims and not attached:
-        traces = tuple([Trace(requirement.name, use.target.node) for use in counting])
-        return _held(_shared(applied, known), traces, filled)
-    is_whole = len(attached) == len(requirement.claims)
-    for use in counting:
-        claims = requirement.claims if is_whole else tuple(attached)
-        made = filled.get(use.arguments, requirement, claims, use.arguments)
-        applied.append(Applied(made, use.target, use.arguments, use.place, use.how))
-    return _held(_shared(applied, known), (), filled)
+def mentioned_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> frozenset[str]:
+    """The requirements that a tree or an `apply` attaches."""
+    return store.ask(uses_in, viewpoint, path, facts).mentioned
 
 
-class _Filled:
-    """A requirement with some of its claims and arguments: most nodes get the same ones, as they did before."""
-
-    def __init__(self, before: dict[object, Requirement]) -> None:
-        self.made: dict[object, Requirement] = {}
-        self._before = before
-
-    def get(
-        self, key: object, requirement: Requirement, claims: tuple[Claim, ...], arguments: tuple[Argument, ...]
-    ) -> Requirement:
-        made = self.made.get(key) or self._before.get(key)
-        if made is None:
-            made = requirement if claims is requirement.claims else replace(requirement, claims=claims)
-            made = fill(made, arguments)
-        self.made[key] = made
-        return made
+def attached_names(store: Store[Workspace], viewpoint: str) -> frozenset[str]:
+    """The requirements that anything in scope attaches."""
+    items = inputs.attaching(store, viewpoint)
+    return frozenset().union(*[store.ask(mentioned_in, viewpoint, *each) for each in items])
 
 
-def _held(applied: tuple[Applied, ...], traces: tuple[Trace, ...], filled: _Filled) -> Held:
-    placed = [(_home(each), each) for each in applied]
-    return Held(applied, traces, tuple([(id(home), each) for home, each in placed if home is not None]), filled.made)
+# ---- what holds for the nodes of a tree ----
 
 
-def _home(applied: Applied) -> Tree | None:
+def applied_in(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Attached:
+    """What holds for nodes of a tree, in the order of the requirements; a span, too, by the node that it begins at."""
+    by_name: dict[str, tuple[list[Applied], list[Use]]] = {}
+    for applied in store.ask(_claimed_in, viewpoint, facts):
+        by_name.setdefault(applied.requirement.name, ([], []))[0].append(applied)
+    for use in uses_of_nodes(store, viewpoint, path, facts):
+        by_name.setdefault(use.requirement, ([], []))[1].append(use)
+    if not by_name:
+        return _NOTHING
+    names = [*by_name]
+    if len(names) > 1:
+        names.sort(key=store.ask(_order, viewpoint).__getitem__)
+    found: list[Applied] = []
+    traces: list[Trace] = []
+    problems: list[Problem] = []
+    for name in names:
+        claimed, uses = by_name[name]
+        attached = attached_by(store, viewpoint, name, uses)
+        found += (*claimed, *attached.applied)
+        traces += attached.traces
+        problems += attached.problems
+    return Attached(tuple(found), tuple(traces), tuple(problems))
+
+
+def attached_by(store: Store[Workspace], viewpoint: str, name: str, uses: Sequence[Use]) -> Attached:
+    """What a requirement holds for by some of its attachments: all of those to certain nodes."""
+    of_name, _ = store.ask(requirement, viewpoint, name)
+    if not uses or of_name is None:
+        return _NOTHING
+    which = tuple([at for at, claim in enumerate(of_name.claims) if claim.subject is None])
+    counting, problems = _most_specific(of_name, uses)
+    if of_name.claims and not which:
+        return Attached(traces=tuple([Trace(name, use.target.node) for use in counting]), problems=problems)
+    applied = [
+        Applied(_with(store, viewpoint, of_name, which, use.arguments), use.target, use.arguments, use.place, use.how)
+        for use in counting
+    ]
+    return Attached(tuple(applied), problems=problems)
+
+
+def uses_of_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> Iterable[Use]:
+    """The attachments to nodes of a tree, in the order of the items that say them."""
+    own = store.ask(uses_in, viewpoint, path, facts).found
+    given = store.ask(_given_to, viewpoint, facts) if inputs.applies(store, viewpoint) else ()
+    if not own or not given:
+        return own or given
+    order = {id(each.item): at for at, (_, each) in enumerate(inputs.attaching(store, viewpoint))}
+    return sorted((*own, *given), key=lambda use: order[id(use.place.anchor)])
+
+
+def _given_to(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Use, ...]:
+    """What `apply` items attach to nodes of a tree."""
+    return store.ask(_given, viewpoint).get(facts, ())
+
+
+def _given(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Use, ...]]:
+    uses = [use for each in inputs.applies(store, viewpoint) for use in store.ask(uses_in, viewpoint, *each).found]
+    return _by_tree((use.target.node.facts, use) for use in uses)
+
+
+# ---- what a claim holds for by its own subject ----
+
+
+def claimed(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
+    """What the claims of a requirement hold for that name their subjects themselves."""
+    if name not in inputs.claiming(store, viewpoint):
+        return ()
+    of_name, _ = store.ask(requirement, viewpoint, name)
+    return tuple(_by_subject(store, viewpoint, of_name)) if of_name is not None else ()
+
+
+def claimed_of_no_tree(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Applied, ...]:
+    """Those of them whose subject is in no tree: sums, and what begins with no node."""
+    return tuple([each for each in store.ask(claimed, viewpoint, name) if _home(each) is None])
+
+
+def _claimed_in(store: Store[Workspace], viewpoint: str, facts: Facts) -> tuple[Applied, ...]:
+    return store.ask(_claimed_by_tree, viewpoint).get(facts, ())
+
+
+def _claimed_by_tree(store: Store[Workspace], viewpoint: str) -> dict[Facts, tuple[Applied, ...]]:
+    names = inputs.claiming(store, viewpoint)
+    found = [(_home(each), each) for name in names for each in store.ask(claimed, viewpoint, name)]
+    return _by_tree((home, each) for home, each in found if home is not None)
+
+
+def _by_tree(found: Iterable[tuple[Facts, T]]) -> dict[Facts, tuple[T, ...]]:
+    lists: dict[Facts, list[T]] = {}
+    for facts, each in found:
+        lists.setdefault(facts, []).append(each)
+    return {facts: tuple(each) for facts, each in lists.items()}
+
+
+def _home(applied: Applied) -> Facts | None:
+    """The tree that a subject is in, or that a span begins in."""
     subject = applied.subject.first.subject if isinstance(applied.subject, Span) else applied.subject
     node = subject.node if isinstance(subject, Target | Mission) else None
-    return node.item if node is not None else None
+    return node.facts if node is not None else None
 
 
-def _shared(applied: list[Applied], before: Held | None) -> tuple[Applied, ...]:
-    """The same, but what was so before is the same object: what rests on it need not be found out again."""
-    if before is None:
-        return tuple(applied)
-    known = {_node_of(each): each for each in before.applied}
-    return tuple([old if (old := known.get(_node_of(each))) and is_same(each, old) else each for each in applied])
+def _order(store: Store[Workspace], viewpoint: str) -> dict[str, int]:
+    """The requirements, and where each is in their order."""
+    return {name: at for at, name in enumerate(inputs.names(store, viewpoint, Kind.REQUIREMENT))}
 
 
-def _node_of(applied: Applied) -> object:
-    subject = applied.subject
-    return (id(subject.node), subject.through) if isinstance(subject, Target) else None
+# ---- a requirement with arguments ----
 
 
-def fill(requirement: Requirement, arguments: tuple[Argument, ...]) -> Requirement:
+def _with(
+    store: Store[Workspace],
+    viewpoint: str,
+    of_name: Requirement,
+    which: tuple[int, ...],
+    arguments: tuple[Argument, ...],
+) -> Requirement:
+    """A requirement with some of its claims and with arguments: most nodes get the same one."""
+    if not arguments and len(which) == len(of_name.claims):
+        return of_name
+    return store.ask(_filled, viewpoint, of_name.name, which, arguments)
+
+
+def _filled(
+    store: Store[Workspace], viewpoint: str, name: str, which: tuple[int, ...], arguments: tuple[Argument, ...]
+) -> Requirement:
+    of_name, _ = store.ask(requirement, viewpoint, name)
+    assert of_name is not None, "whoever asks has seen it"
+    claims = tuple([of_name.claims[at] for at in which if at < len(of_name.claims)])
+    return fill(replace(of_name, claims=claims), arguments)
+
+
+def fill(of_name: Requirement, arguments: tuple[Argument, ...]) -> Requirement:
     """A requirement with arguments in the place of its parameters."""
     if not arguments:
-        return requirement
+        return of_name
     values = {argument.name: argument.value for argument in arguments}
-    filled = _filled(requirement, values)
+    filled = _filled_part(of_name, values)
     assert isinstance(filled, Requirement), "a part is filled with a part of its kind"
-    return replace(filled, parameters=requirement.parameters)
+    return replace(filled, parameters=of_name.parameters)
 
 
-def _filled(part: object, values: dict[str, Bounded]) -> object:
+def _filled_part(part: object, values: dict[str, Bounded]) -> object:
     if isinstance(part, Parameter):
         return values.get(part.name, part)
     if isinstance(part, tuple):
-        return tuple([_filled(each, values) for each in part])
+        return tuple([_filled_part(each, values) for each in part])
     if type(part).__module__ != model.__name__ or isinstance(part, SourceNode | InContext):
         return part  # no parameter is known in a context
     fields = fields_of(part)
@@ -174,159 +253,169 @@ def _filled(part: object, values: dict[str, Bounded]) -> object:
     changes = {}
     for field in fields:
         old = getattr(part, field)
-        new = _filled(old, values)
+        new = _filled_part(old, values)
         if new is not old and new != old:
             changes[field] = new
     return replace(part, **changes) if changes else part
 
 
-def _by_subject(reader: Reader, requirement: Requirement, filled: _Filled) -> Iterator[Applied]:
+def _by_subject(store: Store[Workspace], viewpoint: str, of_name: Requirement) -> Iterator[Applied]:
     """A claim's own subject wins over whatever the requirement is attached to."""
-    arguments = tuple(Argument(each.name, each.default) for each in requirement.parameters if each.default is not None)
-    if len(arguments) < len(requirement.parameters):
+    arguments = tuple(Argument(each.name, each.default) for each in of_name.parameters if each.default is not None)
+    if len(arguments) < len(of_name.parameters):
         return
-    groups: dict[object, tuple[Subject, list[Claim]]] = {}
-    for claim in requirement.claims:
+    groups: dict[object, tuple[Subject, list[int]]] = {}
+    for at, claim in enumerate(of_name.claims):
         subject = claim.subject
         if isinstance(subject, Every):
-            for node in reader.every(subject.name):
-                groups.setdefault(id(node), (Target(node), []))[1].append(claim)
+            for node in store.ask(nodes.every, viewpoint, subject.name):
+                groups.setdefault(id(node), (Target(node), []))[1].append(at)
         elif isinstance(subject, Target) and not subject.through:
-            groups.setdefault(id(subject.node), (subject, []))[1].append(claim)
+            groups.setdefault(id(subject.node), (subject, []))[1].append(at)
         elif subject is not None:
-            groups.setdefault(subject, (subject, []))[1].append(claim)
-    for subject, claims in groups.values():
-        made = filled.get(tuple(map(id, claims)), requirement, tuple(claims), arguments)
-        yield Applied(made, subject, arguments, claims[0].place, "subject")  # type: ignore[arg-type]  # no Every is left
+            groups.setdefault(subject, (subject, []))[1].append(at)
+    for subject, which in groups.values():
+        made = _with(store, viewpoint, of_name, tuple(which), arguments)
+        place = of_name.claims[which[0]].place
+        yield Applied(made, subject, arguments, place, "subject")  # type: ignore[arg-type]  # no Every is left
 
 
 def _at_nodes(reader: Reader, tree: Tree, uses: list[Use], mentioned: set[str]) -> None:
-    nodes = reader.nodes.within(tree)
-    places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(nodes.root, tree.clauses)]
-    places += [(node, node.node.clauses) for node in nodes.all if node.node.clauses]
+    of_tree = reader.store.ask(tree_nodes, reader.viewpoint, reader.path, reader.facts)
+    places: list[tuple[SourceNode | None, tuple[NodeClause, ...]]] = [(of_tree.root, tree.clauses)]
+    places += [(node, node.node.clauses) for node in of_tree.all if node.node.clauses]
     for node, clauses in places:
         for written in requirements_at(clauses):
             word = written.name
-            requirement = reader.requirement(word.text) if word is not None else None
-            if word is None or requirement is None:
+            of_name = _requirement(reader, word.text) if word is not None else None
+            if word is None or of_name is None:
                 continue
-            mentioned.add(requirement.name)
-            arguments = _arguments(reader, requirement, written, word.span)
+            mentioned.add(of_name.name)
+            arguments = _arguments(reader, of_name, written, word.span)
             if arguments is not None and node is not None:
-                of = Target(node)
-                uses.append(Use(requirement.name, of, arguments, _AT_NODE, "satisfies", reader.path, tree, word.span))
+                place = reader.place(word.span)
+                uses.append(Use(of_name.name, Target(node), arguments, _AT_NODE, "satisfies", place))
 
 
 def _applies(reader: Reader, apply: Apply, uses: list[Use], mentioned: set[str]) -> None:
     targets = [found for selector in apply.targets for found in _selected(reader, selector)]
     excepted = _excepted(reader, apply, {id(target.node) for target, _ in targets})
     for reference in apply.uses:
-        requirement = reader.requirement(reference.name.text)
-        if requirement is None:
+        of_name = _requirement(reader, reference.name.text)
+        if of_name is None:
             continue
-        mentioned.add(requirement.name)
-        arguments = _arguments(reader, requirement, reference, reference.name.span)
+        mentioned.add(of_name.name)
+        arguments = _arguments(reader, of_name, reference, reference.name.span)
         if arguments is None:
             continue
-        span = reference.name.span
+        place = reader.place(reference.name.span)
         for target, rank in targets:
             if id(target.node) not in excepted:
-                uses.append(Use(requirement.name, target, arguments, rank, "apply", reader.path, apply, span))
+                uses.append(Use(of_name.name, target, arguments, rank, "apply", place))
+
+
+def _requirement(reader: Reader, name: str) -> Requirement | None:
+    return reader.store.ask(requirement, reader.viewpoint, name)[0]
 
 
 def _excepted(reader: Reader, apply: Apply, applied_to: set[int]) -> set[int]:
-    """The nodes behind `except`; those of a selector should be among the ones applied to."""
+    """The nodes after `except`; those of a selector should be among the ones applied to."""
     excepted: set[int] = set()
     for selector in apply.exceptions:
-        nodes = {id(target.node) for target, _ in _selected(reader, selector)}
-        if nodes and applied_to and nodes.isdisjoint(applied_to) and reader.knows_all_nodes:
+        named = {id(target.node) for target, _ in _selected(reader, selector)}
+        if named and applied_to and named.isdisjoint(applied_to) and reader.knows_all_nodes:
             message = "`except` has no effect: the selector does not match any of these nodes"
             span = TextSpan(selector.start, selector.end)
             reader.complain("unmatched-path", span, message, severity=Severity.WARNING)
-        excepted |= nodes
+        excepted |= named
     return excepted
 
 
 def _selected(reader: Reader, selector: Selector) -> Iterator[tuple[Target, int]]:
     """The nodes that a selector means, and how specific it is."""
     if selector.tag is not None:
-        nodes = reader.ask("tagged", selector.tag.text)
-        if not nodes:
+        found = reader.store.ask(nodes.tagged, reader.viewpoint, selector.tag.text)
+        if not found:
             reader.no_tag(selector.tag)
-        yield from ((Target(node), _EVERY) for node in nodes)
+        yield from ((Target(node), _EVERY) for node in found)
     elif selector.every is not None:
-        nodes = reader.every(selector.every.text)
-        if not nodes:
+        found = reader.every(selector.every.text)
+        if not found:
             reader.none_of(selector.every)
         rank = _EVERY
         if selector.path is not None:
             top = reader.target(selector.path)
-            below = reader.ask("under", (selector.every.text, top)) if top is not None else ()
-            if nodes and top is not None and not below and reader.knows_all_nodes:
+            below = _under(reader, selector.every.text, top) if top is not None else ()
+            if found and top is not None and not below and reader.knows_all_nodes:
                 shown = "/".join(name.text for name in selector.path.names)
                 message = f"no node matches `every {selector.every.raw}` below `{shown}`"
                 reader.complain("unmatched-path", selector.every.span, message)
-            nodes, rank = below, _EVERY_UNDER
-        yield from ((Target(node), rank) for node in nodes)
+            found, rank = below, _EVERY_UNDER
+        yield from ((Target(node), rank) for node in found)
     elif selector.path is not None:
         target = reader.target(selector.path)
         if target is not None:
             yield target, _PATH
 
 
+def _under(reader: Reader, name: str, top: Target) -> tuple[SourceNode, ...]:
+    return reader.store.ask(nodes.every_under, reader.viewpoint, name, top)
+
+
 def _arguments(
-    reader: Reader, requirement: Requirement, written: WrittenRequirement | ReqRef, span: TextSpan
+    reader: Reader, of_name: Requirement, written: WrittenRequirement | ReqRef, span: TextSpan
 ) -> tuple[Argument, ...] | None:
-    """What the parameters stand for; None: something is missing or wrong, and told."""
+    """The values of the parameters; None: something is missing or wrong, and reported."""
     given: dict[str, Bounded] = {}
     complete = True
-    parameters = {parameter.name: parameter for parameter in requirement.parameters}
+    parameters = {parameter.name: parameter for parameter in of_name.parameters}
     for argument in written.arguments if isinstance(written, ReqRef) else ():
         parameter = parameters.get(argument.name.text)
         if parameter is None:
-            _no_parameter(reader, requirement, argument)
+            _no_parameter(reader, of_name, argument)
             complete = False
         elif argument.value is not None and (value := reader.argument(parameter, argument.value)) is not None:
             given.setdefault(parameter.name, value)
         else:
             complete = False
-    missing = [each.name for each in requirement.parameters if each.name not in given and each.default is None]
+    missing = [each.name for each in of_name.parameters if each.name not in given and each.default is None]
     if missing and complete:
         names = " and ".join(f"`{name}`" for name in missing)
-        related = (Related(requirement.place, "defined here"),)
+        related = (Related(of_name.place, "defined here"),)
         example = ", ".join(f"{name} = …" for name in missing)
         reader.complain(
             "wrong-argument",
             span,
-            f"`{requirement.name}` requires a value for {names}",
+            f"`{of_name.name}` requires a value for {names}",
             related=related,
-            notes=(f"write `{requirement.name}({example})`, or add a default to its definition",),
+            notes=(f"write `{of_name.name}({example})`, or add a default to its definition",),
         )
     if missing or not complete:
         return None
-    values = ((each.name, given.get(each.name, each.default)) for each in requirement.parameters)
+    values = ((each.name, given.get(each.name, each.default)) for each in of_name.parameters)
     return tuple(Argument(name, value) for name, value in values if value is not None)
 
 
-def _no_parameter(reader: Reader, requirement: Requirement, argument: WrittenArgument) -> None:
+def _no_parameter(reader: Reader, of_name: Requirement, argument: WrittenArgument) -> None:
     word: Word = argument.name
-    known = [parameter.name for parameter in requirement.parameters]
+    known = [parameter.name for parameter in of_name.parameters]
     likely = [name for name in near(word.text, known) if is_name(name)]
     fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in likely)
     notes = (f"its parameters: {', '.join(f'`{name}`' for name in known)}",) if known else ("it has no parameters",)
     reader.complain(
         "wrong-argument",
         word.span,
-        f"`{requirement.name}` has no parameter `{word.text}`{did_you_mean(likely)}",
-        related=(Related(requirement.place, "defined here"),),
+        f"`{of_name.name}` has no parameter `{word.text}`{did_you_mean(likely)}",
+        related=(Related(of_name.place, "defined here"),),
         notes=notes,
         fixes=fixes,
     )
 
 
-def _most_specific(reader: Reader, requirement: Requirement, uses: tuple[Use, ...]) -> list[Use]:
-    """One use for each node, or for each way that a path leads to it."""
+def _most_specific(of_name: Requirement, uses: Sequence[Use]) -> tuple[list[Use], Problems]:
+    """One use for each node, or for each way that a path leads to it; and where two are as specific, and differ."""
     found: list[Use] = []
+    problems: list[Problem] = []
     of_node: dict[tuple[int, tuple[str, ...]], list[Use]] = {}
     for use in uses:
         of_node.setdefault((id(use.target.node), use.target.through), []).append(use)
@@ -340,15 +429,15 @@ def _most_specific(reader: Reader, requirement: Requirement, uses: tuple[Use, ..
         node = best[0].target.node
         diagnostic = Diagnostic(
             "ambiguous-application",
-            other.span,
-            f"`{requirement.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}",
+            other.place.span,
+            f"`{of_name.name}` has two values for {node.shown}: {_said(best[0])} and {_said(other)}",
             related=(Related(best[0].place, "other value"), Related(node.place, "node")),
             notes=(
                 "a clause at the node takes precedence over a path, a path over `every … under`, that over `every`",
             ),
         )
-        reader.note(Problem(other.path, other.item, diagnostic))
-    return found
+        problems.append(Problem(other.place, diagnostic))
+    return found, tuple(problems)
 
 
 def _values(use: Use) -> tuple[object, ...]:
@@ -364,3 +453,4 @@ _AT_NODE: Final = 4
 _PATH: Final = 3
 _EVERY_UNDER: Final = 2
 _EVERY: Final = 1
+_NOTHING: Final = Attached()

@@ -1,26 +1,27 @@
 """Budgets: how long nodes take if all that is demanded of the nodes below them holds, and how likely that is.
 
 One invariant: a node's budget rests on what its children are held to, and where a child has a bound of its own, on that
-bound and not on what its own children would need: whoever breaks a bound is told at the node that has it.  A bound that
-holds for some activations only (a scope, some instances) is none here.
+bound and not on what its own children would need: a broken bound is reported at the node that has it.  A bound that
+holds for some activations only (a scope, some instances) does not count here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from math import fsum, inf
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from btq_lang.catalog.verbs import VERBS
+from btq_lang.requirements import nodes
+from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.composition import Budget, compose, port_count, port_seconds, unknown
 from btq_lang.requirements.durations import ANY, ZERO, Range, Term, hull
-from btq_lang.requirements.memory import Memory, is_same
 from btq_lang.requirements.model import Applied, Bounded, Claim, Limit, SourceNode, Table, Target, Value
+from btq_lang.requirements.trees import TreeNodes, tree_named, tree_nodes, trees_called
 from btq_lang.util.record import Record, replace
-
-if TYPE_CHECKING:
-    from btq_lang.requirements.resolved import Requirements
-    from btq_lang.requirements.trees import TreeNodes
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.workspace import Workspace
 
 __all__ = ["Budget", "Budgets", "Gap", "Range", "Success", "Term"]
 
@@ -38,86 +39,88 @@ class Success(Record):
 
 
 class Gap(Record):
-    """Why no bound can be said: the node, and the reason in words to stand behind its name."""
+    """Why no bound is known: the node, and the reason in words to follow its name."""
 
     node: SourceNode
     reason: str
 
 
-class _TreeBudgets:
-    """The budgets of one tree's nodes, as far as anybody has asked for them.
+class Outcome(Record):
+    """What other trees see of a tree: how long it takes, and how likely it succeeds, but not what that is made of.
 
     Attributes:
-        applied: what holds for its nodes.
-        claims: the claims that count, by the node.
-        composed, held, successes: by the node; of a SubTree node they say nothing of what they are made of, for that
-            is in another tree.
-        asked: what was asked of other trees, by their names: the root that was run, and the answer.
+        is_run: there is such a tree, and it does not contain itself.
     """
 
-    __slots__ = ("applied", "asked", "claims", "composed", "held", "successes", "tree")
+    budget: Budget
+    success: Success | None = None
+    is_run: bool = False
 
-    def __init__(self, tree: TreeNodes, applied: tuple[Applied, ...]) -> None:
-        self.tree = tree
-        self.applied = applied
-        self.claims: dict[int, list[tuple[Applied, Claim]]] = {}
-        for each in applied:
-            if isinstance(each.subject, Target) and not each.subject.through and not each.requirement.scopes:
-                for claim in each.requirement.claims:
-                    self.claims.setdefault(id(each.subject.node), []).append((each, claim))
-        self.composed: dict[int, Budget] = {}
-        self.held: dict[int, Budget] = {}
-        self.successes: dict[int, Success | None] = {}
-        self.asked: dict[str, tuple[SourceNode | None, object]] = {}
+
+# ---- queries ----
+
+
+def tree_budgets(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> TreeBudgets:
+    """The budgets of the nodes of a tree, with all that they rest on."""
+    tree = store.ask(tree_nodes, viewpoint, path, facts)
+    applied = store.ask(applied_in, viewpoint, path, facts).applied
+    return TreeBudgets(tree, applied, {name: store.ask(outcome, viewpoint, name) for name in tree.called})
+
+
+def outcome(store: Store[Workspace], viewpoint: str, name: str) -> Outcome:
+    """What other trees see of the tree that a name means."""
+    tree = store.ask(tree_named, viewpoint, name)
+    if tree is None or tree.root is None:
+        return _UNKNOWN_TREE
+    if store.ask(_contains_itself, viewpoint, name):
+        return Outcome(unknown("is a tree that contains itself"))
+    budgets = store.ask(tree_budgets, viewpoint, tree.path, tree.facts)
+    success = budgets.success(tree.root)
+    seen = Success(success.seconds, success.probability) if success is not None else None
+    return Outcome(_without_terms(budgets.of(tree.root)), seen, is_run=True)
+
+
+@on_circle(True)
+def _contains_itself(store: Store[Workspace], viewpoint: str, name: str) -> bool:
+    for other in store.ask(trees_called, viewpoint, name):
+        store.ask(_contains_itself, viewpoint, other)
+    return False
+
+
+# ---- all nodes in scope ----
 
 
 class Budgets:
-    """The budgets of all nodes that a file sees."""
+    """The budgets of all nodes that a file sees: it asks the store for whoever asks."""
 
-    def __init__(self, found: Requirements, memory: Memory | None = None) -> None:
-        """memory: that of the requirements; budgets that come out as before are taken from it."""
-        self._found = found
-        self._nodes = found.nodes
-        self._trees: dict[int, _TreeBudgets] = {}
-        if memory is not None:
-            self._take_over(memory)
-            memory.budgets = self._trees, memory.turn
+    def __init__(self, store: Store[Workspace], viewpoint: str) -> None:
+        self._store: Final = store
+        self._viewpoint: Final = viewpoint
 
     def of(self, node: SourceNode) -> Budget:
         """How long a node takes, if it and all below it are as demanded: what its parent counts with."""
-        return self._work_out(node).held[id(node)]
+        return self._in_tree(node).of(node)
 
     def composed(self, node: SourceNode) -> Budget:
         """How long a node takes, if all below it are as demanded: what its own bounds are held against."""
-        found = self._work_out(node)
-        root = self._run_before(node)
-        return found.composed[id(node)] if root is None else _as_part(root, self.of(root))
+        root, seen = self._run_by(node)
+        return self._in_tree(node).composed(node) if root is None else _as_part(root, seen.budget)
 
     def composed_of_known(self, node: SourceNode) -> Budget:
-        """The same, if what nobody knows a bound of takes no longer than it must: what the others may take alone."""
-        return self._compose_known(self._work_out(node), node)
+        """The same, if what has no known bound takes no longer than it must: what the others may take alone."""
+        return self._in_tree(node).composed_of_known(node)
 
     def success(self, node: SourceNode) -> Success | None:
-        """How likely a node succeeds, and within which time, if all below it are as demanded; None: nobody says."""
-        root = self._nodes.run_by(node)
-        if root is not None:
-            return _success_as_part(root, self._work_out(root).successes[id(root)])
-        return self._composed_success(self._work_out(node), node)
+        """How likely a node succeeds, and within which time, if all below it are as demanded; None: that is unknown."""
+        root, seen = self._run_by(node)
+        return self._in_tree(node).composed_success(node) if root is None else _success_as_part(root, seen.success)
 
     def success_of_known(self, node: SourceNode) -> Success | None:
-        """The same, if that of which nobody says it always succeeds, at once: no more is ensured."""
-        found = self.success(node)
-        if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
-            return found
-        successes = self._work_out(node).successes
-        parts = [successes[id(child)] or self.success_of_known(child) for child in node.children]
-        if not any(parts):
-            return None
-        known = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
-        return _success_of(node, [part or _SURE for part in known])
+        """The same, if nodes of which it is unknown always succeed, at once: no more is ensured."""
+        return self.success(node) or self._in_tree(node).success_of_known(node)
 
     def gaps(self, node: SourceNode) -> tuple[Gap, ...]:
-        """Why no bound can be said of a node, if all below it are as demanded; the first reasons, if there are many."""
+        """Why a node has no bound, if all below it are as demanded; the first reasons, if there are many."""
         found: dict[Gap, None] = {}
         seen: set[int] = set()  # a tree may be run from many places
         waiting = [node]
@@ -131,190 +134,151 @@ class Budgets:
                 continue
             if composed.reason:
                 found[Gap(at, composed.reason)] = None
-            root = self._run_before(at)
+            root, _ = self._run_by(at)
             below = at.children if root is None else [root]
             waiting += [child for child in reversed(below) if not self.of(child).is_bounded]
         return tuple(found)
 
-    def in_tree(self, tree: TreeNodes) -> object:
-        """What all answers about the nodes of a tree are taken from: the same object as long as they stay the same."""
-        return self._in(tree)
+    def _in_tree(self, node: SourceNode) -> TreeBudgets:
+        return self._store.ask(tree_budgets, self._viewpoint, node.path, node.facts)
 
-    def _take_over(self, memory: Memory) -> None:
-        """What would come out the same: a tree with what holds for its nodes, and with the trees that it runs."""
-        before, turn = memory.budgets
-        if not before:
-            return
-        from heapq import heappop, heappush  # only an edit needs them
+    def _run_by(self, node: SourceNode) -> tuple[SourceNode | None, Outcome]:
+        """The root that a SubTree node runs, unless that tree contains itself, and what is seen of it."""
+        name = node.node.id
+        if node.category != "SubTree" or name is None:
+            return None, _UNKNOWN_TREE
+        seen = self._store.ask(outcome, self._viewpoint, name.text)
+        return self._store.ask(nodes.root, self._viewpoint, name.text) if seen.is_run else None, seen
 
-        nodes, by_tree = self._nodes, self._found.by_tree
-        trees = nodes.in_order
-        places: Sequence[int] = range(len(trees))
-        if turn == memory.turn - 1 and memory.touched is not None and nodes.others is not None:
-            # Those of all other trees would come out the same, and of as many there are few others.
-            self._trees.update(before)
-            touched = {id(tree.item) for pair in nodes.others for tree in pair}.union(memory.touched)
-            for item in touched:
-                self._trees.pop(item, None)
-            found = [nodes.place(item) for item in touched]
-            places = sorted([at for at in found if at is not None])
-        waiting: list[int] = []  # places in that order, of trees whose budgets may come out otherwise
-        for at in places:
-            tree = trees[at]
-            item = id(tree.item)
-            known = before.get(item)
-            if known is not None and known.tree is tree:
-                applied = by_tree.get(item, ())
-                if applied is known.applied or is_same(applied, known.applied):
-                    self._trees[item] = known
-                    continue
-            waiting.append(at)
-        if nodes.is_ordered_as_before:
-            callers = [node for name in nodes.renamed for node in nodes.callers(name)]
-            waiting = sorted({*waiting, *(nodes.position(node.item) for node in callers)})
-        else:
-            waiting = [*range(len(trees))]
-        others: set[str | None] = set()
-        seen = set(waiting)
-        while waiting:  # each behind those that it runs
-            at = heappop(waiting)
-            tree = trees[at]
-            known = self._trees.get(id(tree.item))
-            if known is not None and self._says_the_same(known, others):
-                continue
-            self._trees.pop(id(tree.item), None)
-            others.add(tree.name)
-            for caller in nodes.callers(tree.name):
-                above = nodes.position(caller.item)
-                if above > at and above not in seen:
-                    seen.add(above)
-                    heappush(waiting, above)
 
-    def _says_the_same(self, known: _TreeBudgets, others: set[str | None]) -> bool:
-        """Whether all is so that was asked for the budgets of a tree.
+# ---- one tree ----
 
-        Args:
-            others: the trees whose budgets are made anew.
+
+class TreeBudgets:
+    """The budgets of a tree's nodes, as far as anybody has asked for them: most nodes of a file nobody asks for.  Those
+    of a SubTree node do not say what they are made of, for that is in another tree."""
+
+    __slots__ = ("_claims", "_composed", "_held", "_outcomes", "_successes")
+
+    def __init__(self, tree: TreeNodes, applied: tuple[Applied, ...], outcomes: Mapping[str, Outcome]) -> None:
         """
-        for name, (root_before, outcome) in known.asked.items():
-            root = self._nodes.root(name)
-            if root is not None and self._nodes.position(root.item) >= self._nodes.position(known.tree.item):
-                root = None
-            is_same_root = root is root_before and root is not None and name not in others
-            if not is_same_root and self._outcome(known.tree, name) != outcome:
-                return False
-        return True
+        Args:
+            applied: what holds for its nodes.
+            outcomes: of the trees that it runs, by their names.
+        """
+        self._outcomes = outcomes
+        self._claims: dict[int, list[tuple[Applied, Claim]]] = {}  # those that count, by the `id` of the node
+        for each in applied:
+            if isinstance(each.subject, Target) and not each.subject.through and not each.requirement.scopes:
+                for claim in each.requirement.claims:
+                    self._claims.setdefault(id(each.subject.node), []).append((each, claim))
+        self._composed: dict[int, Budget] = {}
+        self._held: dict[int, Budget] = {}
+        self._successes: dict[int, Success | None] = {}
 
-    def _in(self, tree: TreeNodes) -> _TreeBudgets:
-        found = self._trees.get(id(tree.item))
-        if found is None:
-            found = self._trees[id(tree.item)] = _TreeBudgets(tree, self._found.in_tree(tree))
-        return found
+    def of(self, node: SourceNode) -> Budget:
+        """How long a node takes, if it and all below it are as demanded."""
+        self._work_out(node)
+        return self._held[id(node)]
 
-    def _work_out(self, top: SourceNode) -> _TreeBudgets:
-        """Compose a node, and before it what it rests on: most nodes of a file nobody asks for."""
-        found = self._in(self._nodes.within(top.item))
-        waiting = [top] if id(top) not in found.held else []
+    def composed(self, node: SourceNode) -> Budget:
+        """How long a node takes, if all below it are as demanded."""
+        self._work_out(node)
+        return self._composed[id(node)]
+
+    def success(self, node: SourceNode) -> Success | None:
+        """What a node's own claims say of its success, else what its children's do."""
+        self._work_out(node)
+        return self._successes[id(node)]
+
+    def composed_of_known(self, node: SourceNode) -> Budget:
+        """As of all budgets."""
+        composed = self.composed(node)
+        if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
+            return composed if _is_sure(composed) else _shortest(composed)
+        parts = {id(child.node): _as_part(child, self._known(child)) for child in node.children}
+        found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
+        return found if found.is_bounded else _shortest(composed)
+
+    def success_of_known(self, node: SourceNode) -> Success | None:
+        """As of all budgets."""
+        found = self.composed_success(node)
+        if found is not None or node.category == "SubTree" or not node.children or _may_be_passed(node):
+            return found
+        parts = [self.success(child) or self.success_of_known(child) for child in node.children]
+        if not any(parts):
+            return None
+        known = [_success_as_part(child, part) for child, part in zip(node.children, parts, strict=True)]
+        return _success_of(node, [part or _SURE for part in known])
+
+    def composed_success(self, node: SourceNode) -> Success | None:
+        """What is known of a node's success from its children's."""
+        if node.category == "SubTree":
+            return self._outcome_of(node).success
+        budget = self.composed(node)
+        if not node.children:
+            sure = budget.success is not None and budget.failure is None and budget.success.high < inf
+            return Success(budget.success.high, 1.0) if sure and budget.success is not None else None
+        if _may_be_passed(node):
+            return None
+        parts = [_success_as_part(child, self._successes[id(child)]) for child in node.children]
+        known = [part for part in parts if part is not None]
+        if len(known) < len(node.node.children):
+            return None
+        return _success_of(node, known)
+
+    def _work_out(self, top: SourceNode) -> None:
+        """Compose a node, and before it what it rests on."""
+        waiting = [top] if id(top) not in self._held else []
         while waiting:
             node = waiting[-1]
-            at = found if node.item is top.item else self._in(self._nodes.within(node.item))
-            missing = [child for child in node.children if id(child) not in at.held] if node.children else []
-            root = self._run_before(node) if node.category == "SubTree" else None
-            if root is not None and id(root) not in self._in(self._nodes.within(root.item)).held:
-                missing.append(root)
+            missing = [child for child in node.children if id(child) not in self._held]
             if missing:
                 waiting += missing
                 continue
             waiting.pop()
-            if id(node) not in at.held:
-                composed = at.composed[id(node)] = self._compose(at, node)
-                claims = at.claims.get(id(node), [])
+            if id(node) not in self._held:
+                composed = self._composed[id(node)] = self._compose(node)
+                claims = self._claims.get(id(node), [])
                 held = _with_claims(composed, claims) if claims or composed.probability < 1.0 else composed
-                at.held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
-                at.successes[id(node)] = self._succeeding(at, node)
-        return found
+                self._held[id(node)] = _with_attributes(node, held) if node.node.attributes else held
+                self._successes[id(node)] = self._succeeding(node)
 
-    def _run_before(self, node: SourceNode) -> SourceNode | None:
-        """The root that a SubTree node runs, unless that would be running in a circle."""
-        root = self._nodes.run_by(node) if node.category == "SubTree" else None
-        if root is None:
-            return None
-        return root if self._nodes.position(root.item) < self._nodes.position(node.item) else None
+    def _outcome_of(self, node: SourceNode) -> Outcome:
+        """What is seen of the tree that a SubTree node runs."""
+        name = node.node.id
+        return self._outcomes[name.text] if name is not None else _UNKNOWN_TREE
 
-    def _outcome(self, tree: TreeNodes, name: str) -> object:
-        """What a tree learns of one that it runs: all but what that is made of."""
-        root = self._nodes.root(name)
-        if root is None or self._nodes.position(root.item) >= self._nodes.position(tree.item):
-            return root is None
-        budgets = self._work_out(root)
-        success = budgets.successes[id(root)]
-        return _without_terms(budgets.held[id(root)]), success and (success.seconds, success.probability)
-
-    def _compose(self, at: _TreeBudgets, node: SourceNode) -> Budget:
+    def _compose(self, node: SourceNode) -> Budget:
         if node.category == "SubTree":
-            root = self._run_before(node)
-            if node.node.id is not None:
-                name = node.node.id.text
-                at.asked[name] = root, self._outcome(at.tree, name)
-            if root is not None:
-                return _without_terms(self._in(self._nodes.within(root.item)).held[id(root)])
-            is_known = self._nodes.run_by(node) is not None
-            return unknown("is a tree that contains itself" if is_known else "is an unknown tree")
+            return self._outcome_of(node).budget
         if node.kind is None and not node.node.children:
             return _CONDITION if node.category == "Condition" else _NO_CLAUSE
         if node.kind is None:
             return unknown("is a custom control or decorator node")
         if not node.node.children:
             return compose(node, ())
-        parts = {id(child.node): _as_part(child, at.held[id(child)]) for child in node.children}
+        parts = {id(child.node): _as_part(child, self._held[id(child)]) for child in node.children}
         return compose(node, [parts.get(id(child), _XML) for child in node.node.children])
 
-    def _compose_known(self, at: _TreeBudgets, node: SourceNode) -> Budget:
-        composed = at.composed[id(node)]
-        if node.category == "SubTree" or node.kind is None or not node.children or _is_sure(composed):
-            return composed if _is_sure(composed) else _shortest(composed)
-        parts = {id(child.node): _as_part(child, self._known(at, child)) for child in node.children}
-        found = compose(node, [parts.get(id(child), _shortest(_XML)) for child in node.node.children])
-        return found if found.is_bounded else _shortest(composed)
-
-    def _known(self, at: _TreeBudgets, node: SourceNode) -> Budget:
-        held = at.held[id(node)]
+    def _known(self, node: SourceNode) -> Budget:
+        held = self.of(node)
         if _is_sure(held):
             return held
-        sure = [claim for applied, claim in at.claims.get(id(node), ()) if applied.requirement.odds is None]
-        found = _all_narrowed(self._compose_known(at, node), sure)
+        sure = [claim for applied, claim in self._claims.get(id(node), ()) if applied.requirement.odds is None]
+        found = _all_narrowed(self.composed_of_known(node), sure)
         return found if found.is_bounded else _shortest(found)
 
-    # ---- the likelihood of success ----
-
-    def _succeeding(self, at: _TreeBudgets, node: SourceNode) -> Success | None:
-        """What a node's own claims say of its success, else what its children's do."""
+    def _succeeding(self, node: SourceNode) -> Success | None:
         found: list[Success] = []
-        for applied, claim in at.claims.get(id(node), ()):
+        for applied, claim in self._claims.get(id(node), ()):
             if VERBS[claim.verb].limits == "success":
                 odds = applied.requirement.odds
                 high = _range(claim.limit).high if claim.limit is not None else inf
                 found.append(Success(high, odds.probability if odds is not None else 1.0))
         if found:
             return max(found, key=lambda each: (each.probability, -each.seconds))
-        return self._composed_success(at, node)
-
-    def _composed_success(self, at: _TreeBudgets, node: SourceNode) -> Success | None:
-        if node.category == "SubTree":
-            root = self._run_before(node)
-            found = self._in(self._nodes.within(root.item)).successes[id(root)] if root is not None else None
-            return Success(found.seconds, found.probability) if found is not None else None
-        budget = at.composed[id(node)]
-        if not node.children:
-            sure = budget.success is not None and budget.failure is None and budget.success.high < inf
-            return Success(budget.success.high, 1.0) if sure and budget.success is not None else None
-        if _may_be_passed(node):
-            return None
-        parts = [_success_as_part(child, at.successes[id(child)]) for child in node.children]
-        known = [part for part in parts if part is not None]
-        if len(known) < len(node.node.children):
-            return None
-        return _success_of(node, known)
+        return self.composed_success(node)
 
 
 def _may_be_passed(node: SourceNode) -> bool:
@@ -426,7 +390,7 @@ def _all_narrowed(budget: Budget, claims: list[Claim]) -> Budget:
 
 
 def _narrowed(budget: Budget, claim: Claim) -> Budget:
-    """A budget, if a claim holds, too.  Where both cannot hold, the claim counts: the other is told at its place."""
+    """A budget, if a claim holds, too.  Where both cannot hold, the claim counts: the other is reported elsewhere."""
     limits = VERBS[claim.verb].limits
     if claim.limit is None or not limits:
         return budget
@@ -460,7 +424,7 @@ def _range(limit: Limit) -> Range:
 
 
 def _extreme(bounded: Bounded, *, highest: bool) -> float:
-    """The highest or lowest value of a bound; of a signal nobody knows it."""
+    """The highest or lowest value of a bound; of a signal it is unknown."""
     values = [case.value for case in bounded.cases] if isinstance(bounded, Table) else [bounded]
     numbers = [value.si if isinstance(value, Value) else inf if highest else 0.0 for value in values]
     return max(0.0, max(numbers)) if highest else min(numbers)
@@ -472,3 +436,4 @@ _NO_CLAUSE: Final = Budget(ANY, ANY, None, reason="has no `takes` clause")
 _SURE: Final = Success(0.0, 1.0)
 _XML: Final = unknown("has a child in XML")
 _CHANGING: Final = frozenset(("_failureIf", "_successIf", "_skipIf", "_while"))
+_UNKNOWN_TREE: Final = Outcome(unknown("is an unknown tree"))

@@ -1,7 +1,7 @@
 """SuccessIf and FailureIf in classic descriptions, as claims: they mark a hard constraint (docs/language.md).
 
 One invariant: what does not mean something as a whole stays documentation, without a word: `checks` says so.  A claim
-made of a description stands where the description does.
+made of a description has the place of the description.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def with_constraints(reader: Reader, requirement: Requirement, text: Word) -> Requirement:
     """A requirement without clauses, which would say it, with what its description demands."""
     found = constraints(text)
-    names = frozenset(reader.ask("nodes")) if found else frozenset()
+    names = frozenset(reader.names("nodes")) if found else frozenset()
     for constraint in found:
         if can_be_checked(constraint.text, names):
             requirement = _with(reader, requirement, constraint, text.span)
@@ -46,13 +46,11 @@ def _with(reader: Reader, requirement: Requirement, constraint: Constraint, span
     item, text = found
     if constraint.violates and not all(isinstance(clause, WrittenClaim) for clause in item.clauses):
         return requirement
-    before = dict(reader.problems)
-    reader.begin(requirement.path, reader.entry, source=(text, span))
-    claims_before = len(requirement.claims)
-    resolved = with_clauses(reader, requirement, item.clauses)
-    understood = len(reader.problems) == len(before)
-    reader.problems = before
-    added = resolved.claims[claims_before:]
+    inner = Reader(reader.store, reader.viewpoint, reader.path, reader.facts)
+    inner.source = text, span
+    resolved = with_clauses(inner, requirement, item.clauses)
+    understood = not inner.problems
+    added = resolved.claims[len(requirement.claims) :]
     if constraint.violates:
         turned = [_turned(claim) for claim in added]
         added = tuple(claim for claim in turned if claim is not None)

@@ -2,7 +2,7 @@
 
 One invariant: a claim that could not be understood as a whole is left out, and a problem says why; what is left can be
 checked, enforced and judged without looking back.  Scopes, odds and the rest belong to the requirement, so they hold
-for all of its claims, wherever they stand between them.
+for all of its claims, wherever they are among them.
 """
 
 from __future__ import annotations
@@ -10,11 +10,10 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Final
 
-from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
+from btq_lang.catalog.units import Dimension, a_dimension
 from btq_lang.catalog.verbs import VERBS
 from btq_lang.requirements.model import (
     NO_DIMENSION,
-    Bounded,
     Claim,
     Event,
     Every,
@@ -32,7 +31,8 @@ from btq_lang.requirements.model import (
     Value,
     Window,
 )
-from btq_lang.requirements.reader import COUNT, PERCENT, SORTS, TIME, Reader, Wanted
+from btq_lang.requirements.reader import Reader
+from btq_lang.requirements.terms import COUNT, DURATION, PERCENT, SORTS, TIME, Wanted, sort_of
 from btq_lang.syntax.tree import Because, Between, Bound, Confidence, Goal, How, OnViolation, Path, Sum, Word
 from btq_lang.syntax.tree import Claim as WrittenClaim
 from btq_lang.syntax.tree import Clause as WrittenClause
@@ -41,45 +41,14 @@ from btq_lang.syntax.tree import Every as WrittenEvery
 from btq_lang.syntax.tree import Mission as WrittenMission
 from btq_lang.syntax.tree import Odds as WrittenOdds
 from btq_lang.syntax.tree import Parameter as WrittenParameter
-from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.syntax.tree import Scope as WrittenScope
-from btq_lang.syntax.tree import Signal as WrittenSignal
 from btq_lang.syntax.tree import Subject as WrittenSubject
 from btq_lang.syntax.tree import Window as WrittenWindow
 from btq_lang.util.record import replace
 from btq_lang.util.text import Span as TextSpan
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Sort
-    from btq_lang.workspace.file import Definition
-
-
-def resolve(reader: Reader, definition: Definition, written: WrittenRequirement, quality: str | None) -> Requirement:
-    """A requirement as it is defined; its parameters stay in it.
-
-    Args:
-        quality: the one that encloses it, where it names none itself.
-    """
-    reader.begin(definition.path, definition.entry)
-    parameters: dict[str, Parameter] = {}
-    for each in written.parameters:
-        parameter = _parameter(reader, each)
-        parameters.setdefault(parameter.name, parameter)
-    reader.begin(definition.path, definition.entry, parameters)
-    if written.quality is not None:
-        quality = ".".join(name.text for name in written.quality.names)
-    found = Requirement(
-        definition.symbol.name,
-        definition.path,
-        definition.entry.item,
-        reader.place(definition.symbol.span),
-        quality,
-        written.text.text if written.text is not None else None,
-        False,
-        tuple(parameters.values()),
-        (),
-    )
-    return with_clauses(reader, found, written.clauses)
+    pass
 
 
 def with_clauses(reader: Reader, requirement: Requirement, clauses: tuple[WrittenClause, ...]) -> Requirement:
@@ -153,7 +122,7 @@ def _verb(reader: Reader, written: WrittenClaim) -> Claim | None:
     if operand == "deadline" and written.bound is None:
         return claim
     signal: Signal | None = None
-    wanted: Wanted | None = _DURATION if operand in _TIMED or written.every else _COUNTED
+    wanted: Wanted | None = DURATION if operand in _TIMED or written.every else _COUNTED
     if operand == "use":
         signal, wanted = _resource(reader, written.resource)
     limit = _limit(reader, written.bound, wanted) if wanted is not None else None
@@ -203,7 +172,7 @@ def _limit(reader: Reader, written: Bound | None, wanted: Wanted) -> Limit | Non
 def _per(reader: Reader, written: Path | Word | None) -> Target | Value | None:
     if isinstance(written, Path):
         return reader.target(written)
-    return reader.quantity(written, _DURATION) if written is not None else None
+    return reader.quantity(written, DURATION) if written is not None else None
 
 
 def _event(reader: Reader, written: WrittenEvent | None) -> Event | None:
@@ -222,7 +191,7 @@ def _subject(reader: Reader, written: WrittenSubject) -> Subject | None:
     if isinstance(written, WrittenMission):
         return Mission(reader.mission)
     if isinstance(written, WrittenEvery):
-        if not reader.ask("any", written.name.text):
+        if not reader.has_any(written.name.text):
             reader.none_of(written.name)
             return None
         return Every(written.name.text)
@@ -277,7 +246,7 @@ def _window(reader: Reader, written: WrittenWindow) -> Window | None:
             return None
         of_runs = written.experiments.raw == "runs"
         return Window(int(count), "runs" if of_runs else "activations", None, text, place)
-    duration = reader.quantity(written.size, _DURATION)
+    duration = reader.quantity(written.size, DURATION)
     return Window(None, "activations", duration.si, text, place) if duration is not None else None
 
 
@@ -297,47 +266,14 @@ def _of_goal(claims: list[Claim], has_odds: bool) -> Wanted | None:
     return Wanted("a goal of the same dimension as the bound", tuple(dimensions), unit) if claims else None
 
 
-def _parameter(reader: Reader, written: WrittenParameter) -> Parameter:
+def parameter_of(reader: Reader, written: WrittenParameter) -> Parameter:
+    """A parameter with its default."""
     sort, unit = sort_of(written.unit)
-    default: Bounded | None = None
     parameter = Parameter(written.name.text, sort, unit, None)
-    if written.default is not None:
-        default = reader.argument(parameter, written.default)
+    default = reader.argument(parameter, written.default) if written.default is not None else None
     return replace(parameter, default=default)
 
 
-def read_signal(reader: Reader, definition: Definition, item: WrittenSignal) -> Signal:
-    """A signal as it is declared."""
-    reader.begin(definition.path, definition.entry)
-    sort, unit = sort_of(item.unit)
-    fresh = reader.quantity(item.fresh, _DURATION)
-    source = item.source.text[1:-1].strip() if item.source is not None else None
-    behaviour = item.behaviour.raw if item.behaviour is not None else "gauge"
-    name = definition.symbol.name
-    place = reader.place(definition.symbol.span)
-    initially = None
-    if item.initially is not None:
-        initially = reader.argument(Parameter(name, sort, unit, None), item.initially)
-    return Signal(
-        name,
-        sort,
-        unit,
-        source or None,
-        behaviour,  # type: ignore[arg-type]  # one of the parser's three
-        fresh.si if fresh is not None else None,
-        initially,  # type: ignore[arg-type]  # an Amount is no table, and names of signals are refused here
-        place,
-    )
-
-
-def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
-    """What the word behind the `:` of a signal or a parameter says."""
-    if written is not None and written.text in ("bool", "text"):
-        return ("bool" if written.text == "bool" else "text"), None
-    return "number", parse_unit(written.text) if written is not None else None
-
-
 _TIMED: Final = ("duration", "deadline", "reaction")
-_DURATION: Final = Wanted("a time", (TIME,), "s")
 _COUNTED: Final = Wanted("a number", (NO_DIMENSION, COUNT), None)
 _SHARE: Final = Wanted("a percentage", (PERCENT,), "%")

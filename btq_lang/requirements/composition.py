@@ -40,7 +40,7 @@ class Budget(Record):
         skip: until it is skipped.
         waits: it may return RUNNING, so it can be interrupted.
         probability: at least that likely all holds that the ranges rest on (by the union bound).
-        reason: why the node itself has no upper bound, in words to stand behind its name; empty where that is for its
+        reason: why the node itself has no upper bound, in words to follow its name; empty where that is for its
             children.
         endless: it may run for ever, and then has no outcome at all.
     """
@@ -502,7 +502,7 @@ def _made(children: Sequence[Budget], success: Range | None, failure: Range | No
 
 
 def _likely(probabilities: Sequence[float], count: int | None = 1) -> float:
-    """The union bound: all of them hold, each `count` times; without a count nobody can say, unless all are sure."""
+    """The union bound: all of them hold, each `count` times; without a count that is unknown, unless all are sure."""
     if all(probability == 1.0 for probability in probabilities):
         return 1.0
     if count is None or count < 0:

@@ -1,4 +1,4 @@
-"""SuccessIf and FailureIf in the description of a classic requirement: what stands behind them, and whether it is more
+"""SuccessIf and FailureIf in the description of a classic requirement: what follows them, and whether it is more
 than prose.
 
 One invariant: the answer depends on the text and on the names of the nodes.  What it means `requirements` says.
@@ -23,10 +23,10 @@ _KEYWORDS = ("successif", "failureif", "failuerif")
 
 
 class Constraint(Record):
-    """A keyword in a text, and what stands behind it.
+    """A keyword in a text, and what follows it.
 
     Attributes:
-        keyword: where the keyword stands, counted from the start of the text.
+        keyword: the place of the keyword, counted from the start of the text.
         violates: it says when the requirement is violated.
     """
 
@@ -36,7 +36,7 @@ class Constraint(Record):
 
 
 def constraints(word: Word) -> list[Constraint]:
-    """What stands behind each keyword, up to the next one."""
+    """What follows each keyword, up to the next one."""
     text = word.text
     if "if" not in text.lower():
         return []

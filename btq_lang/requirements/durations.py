@@ -1,7 +1,7 @@
 """Durations: ranges of seconds, how they add up, and what the longest one is made of.
 
 One invariant: an operation never leaves out a duration that its operands allow.  `None` is the range of what cannot
-happen; infinity stands where no bound can be said.
+happen; infinity is the end of a range without a bound.
 """
 
 from __future__ import annotations

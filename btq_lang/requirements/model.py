@@ -14,8 +14,8 @@ from btq_lang.util.record import Record
 if TYPE_CHECKING:
     from btq_lang.catalog.kinds import NodeKind
     from btq_lang.catalog.units import Dimension, Unit
-    from btq_lang.syntax.tree import Item, Node, Tree
-    from btq_lang.util.text import Span as TextSpan
+    from btq_lang.syntax.tree import Node, Tree
+    from btq_lang.workspace.item_index import Facts
 
     Relation: TypeAlias = Literal["<=", ">=", "<", ">", "between"]
     Happening: TypeAlias = Literal["starts", "succeeds", "fails", "finishes", "halts", "when"]
@@ -33,20 +33,22 @@ class SourceNode:
     """A node as it is written, with what is around it.  Equal to nothing but itself: its place is what it is.
 
     Attributes:
-        path, item: where it stands; its offsets count from the item.
+        path, item: where it is written; its offsets count from the item.
+        facts: the facts of that item, by which queries name it.
         tree: the name of its tree; None where that is missing.
         parent: None for a node at the top of its tree.
         index: which child of its parent it is, verbatim XML counted.
         kind: the built-in that it is, if it is one.
-        category: as written, or as the built-in or the model has it; None where nobody says.
+        category: as written, or as the built-in or the model has it; None where that is unknown.
     """
 
-    __slots__ = ("_names", "category", "children", "index", "item", "kind", "node", "parent", "path", "tree")
+    __slots__ = ("_names", "category", "children", "facts", "index", "item", "kind", "node", "parent", "path", "tree")
 
     def __init__(
         self,
         node: Node,
         path: str,
+        facts: Facts,
         item: Tree,
         tree: str | None,
         parent: SourceNode | None,
@@ -56,6 +58,7 @@ class SourceNode:
     ) -> None:
         self.node: Final = node
         self.path: Final = path
+        self.facts: Final = facts
         self.item: Final = item
         self.tree: Final = tree
         self.parent: Final = parent
@@ -83,7 +86,7 @@ class SourceNode:
 
     @property
     def place(self) -> Place:
-        """Where its head stands."""
+        """The place of its head."""
         return Place(self.node.head.span, self.path, self.item)
 
     @property
@@ -108,7 +111,7 @@ class Target(Record):
 
 
 class Mission(Record):
-    """The whole run: the main tree's written root, None where nobody can say which tree runs."""
+    """The whole run: the main tree's written root, None where it is unknown which tree runs."""
 
     node: SourceNode | None
 
@@ -156,7 +159,7 @@ class Signal(Record):
     Attributes:
         sort: number, bool or text.
         unit: of a number; None where it is unknown.
-        key: the blackboard entry, as it stands between the braces; None where none is named.
+        key: the blackboard entry, as written between the braces; None where none is named.
         fresh: after how many seconds a sample is too old.
         initially: before the first sample.
     """
@@ -182,7 +185,7 @@ class Read(Record):
 
 
 class Parameter(Record):
-    """A parameter in the definition of a requirement; in what is applied an argument stands in its place."""
+    """A parameter in the definition of a requirement; in what is applied an argument is in its place."""
 
     name: str
     sort: Sort
@@ -267,7 +270,7 @@ class Not(Record):
 
 
 class InContext(Record):
-    """A context by its name, and what it stands for: all that name a context share one condition."""
+    """A context by its name, and its condition: all that name a context share one condition."""
 
     name: str
     condition: Condition
@@ -284,7 +287,7 @@ class Running(Record):
 
 
 class Script(Record):
-    """A script of the engine behind SuccessIf or FailureIf in a classic description."""
+    """A script of the engine after SuccessIf or FailureIf in a classic description."""
 
     code: str
 
@@ -391,7 +394,7 @@ class Requirement(Record):
     """A requirement with its clauses resolved; scopes, odds, confidence, window, action and goal hold for all claims.
 
     Attributes:
-        path, item, place: where it is defined; place: its name.
+        place: its name, where it is defined.
         quality: as written, names joined by points; of a classic one the quality that encloses it.
         title: its title, or the classic description.
         classic: its claims were read from SuccessIf and FailureIf in its description.
@@ -399,8 +402,6 @@ class Requirement(Record):
     """
 
     name: str
-    path: str
-    item: Item
     place: Place
     quality: str | None
     title: str | None
@@ -418,7 +419,7 @@ class Requirement(Record):
 
 
 class Argument(Record):
-    """What a parameter stands for: as given, or its default."""
+    """The value of a parameter: as given, or its default."""
 
     name: str
     value: Bounded
@@ -429,7 +430,7 @@ class Use(Record):
 
     Attributes:
         rank: how specific it is.
-        path, item, span: where it stands.
+        place: the reference.
     """
 
     requirement: str
@@ -437,13 +438,7 @@ class Use(Record):
     arguments: tuple[Argument, ...]
     rank: int
     how: Literal["satisfies", "apply"]
-    path: str
-    item: Item
-    span: TextSpan
-
-    @property
-    def place(self) -> Place:
-        return Place(self.span, self.path, self.item)
+    place: Place
 
 
 class Applied(Record):
@@ -464,7 +459,7 @@ class Applied(Record):
 
     @property
     def node(self) -> SourceNode | None:
-        """The node that it holds for; None for a span, a sum, and a mission that nobody knows."""
+        """The node that it holds for; None for a span, a sum, and an unknown mission."""
         return self.subject.node if isinstance(self.subject, Target | Mission) else None
 
     @property
@@ -489,7 +484,7 @@ class Applied(Record):
 
     @property
     def nodes(self) -> tuple[SourceNode, ...]:
-        """The nodes that its subject speaks of: of a span those of its events."""
+        """The nodes that its subject names: of a span those of its events."""
         if isinstance(self.subject, Total):
             return tuple(target.node for target in self.subject.targets)
         events = (self.subject.first, self.subject.last) if isinstance(self.subject, Span) else ()

@@ -1,170 +1,106 @@
 """Reading the paths of clauses: the one node that each of them names.
 
-One invariant: a path that names none, or several, is None and one problem, told where it stands.  A file whose nodes
-may be elsewhere (a library, an include that was not found) is not told of a path that names none.
+One invariant: a path that names no node, or several, is None and one problem, reported at the path.  In a file whose
+nodes may be elsewhere (a library, an include that was not found) a path that names none is no problem.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
-from functools import cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.requirements.memory import Asker
-from btq_lang.syntax.tree import Apply, Entry, Item, Path, Tree, Word, is_name, quote
+from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements.model import SourceNode, Target
+from btq_lang.syntax.tree import Path, Word, is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.rules import Severity
-    from btq_lang.requirements.memory import Question
-    from btq_lang.requirements.model import Condition, Parameter, Requirement, Signal, SourceNode, Target
-    from btq_lang.requirements.nodes import Nodes
+    from btq_lang.requirements.model import Parameter
     from btq_lang.util.text import Span
-    from btq_lang.workspace.workspace import Scope, Workspace
+    from btq_lang.workspace.item_index import Facts
 
 
 class Problem(Record):
-    """Something wrong with a requirement, and the item that the places of the diagnostic count from."""
+    """Something wrong with a requirement.
 
-    path: str
-    item: Item
+    Attributes:
+        place: that of the diagnostic, whose own places count from the same item.
+    """
+
+    place: Place
     diagnostic: Diagnostic
 
 
-class PathReader(Asker):
-    """Reads paths of one scope; `begin` says where the next ones stand.  Whatever it looks up elsewhere it notes.
+class PathReader:
+    """Reads the paths in an item.
 
     Attributes:
-        requirements, signals, contexts: by name; a context that could not be read is None.
-        parameters: of the requirement at hand.
-        problems: found since that was emptied, each once.
-        noted: what was looked up since that was emptied.
+        path, facts: the item.
+        parameters: those of the requirement that is read.
+        source: the text that is read, where it is no text of the file, and the place that all of it is shown at.
     """
 
-    def __init__(self, workspace: Workspace, path: str, scope: Scope, nodes: Nodes) -> None:
-        self.workspace = workspace
-        self.nodes = nodes
-        self.requirements: dict[str, Requirement] = {}
-        self.signals: dict[str, Signal] = {}
-        self.contexts: dict[str, Condition | None] = {}
+    def __init__(self, store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> None:
+        self.store: Final = store
+        self.viewpoint: Final = viewpoint
+        self.path: Final = path
         self.parameters: dict[str, Parameter] = {}
-        self.problems: dict[tuple[str, Span, str], Problem] = {}
-        self.noted: dict[Question, object] = {}
-        self.news: dict[object, frozenset[object]] = {}
-        main = workspace.main_tree(path)
-        mission = nodes.within(main.entry.item).root if main is not None and isinstance(main.entry.item, Tree) else None
-        # A library's nodes may be in the files that include it, and a robot's in XML that nobody has read.
-        knows_all_nodes = (
-            nodes.are_known
-            and scope.complete
-            and path not in workspace.included_files
-            and not any(workspace.files[each].problems for each in scope.paths)
-        )
-        # None of these knows the reader: one that knows what knows it would stay, with all that it has read, until
-        # Python looks for garbage, and an editor makes one at every key.
-        requirements, signals, contexts = self.requirements, self.signals, self.contexts
-        is_crowded = _crowding(workspace, scope, nodes)
-        self._answers: dict[str, Callable[[Any], object]] = {
-            "find": nodes.find,
-            "every": nodes.every,
-            "any": lambda name: bool(nodes.every(name)),
-            "tagged": nodes.tagged,
-            "under": lambda about: nodes.under(nodes.every(about[0]), about[1]),
-            "nodes": lambda _: nodes.names,
-            "has name": nodes.has_name,
-            "is crowded": lambda _: is_crowded(),
-            "kinds": lambda _: nodes.kinds,
-            "tags": lambda _: nodes.tags,
-            "mission": lambda _: mission,
-            "knows all nodes": lambda _: knows_all_nodes,
-            "knows all names": lambda _: scope.complete,
-            "requirement": requirements.get,
-            "signal": signals.get,
-            "signals": lambda _: tuple(signals),
-            "context": lambda name: contexts.get(name, _NOTHING),
-            "contexts": lambda _: tuple(contexts),
-        }
+        self.source: tuple[str, Span] | None = None
+        self.facts: Final = facts
+        self._problems: dict[tuple[str, Span, str], Problem] = {}
 
-    # ---- what is looked up ----
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What was found wrong, each once."""
+        return tuple(self._problems.values())
 
-    def answer(self, question: Question) -> object:
-        """What is found now."""
-        what, about = question
-        return self._answers[what](about)
-
-    def ask(self, what: str, about: Hashable = None) -> Any:
-        """What is found, which is noted."""
-        answer = self.noted[what, about] = self._answers[what](about)
-        return answer
+    # ---- what it asks ----
 
     def find(self, names: tuple[str, ...]) -> tuple[Target, ...]:
-        """As `Nodes.find`."""
-        found: tuple[Target, ...] = self.ask("find", names)
-        return found
+        """The nodes that a path means."""
+        return self.store.ask(nodes.find, self.viewpoint, names)
 
     def every(self, name: str) -> tuple[SourceNode, ...]:
-        """As `Nodes.every`."""
-        found: tuple[SourceNode, ...] = self.ask("every", name)
-        return found
+        """The nodes of an ID or kind."""
+        return self.store.ask(nodes.every, self.viewpoint, name)
 
-    def requirement(self, name: str) -> Requirement | None:
-        """The requirement of a name, with its parameters in it."""
-        found: Requirement | None = self.ask("requirement", name)
-        return found
+    def has_any(self, name: str) -> bool:
+        """Whether there are nodes of an ID or kind."""
+        return self.store.ask(nodes.has_any, self.viewpoint, name)
 
-    def signal(self, name: str) -> Signal | None:
-        """The signal of a name."""
-        found: Signal | None = self.ask("signal", name)
-        return found
-
-    def is_context(self, name: str) -> bool:
-        """Whether there is a context of a name, understood or not."""
-        return self.ask("context", name) is not _NOTHING
-
-    def names(self, *kinds: str) -> Iterator[str]:
-        """The names of these kinds: parameters, signals, contexts, nodes."""
-        for kind in kinds:
-            yield from self.parameters if kind == "parameters" else self.ask(kind)
+    def names(self, kind: str) -> tuple[str, ...]:
+        """The names of a kind: parameters, signals, contexts, nodes, kinds, tags."""
+        if kind == "parameters":
+            return tuple(self.parameters)
+        if kind in _DECLARED:
+            return inputs.names(self.store, self.viewpoint, _DECLARED[kind])
+        if kind == "nodes":
+            return self.store.ask(nodes.node_names, self.viewpoint)
+        return tuple(self.store.ask(nodes.kinds if kind == "kinds" else nodes.tags, self.viewpoint))
 
     def near(self, word: str, *kinds: str) -> tuple[str, ...]:
-        """The names of these kinds that look like one that is unknown; none where so many are unknown that nobody reads
-        what each of them may mean."""
-        return near(word, self.names(*kinds)) if not self.ask("is crowded") else ()
+        """The names of these kinds that look like an unknown one; none where so many are unknown that nobody reads what
+        each of them may mean."""
+        if self.store.ask(_is_crowded, self.viewpoint):
+            return ()
+        return near(word, [name for kind in kinds for name in self.names(kind)])
 
     @property
     def mission(self) -> SourceNode | None:
-        """The main tree's root; None where nobody can say which tree runs."""
-        found: SourceNode | None = self.ask("mission")
-        return found
+        """The main tree's root; None where it is unknown which tree runs."""
+        return self.store.ask(nodes.mission, self.viewpoint)
 
     @property
     def knows_all_nodes(self) -> bool:
-        """Whether a node that is not among these is nowhere."""
-        found: bool = self.ask("knows all nodes")
-        return found
+        """Whether a node that is not in scope is nowhere."""
+        return self.store.ask(nodes.knows_all_nodes, self.viewpoint)
 
-    # ---- where it reads ----
-
-    def begin(
-        self,
-        path: str,
-        entry: Entry,
-        parameters: dict[str, Parameter] | None = None,
-        source: tuple[str, Span] | None = None,
-    ) -> None:
-        """What follows stands there.
-
-        Args:
-            source: the text that it was parsed from, where that is no text of the file, and the place that stands for
-                all of it.
-        """
-        self.path = path
-        self.entry = entry
-        self.parameters = parameters or {}
-        self._source = source
+    # ---- what it reports ----
 
     def complain(
         self,
@@ -177,23 +113,18 @@ class PathReader(Asker):
         related: tuple[Related, ...] = (),
         severity: Severity | None = None,
     ) -> None:
-        diagnostic = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
-        self.note(Problem(self.path, self.entry.item, diagnostic))
-
-    def note(self, problem: Problem) -> None:
         """Add a problem, unless it is known."""
-        found = problem.diagnostic
-        self.problems.setdefault((found.rule, found.span, found.message), problem)
+        found = Diagnostic(rule, span, message, related, notes, fixes, severity=severity)
+        self._problems.setdefault((rule, span, message), Problem(Place(span, self.path, self.facts.item), found))
 
     def place(self, span: Span) -> Place:
-        return Place(span if self._source is None else self._source[1], self.path, self.entry.item)
+        """A place in the item."""
+        return Place(span if self.source is None else self.source[1], self.path, self.facts.item)
 
     def text(self, start: int, end: int) -> str:
         """What is written there, blanks folded."""
-        if self._source is not None:
-            return " ".join(self._source[0][start:end].split())
-        base = self.entry.start
-        return " ".join(self.workspace.files[self.path].text[base + start : base + end].split())
+        text = inputs.text(self.store, self.path, self.facts) if self.source is None else self.source[0]
+        return " ".join(text[start:end].split())
 
     # ---- paths ----
 
@@ -217,7 +148,7 @@ class PathReader(Asker):
         return None
 
     def none_of(self, name: Word) -> None:
-        """Complain of `every X` where nothing is an X."""
+        """Report `every X` where nothing is an X."""
         if not self.knows_all_nodes:
             return
         notes: tuple[str, ...] = ()
@@ -226,7 +157,7 @@ class PathReader(Asker):
         self._no_match(name, f"no node matches `every {name.raw}`", "kinds", notes)
 
     def no_tag(self, tag: Word) -> None:
-        """Complain of `tagged x` where nothing has that tag."""
+        """Report `tagged x` where nothing has that tag."""
         if self.knows_all_nodes:
             self._no_match(tag, f"no node has the tag `{tag.text}`", "tags")
 
@@ -236,7 +167,7 @@ class PathReader(Asker):
         self.complain("unmatched-path", word.span, f"{message}{did_you_mean(likely)}", notes=notes, fixes=fixes)
 
     def ambiguous(self, span: Span, shown: str, found: tuple[Target, ...]) -> None:
-        """Complain of a path that names several nodes."""
+        """Report a path that names several nodes."""
         related = tuple(Related(target.node.place, f"in the tree `{target.node.tree}`") for target in found[:_SHOWN])
         some = found[:_LOOKED_AT]
         paths = dict.fromkeys(path for target in some if (path := self._path_to(target)) is not None)
@@ -260,7 +191,9 @@ class PathReader(Asker):
         """Words of a path that names no node, each with a near name that makes it match one."""
         found = []
         for index, word in enumerate(path.names):
-            for name in self.near(word.text, "nodes") if not self.ask("has name", word.text) else ():
+            if self.store.ask(nodes.has_name, self.viewpoint, word.text):
+                continue
+            for name in self.near(word.text, "nodes"):
                 names = [other.text for other in path.names]
                 names[index] = name
                 if len(self.find(tuple(names))) == 1:
@@ -281,34 +214,20 @@ class PathReader(Asker):
         return None
 
 
-def _crowding(workspace: Workspace, scope: Scope, nodes: Nodes) -> Callable[[], bool]:
-    """`_is_crowded`, worked out once; not made in the reader, for compiled the two would make a ring."""
-    return cache(lambda: _is_crowded(workspace, scope, nodes))
-
-
-def _is_crowded(workspace: Workspace, scope: Scope, nodes: Nodes) -> bool:
-    """Whether clauses name so much that nobody knows, and there is so much that it may mean, that to compare all of it
-    would take seconds."""
-    known = {*scope.names(Kind.SIGNAL), *scope.names(Kind.CONTEXT)}
-    known |= {*nodes.names, *nodes.tags}
-    asked = {name for path in scope.paths for name in (*workspace.files[path].asked_for, *_selecting(workspace, path))}
-    return len(asked - known) * len(known) > _MOST_COMPARED
-
-
-def _selecting(workspace: Workspace, path: str) -> Iterator[str]:
-    """The names by which `apply` says what it applies to."""
-    for apply in workspace.files[path].of_type(Apply):
-        for selector in (*apply.targets, *apply.exceptions):
-            words = selector.path.names if selector.path is not None else ()
-            yield from [word.text for word in (selector.every, selector.tag, *words) if word is not None]
+def _is_crowded(store: Store[Workspace], viewpoint: str) -> bool:
+    """Whether clauses use so many unknown names, and there are so many known ones, that to compare all of them would
+    take seconds."""
+    known = {*inputs.names(store, viewpoint, Kind.SIGNAL), *inputs.names(store, viewpoint, Kind.CONTEXT)}
+    known |= {*store.ask(nodes.node_names, viewpoint), *store.ask(nodes.tags, viewpoint)}
+    return len(inputs.asked_for(store, viewpoint) - known) * len(known) > _MOST_COMPARED
 
 
 def _written(name: str) -> str:
     return name if is_name(name) else quote(name)
 
 
+_DECLARED: Final = {"signals": Kind.SIGNAL, "contexts": Kind.CONTEXT}
 _ONE_DEMAND: Final = "a clause states one demand; write `succeeds within 30 s`, or `succeeds` on a line of its own"
 _SHOWN: Final = 5  # places and fixes of one diagnostic
 _LOOKED_AT: Final = 50  # nodes that a path may mean, for paths that mean one of them alone
 _MOST_COMPARED: Final = 200_000  # pairs of names: some tenths of a second
-_NOTHING: Final = object()

@@ -1,16 +1,19 @@
 """Reading the values and conditions of clauses: what each word means, in which unit, and what does not compare.
 
-One invariant: what cannot be understood is None and one problem, told where it stands, so that nothing is ever compared
-in two units.  It does not know verbs: `clauses` says what each of them asks for.
+One invariant: what cannot be understood is None and one problem, reported at its place, so that nothing is ever
+compared in two units.  It does not know verbs: `clauses` says what each of them asks for.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from math import isfinite
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit, to_si
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.catalog.units import Dimension, a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix
+from btq_lang.requirements import inputs
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Aggregate,
@@ -25,16 +28,33 @@ from btq_lang.requirements.model import (
     InContext,
     Minus,
     Not,
-    Number,
     Parameter,
     Read,
     Running,
-    Simple,
+    Signal,
     Table,
     Text,
     Value,
 )
-from btq_lang.requirements.paths import PathReader
+from btq_lang.requirements.paths import PathReader, Problem
+from btq_lang.requirements.terms import (
+    DURATION,
+    OF_PYTHON,
+    ONE,
+    SORTS,
+    Term,
+    Wanted,
+    amounts,
+    in_words,
+    is_count_of,
+    simple,
+    sort_of,
+    sort_of_value,
+    sum_level,
+    term_of,
+    unit_beside,
+    unit_symbol,
+)
 from btq_lang.syntax.quantities import parse_quantity
 from btq_lang.syntax.tokens import NAME, NUMBER, QUANTITY, STRING
 from btq_lang.syntax.tree import (
@@ -42,75 +62,146 @@ from btq_lang.syntax.tree import (
     Binary,
     Call,
     Comparison,
+    Context,
     Negative,
     NodeRuns,
     Operand,
     Path,
     Word,
+    walk,
 )
 from btq_lang.syntax.tree import Bounded as WrittenBounded
 from btq_lang.syntax.tree import Condition as WrittenCondition
 from btq_lang.syntax.tree import Not as WrittenNot
-from btq_lang.syntax.tree import Table as WrittenTable
-from btq_lang.util.record import Record
+from btq_lang.syntax.tree import Signal as WrittenSignal
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
+from btq_lang.workspace.queries import Store, on_circle
+from btq_lang.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.model import Sort
-    from btq_lang.requirements.nodes import Nodes
-    from btq_lang.workspace.workspace import Scope, Workspace
+    from btq_lang.requirements.terms import Level
+    from btq_lang.workspace.item_index import Facts
 
-    # Of a temperature: 25 degC is a level, the difference of two levels is none, and K may be either.
-    Level: TypeAlias = Literal["level", "difference", "either"]
+Problems: TypeAlias = tuple[Problem, ...]
 
-
-class Wanted(Record):
-    """What a verb asks for in a place.
-
-    Attributes:
-        what: in words, to stand behind "expects ".
-        dimensions: any of these.
-        unit: what a number without a unit may have meant; None: it needs none.
-        level: of temperatures, whether a difference is asked for.
-    """
-
-    what: str
-    dimensions: tuple[Dimension, ...]
-    unit: str | None
-    level: Level = "either"
+# ---- what names mean: each with the problems of its definition ----
 
 
-class Term(Record):
-    """A value in an expression, with what must be known to compare it.
+def signal(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Signal | None, Problems]:
+    """The signal of a name; None where none is declared."""
+    found = inputs.definition(store, viewpoint, Kind.SIGNAL, name)
+    if found is None:
+        return None, ()
+    symbol = inputs.symbol(found[1], Kind.SIGNAL, name)
+    item = symbol.target
+    assert isinstance(item, WrittenSignal), "its kind says so"
+    names = inputs.names(store, viewpoint, Kind.SIGNAL) if item.initially is not None else ()
+    reader = Reader(store, viewpoint, *found, known=names[: names.index(name)] if name in names else ())
+    sort, unit = sort_of(item.unit)
+    fresh = reader.quantity(item.fresh, DURATION)
+    source = item.source.text[1:-1].strip() if item.source is not None else None
+    behaviour = item.behaviour.raw if item.behaviour is not None else "gauge"
+    place = reader.place(symbol.span)
+    initially = None
+    if item.initially is not None:
+        initially = reader.argument(Parameter(name, sort, unit, None), item.initially)
+    read = Signal(
+        name,
+        sort,
+        unit,
+        source or None,
+        behaviour,  # type: ignore[arg-type]  # one of the parser's three
+        fresh.si if fresh is not None else None,
+        initially,  # type: ignore[arg-type]  # an Amount is no table
+        place,
+    )
+    return read, reader.problems
 
-    Attributes:
-        dimension: of a number; None where nobody can say.
-        unit: how a number beside it would be written.
-        span: where it stands, counted from the entry.
-        word: where it is a literal.
-    """
 
-    value: Number
-    sort: Sort
-    dimension: Dimension | None
-    unit: str | None
-    span: Span
-    level: Level = "either"
-    word: Word | None = None
+def context(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Condition | None, Problems]:
+    """The condition of a context; None where it cannot be understood."""
+    found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
+    if found is None:
+        return None, ()
+    reader = Reader(store, viewpoint, *found)
+    span = inputs.symbol(found[1], Kind.CONTEXT, name).span
+    depth = store.ask(_depth, viewpoint, name)
+    if depth == _IN_CIRCLE:
+        reader.complain("cyclic-context", span, f"the context `{name}` refers to itself")
+    elif depth > _DEEPEST:
+        reader.complain("nested-too-deep", span, f"more than {_DEEPEST} levels of contexts in contexts")
+    else:
+        written = _written_context(found[1], name)
+        for other in _contexts_in(store, viewpoint, written):  # before its condition is read, in deep calls of Python
+            store.ask(context, viewpoint, other)
+        return reader.condition(written.condition), reader.problems
+    return None, reader.problems
 
-    @property
-    def is_bare(self) -> bool:
-        """A number without a unit."""
-        return self.word is not None and self.word.kind == NUMBER
+
+_IN_CIRCLE: Final = 0
+
+
+@on_circle(_IN_CIRCLE)
+def _depth(store: Store[Workspace], viewpoint: str, name: str) -> int:
+    """How many levels of contexts a context is made of, with itself."""
+    found = inputs.definition(store, viewpoint, Kind.CONTEXT, name)
+    if found is None:
+        return 1
+    others = _contexts_in(store, viewpoint, _written_context(found[1], name))
+    return 1 + max([store.ask(_depth, viewpoint, other) for other in others], default=0)
+
+
+def _written_context(facts: Facts, name: str) -> Context:
+    written = inputs.symbol(facts, Kind.CONTEXT, name).target
+    assert isinstance(written, Context), "its kind says so"
+    return written
+
+
+def _contexts_in(store: Store[Workspace], viewpoint: str, written: Context) -> Iterator[str]:
+    """The contexts that a context names."""
+    words = [part.word for part in walk(written.condition) if isinstance(part, Operand)]
+    for name in [word.text for word in words if word.kind == NAME]:
+        if inputs.definition(store, viewpoint, Kind.CONTEXT, name) is not None:
+            yield name
 
 
 class Reader(PathReader):
     """Reads values and conditions, too."""
 
-    def __init__(self, workspace: Workspace, path: str, scope: Scope, nodes: Nodes) -> None:
-        super().__init__(workspace, path, scope, nodes)
-        self._unknown_units: dict[int, list[int]] = {}  # where they begin, by the `id` of the entry
+    def __init__(
+        self,
+        store: Store[Workspace],
+        viewpoint: str,
+        path: str,
+        facts: Facts,
+        parameters: dict[str, Parameter] | None = None,
+        known: Collection[str] | None = None,
+    ) -> None:
+        """known: the signals that may be named, and no context; None: any, and contexts, too."""
+        super().__init__(store, viewpoint, path, facts)
+        self.parameters = parameters or {}
+        self._known: Final = known
+
+    # ---- what it asks ----
+
+    def signal(self, name: str) -> Signal | None:
+        """The signal of a name."""
+        if self._known is not None and name not in self._known:
+            return None
+        return self.store.ask(signal, self.viewpoint, name)[0]
+
+    def is_context(self, name: str) -> bool:
+        """Whether there is a context of a name, understood or not."""
+        if self._known is not None:
+            return False
+        return inputs.definition(self.store, self.viewpoint, Kind.CONTEXT, name) is not None
+
+    def names(self, kind: str) -> tuple[str, ...]:
+        """As of a path reader."""
+        if self._known is not None and kind in ("signals", "contexts"):
+            return tuple(self._known) if kind == "signals" else ()
+        return super().names(kind)
 
     # ---- values ----
 
@@ -121,7 +212,7 @@ class Reader(PathReader):
         if isinstance(written, Amount):
             term = self._amount(written, wanted)
             fits = term is not None and (wanted is None or self._fits(term, wanted))
-            return _simple(term.value) if term is not None and fits else None
+            return simple(term.value) if term is not None and fits else None
         cases = []
         for case in written.cases:
             value = self.bounded(case.value, wanted)
@@ -143,8 +234,8 @@ class Reader(PathReader):
             plain = unit.dimension == NO_DIMENSION
             return self.bounded(written, Wanted(a_dimension(unit), (unit.dimension,), None if plain else unit.symbol))
         found = self.bounded(written, None)
-        for value, place in _amounts(found, written):
-            if _sort_of(value) != parameter.sort:
+        for value, place in amounts(found, written):
+            if sort_of_value(value) != parameter.sort:
                 what = "a text in quotes" if parameter.sort == "text" else "`true` or `false`"
                 self.complain("unit-mismatch", place, f"expected {what}, found `{self._at(place)}`")
                 return None
@@ -165,11 +256,11 @@ class Reader(PathReader):
     def _number(self, word: Word, negative: bool) -> Term | None:
         raw = f"-{word.raw}" if negative else word.raw
         if word.kind == NUMBER:
-            term = Term(Value(raw, float(raw), _ONE), "number", NO_DIMENSION, None, word.span, word=word)
+            term = Term(Value(raw, float(raw), ONE), "number", NO_DIMENSION, None, word.span, word=word)
             return term if self._is_finite(float(raw), word) else None
         found = parse_quantity(raw)
         if found is None:
-            return None  # an unknown unit, which is told
+            return None  # an unknown unit, which is reported
         number, unit, unit_text = found
         value = to_si(number, unit)
         if not self._is_finite(value, word):
@@ -187,7 +278,7 @@ class Reader(PathReader):
 
         Args:
             beside: what it is compared with.
-            unit: what it is wanted in, where it stands alone.
+            unit: what it is wanted in, where it is alone.
         """
         name = word.text
         if word.kind == STRING:
@@ -195,13 +286,13 @@ class Reader(PathReader):
         if name in ("true", "false"):
             return Term(Flag(name == "true"), "bool", None, None, word.span)
         if name in self.parameters:
-            return _term(self.parameters[name], word)
+            return term_of(self.parameters[name], word)
         if (signal := self.signal(name)) is not None:
-            return _term(Read(signal), word)
+            return term_of(Read(signal), word)
         if self.is_context(name):
             self.complain("unit-mismatch", word.span, f"`{name}` is a context, not a value")
             return None
-        self.unknown(word, ("parameters", "signals"), unit or _unit_of(beside))
+        self.unknown(word, ("parameters", "signals"), unit or unit_beside(beside))
         return None
 
     def unknown(self, word: Word, kinds: tuple[str, ...], unit: str = "m") -> None:
@@ -211,11 +302,11 @@ class Reader(PathReader):
             kinds: of what the names may have been meant.
             unit: what a signal of that name would be declared in.
         """
-        if not self.ask("knows all names"):
+        if not inputs.is_complete(self.store, self.viewpoint):
             return
         if any(at > 0 and c == "-" for at, c in enumerate(word.text)) and self._is_subtraction(word.text):
-            return  # told as a subtraction without blanks
-        meant = self.near(word.text, *kinds) if word.text not in _OF_PYTHON else (word.text.lower(),)
+            return  # reported as a subtraction without blanks
+        meant = self.near(word.text, *kinds) if word.text not in OF_PYTHON else (word.text.lower(),)
         fixes = tuple(replace_fix(f"Replace `{word.text}` with `{name}`", word.span, name) for name in meant)
         if word.text[-1] in "²³":
             power = "^2" if word.text[-1] == "²" else "^3"
@@ -238,7 +329,7 @@ class Reader(PathReader):
         return name in self.parameters or self.signal(name) is not None or self.is_context(name)
 
     def _fits(self, term: Term, wanted: Wanted) -> bool:
-        """Whether a value is of what is wanted; else it is told."""
+        """Whether a value is of what is wanted; else it is reported."""
         if term.sort != "number":
             self._unexpected(wanted.what, term)
             return False
@@ -256,7 +347,7 @@ class Reader(PathReader):
         return False
 
     def _unexpected(self, what: str, term: Term) -> None:
-        message = f"expected {what}, found `{self._at(term.span)}` ({_sort(term)})"
+        message = f"expected {what}, found `{self._at(term.span)}` ({in_words(term)})"
         self.complain("unit-mismatch", term.span, message)
 
     def _level(self, term: Term) -> None:
@@ -276,15 +367,10 @@ class Reader(PathReader):
         self.complain("number-without-unit", term.span, f"missing unit after `{number}`; {message}", fixes=(fix,))
 
     def _has_unknown_unit(self, term: Term) -> bool:
-        """Whether the word behind a number is told to be no unit: `45 sek`."""
-        if not self.entry.diagnostics:
-            return False
-        from bisect import bisect_left  # most entries have no mistake in them
+        """Whether the word after a number is reported as an unknown unit: `45 sek`."""
+        from bisect import bisect_left  # few numbers lack a unit
 
-        starts = self._unknown_units.get(id(self.entry))
-        if starts is None:
-            found = [problem.span.start for problem in self.entry.diagnostics if problem.rule == "unknown-unit"]
-            starts = self._unknown_units[id(self.entry)] = sorted(found)
+        starts = inputs.unknown_units(self.store, self.path, self.facts)
         at = bisect_left(starts, term.span.end)
         return at < len(starts) and not self.text(term.span.end, starts[at]).strip()
 
@@ -336,7 +422,7 @@ class Reader(PathReader):
         if word.kind == NAME:
             is_value = self._is_value(name)
             if not is_value and self.is_context(name):
-                condition = self.contexts[name]
+                condition, _ = self.store.ask(context, self.viewpoint, name)
                 return InContext(name, condition) if condition is not None else None
             if name in ("true", "false"):
                 return Flag(name == "true")
@@ -387,7 +473,7 @@ class Reader(PathReader):
         found = [term for term in terms if term is not None]
         if len(found) < len(terms):
             return None
-        # Pairs beside each other, so that one number without a unit is told once.
+        # Pairs beside each other, so that one number without a unit is reported once.
         ok = True
         for operator, left, right in zip(written.operators, found, found[1:], strict=False):
             ok = self._comparable(left, right, operator) and ok
@@ -411,11 +497,11 @@ class Reader(PathReader):
             if operator in ("==", "!="):
                 return True
             span = Span(left.span.start, right.span.end)
-            self.complain("unit-mismatch", span, f"cannot order {_sort(left)}; compare with `==` or `!=`")
+            self.complain("unit-mismatch", span, f"cannot order {in_words(left)}; compare with `==` or `!=`")
             return False
         if left.dimension is None or right.dimension is None:
             return True
-        if left.dimension == right.dimension or _counts(left, right) or _counts(right, left):
+        if left.dimension == right.dimension or is_count_of(left, right) or is_count_of(right, left):
             return self._same_level(left, right)
         for number, other in ((left, right), (right, left)):
             if number.is_bare and other.unit is not None:
@@ -432,7 +518,7 @@ class Reader(PathReader):
 
     def _mismatch(self, left: Term, right: Term, what: str) -> None:
         """Complain that two values measure different things; `what` cannot be done with them."""
-        shown = [f"`{self._at(term.span)}` ({_sort(term)})" for term in (left, right)]
+        shown = [f"`{self._at(term.span)}` ({in_words(term)})" for term in (left, right)]
         preposition = {"compare": "with", "add": "and", "subtract": "and"}[what]
         message = f"cannot {what} {f' {preposition} '.join(shown)}"
         self.complain("unit-mismatch", Span(left.span.start, right.span.end), message)
@@ -482,7 +568,7 @@ class Reader(PathReader):
         level: Level = "level" if unit.offset else "either"
         if function in ("change", "stddev"):
             return Term(value, "number", unit.dimension, "K" if unit.offset else unit.symbol, span, "difference")
-        return Term(value, "number", unit.dimension, _symbol(unit), span, level)
+        return Term(value, "number", unit.dimension, unit_symbol(unit), span, level)
 
     def _arithmetic(self, written: Binary) -> Term | None:
         left, right = self._expression(written.left), self._expression(written.right)
@@ -491,7 +577,7 @@ class Reader(PathReader):
         span = Span(written.start, written.end)
         for term in (left, right):
             if term.sort != "number":
-                message = f"`{written.operator}` requires numbers, found `{self._at(term.span)}` ({_sort(term)})"
+                message = f"`{written.operator}` requires numbers, found `{self._at(term.span)}` ({in_words(term)})"
                 self.complain("unit-mismatch", span, message)
                 return None
         value = Arithmetic(written.operator, left.value, right.value)
@@ -506,7 +592,7 @@ class Reader(PathReader):
                     return None
             self._mismatch(left, right, "add" if written.operator == "+" else "subtract")
             return None
-        level = _sum_level(written.operator, left.level, right.level)
+        level = sum_level(written.operator, left.level, right.level)
         if level is None:
             self._level(right)
             return None
@@ -534,83 +620,4 @@ class Reader(PathReader):
         return Term(value, "number", dimension, unit, span)
 
 
-def _amounts(found: Bounded | None, written: WrittenBounded) -> tuple[tuple[Simple, Span], ...]:
-    """Each value with its place."""
-    if found is None:
-        return ()
-    if isinstance(found, Table) and isinstance(written, WrittenTable):
-        amounts = (*(case.value for case in written.cases), written.otherwise)
-        pairs = zip(found.cases, amounts, strict=True)
-        return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
-    assert not isinstance(found, Table), "a table is read from a table"
-    assert isinstance(written, Amount), "a table is read from a table"
-    return ((found, written.word.span),)
-
-
-def _sort_of(value: Simple) -> Sort:
-    if isinstance(value, Read):
-        return value.signal.sort
-    if isinstance(value, Parameter):
-        return value.sort
-    return "number" if isinstance(value, Value) else "bool" if isinstance(value, Flag) else "text"
-
-
-def _simple(value: Number) -> Simple | None:
-    return value if isinstance(value, Value | Flag | Text | Read | Parameter) else None
-
-
-def _term(value: Read | Parameter, word: Word) -> Term:
-    kind = value.signal if isinstance(value, Read) else value
-    unit = kind.unit
-    if kind.sort != "number" or unit is None:
-        return Term(value, kind.sort, None, None, word.span)
-    level: Level = "level" if unit.offset else "either"
-    return Term(value, "number", unit.dimension, _symbol(unit), word.span, level)
-
-
-def _unit_of(term: Term | None) -> str:
-    """What a signal would be declared in that is compared with this."""
-    if term is None or (term.sort == "number" and term.unit is None):
-        return "m" if term is None or not term.is_bare else "1"
-    return term.unit or term.sort
-
-
-def _symbol(unit: Unit) -> str | None:
-    return unit.symbol if unit.dimension != NO_DIMENSION else None
-
-
-def _sum_level(operator: str, left: Level, right: Level) -> Level | None:
-    """What a sum or a difference of temperatures is; None: there is no such thing."""
-    if left != "level" and right != "level":
-        return "difference" if "difference" in (left, right) else "either"
-    if operator == "-":
-        return None if left != "level" else "difference" if right == "level" else "level"
-    return None if left == right else "level"
-
-
-def _counts(term: Term, other: Term) -> bool:
-    """`count(…)` is a plain number and a count, as one likes."""
-    is_count = isinstance(term.value, Aggregate) and term.value.function == "count"
-    return is_count and other.dimension in (NO_DIMENSION, COUNT)
-
-
-def _sort(term: Term) -> str:
-    if term.sort != "number":
-        return SORTS[term.sort]
-    return a_dimension(Unit("", term.dimension, 1.0)) if term.dimension is not None else "a number"
-
-
-_OF_PYTHON: Final = ("True", "False")
-SORTS: Final = {"bool": "true or false", "text": "a text"}
-_ONE: Final = Unit("1", NO_DIMENSION, 1.0)
-
-
-def _dimension_of(symbol: str) -> Dimension:
-    unit = parse_unit(symbol)
-    assert unit is not None, "a symbol of the table"
-    return unit.dimension
-
-
-COUNT: Final = _dimension_of("times")
-TIME: Final = _dimension_of("s")
-PERCENT: Final = _dimension_of("%")
+_DEEPEST: Final = 50  # contexts in contexts: a condition is a tree, and every reader walks it

@@ -2,67 +2,57 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from btq_lang.requirements.attach import Held
     from btq_lang.requirements.model import Applied, Claim, Condition, Requirement, Signal, SourceNode, Trace
     from btq_lang.requirements.nodes import Nodes
     from btq_lang.requirements.paths import Problem
-    from btq_lang.requirements.trees import TreeNodes
+    from btq_lang.workspace.queries import Store
+    from btq_lang.workspace.workspace import Workspace
 
 
 class Requirements:
     """All requirements that a file sees.
 
     Attributes:
+        store, viewpoint: where more can be asked about them, as their budgets.
         signals: by name.
         contexts: by name; None: it could not be understood.
         all: every requirement by name, in the order of their definitions, parameters in it.
-        held: what each of these holds for, in the same order.
+        applied: what holds for what, with arguments.
+        traces: `satisfies` at a node of a requirement whose claims name their subjects themselves.
         attached: names of requirements that a node or an `apply` refers to.
         problems: everything that was not understood.
         nodes: the written nodes.
-        mission: the main tree's root; None where nobody can say which tree runs.
-        by_tree: what is applied to nodes, by the tree that they stand in; a span, too, by the node that it begins at.
+        mission: the main tree's root; None where it is unknown which tree runs.
     """
 
     def __init__(
         self,
+        store: Store[Workspace],
+        viewpoint: str,
         signals: dict[str, Signal],
         contexts: dict[str, Condition | None],
         of_name: dict[str, Requirement],
-        held: list[Held],
+        applied: tuple[Applied, ...],
+        traces: tuple[Trace, ...],
         attached: frozenset[str],
         problems: tuple[Problem, ...],
         nodes: Nodes,
         mission: SourceNode | None,
-        by_tree: dict[int, tuple[Applied, ...]],
     ) -> None:
+        self.store = store
+        self.viewpoint = viewpoint
         self.signals = signals
         self.contexts = contexts
         self.all = of_name
-        self.held = held
+        self.applied = applied
+        self.traces = traces
         self.attached = attached
         self.problems = problems
         self.nodes = nodes
         self.mission = mission
-        self.by_tree = by_tree
-
-    @cached_property
-    def applied(self) -> tuple[Applied, ...]:
-        """What holds for what, with arguments."""
-        return tuple([each for held in self.held for each in held.applied])
-
-    @cached_property
-    def traces(self) -> tuple[Trace, ...]:
-        """`satisfies` at a node of a requirement whose claims name their subjects themselves."""
-        return tuple([each for held in self.held for each in held.traces])
-
-    def in_tree(self, tree: TreeNodes) -> tuple[Applied, ...]:
-        """What holds for nodes of a tree, in the order of the requirements."""
-        return self.by_tree.get(id(tree.item), ())
 
     def of(self, node: SourceNode) -> tuple[Applied, ...]:
         """What holds for a node."""

@@ -1,27 +1,53 @@
 """The nodes of one tree, and what each of them is.
 
-One invariant: it is made of the tree and of the categories that it asks for, so it holds for as long as these do.  It
-does not know other trees.
+One invariant: it is made of the tree and of the categories that it asks for.  It does not know other trees.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Final
 
+from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
+from btq_lang.requirements import inputs
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
+from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.placeholders import is_placeholder
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
 
 _TIMEOUT: Final = BUILTINS["Timeout"]
+
+
+def tree_nodes(store: Store[Workspace], viewpoint: str, path: str, facts: Facts) -> TreeNodes:
+    """The nodes of a tree.
+
+    Args:
+        path, facts: where it is written.
+    """
+    return TreeNodes(path, facts, cache(partial(inputs.category, store, viewpoint)))
+
+
+def tree_named(store: Store[Workspace], viewpoint: str, name: str) -> TreeNodes | None:
+    """The nodes of the tree that a name means."""
+    found = inputs.definition(store, viewpoint, Kind.TREE, name)
+    return store.ask(tree_nodes, viewpoint, *found) if found is not None else None
+
+
+def trees_called(store: Store[Workspace], viewpoint: str, name: str) -> tuple[str, ...]:
+    """The trees that the tree runs that a name means."""
+    tree = store.ask(tree_named, viewpoint, name)
+    return tree.called if tree is not None else ()
 
 
 class TreeNodes:
     """The nodes of one tree.
 
     Attributes:
-        path, item: where it stands.
+        path, facts, item: where it is written.
         name: None where that is missing.
         all: in the order of the text.
         root: the node at the top; None where there is none, or several.
@@ -33,12 +59,12 @@ class TreeNodes:
     """
 
     __slots__ = (
-        "_asked",
         "_by_name",
         "all",
         "by_tag",
         "called",
         "calls",
+        "facts",
         "item",
         "name",
         "path",
@@ -47,16 +73,18 @@ class TreeNodes:
         "timeouts",
     )
 
-    def __init__(self, path: str, item: Tree, categories: Mapping[str, str]) -> None:
-        """categories: of the models in scope, by their names."""
+    def __init__(self, path: str, facts: Facts, category: Callable[[str], str | None]) -> None:
+        """category: that of a model in scope."""
+        item = facts.item
+        assert isinstance(item, Tree), "only trees have nodes"
         self.path = path
+        self.facts = facts
         self.item = item
         self.name = item.name.text if item.name is not None else None
-        self._asked: dict[str, str | None] = {}
         self.by_tag: dict[str, list[SourceNode]] = {}
         self.qualities: dict[int, str] = {}
         self._by_name: dict[str, list[SourceNode]] | None = None
-        self.all = tuple(self._read(categories))
+        self.all = tuple(self._read(category))
         subtrees = [(node.node.id, node) for node in self.all if node.category == "SubTree"]
         self.calls = tuple([(called.text, node) for called, node in subtrees if called is not None])
         self.timeouts = tuple([node for node in self.all if node.kind is _TIMEOUT])
@@ -78,16 +106,6 @@ class TreeNodes:
                     self._by_name.setdefault(name, []).append(node)
         return self._by_name
 
-    def fits(self, categories: Mapping[str, str]) -> bool:
-        """Whether it would come out the same if it were made of these."""
-        return all(categories.get(name) == category for name, category in self._asked.items())
-
-    def let_go(self) -> None:
-        """Nobody asks for these nodes any more.  As parents and children know each other they would stay, with the
-        whole tree, until Python looks for garbage: while somebody types, for as long as a frame of the screen."""
-        for node in self.all:
-            node.children.clear()
-
     def _note(self, clauses: tuple[NodeClause, ...], nodes: list[SourceNode]) -> None:
         for clause in clauses:
             if isinstance(clause, Tags):
@@ -98,16 +116,16 @@ class TreeNodes:
                     for requirement in quality.requirements:
                         self.qualities[id(requirement)] = ".".join(name.text for name in quality.path.names)
 
-    def _read(self, categories: Mapping[str, str]) -> list[SourceNode]:
-        path, item, tree = self.path, self.item, self.name
+    def _read(self, category_of: Callable[[str], str | None]) -> list[SourceNode]:
+        path, facts, item, tree = self.path, self.facts, self.item, self.name
         nodes: list[SourceNode] = []
         waiting: list[tuple[Node, SourceNode | None, int]] = []
         waiting += [(child, None, at) for at, child in enumerate(item.children) if isinstance(child, Node)]
         waiting.reverse()
         while waiting:
             node, parent, index = waiting.pop()
-            kind, category = self._kind(node, categories)
-            found = SourceNode(node, path, item, tree, parent, index, kind, category)
+            kind, category = _kind(node, category_of)
+            found = SourceNode(node, path, facts, item, tree, parent, index, kind, category)
             if parent is not None:
                 parent.children.append(found)
             nodes.append(found)
@@ -117,20 +135,21 @@ class TreeNodes:
                 waiting += children
         return nodes
 
-    def _kind(self, node: Node, categories: Mapping[str, str]) -> tuple[NodeKind | None, str | None]:
-        """The built-in that a node is, and its category."""
-        category: str | None = node.category.raw if node.category is not None else None
-        name = node.id
-        if name is None or category == "SubTree":
-            return None, category
-        if is_placeholder(node):
-            return None, PLACEHOLDERS[name.raw]
-        text = name.text
-        kind = lookup(text, name.quoted, len(node.nodes) if node.children else 0)
-        if kind is not None:
-            return kind, category or kind.category
-        if category is None:
-            category = self._asked[text] = categories.get(text)
-            if category is None and not name.quoted and text in KNOWN_WORDS:
-                category = KNOWN_WORDS[text].category
+
+def _kind(node: Node, category_of: Callable[[str], str | None]) -> tuple[NodeKind | None, str | None]:
+    """The built-in that a node is, and its category."""
+    category: str | None = node.category.raw if node.category is not None else None
+    name = node.id
+    if name is None or category == "SubTree":
         return None, category
+    if is_placeholder(node):
+        return None, PLACEHOLDERS[name.raw]
+    text = name.text
+    kind = lookup(text, name.quoted, len(node.nodes) if node.children else 0)
+    if kind is not None:
+        return kind, category or kind.category
+    if category is None:
+        category = category_of(text)
+        if category is None and not name.quoted and text in KNOWN_WORDS:
+            category = KNOWN_WORDS[text].category
+    return None, category

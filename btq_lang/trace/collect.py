@@ -313,7 +313,7 @@ def _places(workspace: Workspace, shown: Callable[[str], str]) -> Callable[[Plac
 
 def _place_of(requirement: Requirement) -> tuple[int, int]:
     """Where a requirement is defined: the same for all missions that see it."""
-    return id(requirement.item), requirement.place.span.start
+    return id(requirement.place.anchor), requirement.place.span.start
 
 
 def _tree_place(source: SourceNode) -> Place:

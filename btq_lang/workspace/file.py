@@ -170,6 +170,11 @@ class File:
         return self._said("asked_for")
 
     @property
+    def claiming(self) -> frozenset[str]:
+        """The file's requirements whose claims may name their own subjects."""
+        return self._said("claiming")
+
+    @property
     def runs(self) -> frozenset[str]:
         """The trees that the file's items refer to, of trees the other ones."""
         return self._said("runs")

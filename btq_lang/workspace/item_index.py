@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tree import Item, Model, Signal, Tree
-from btq_lang.workspace.symbols import Summary, Symbol, asked_for, summarize
+from btq_lang.workspace.symbols import Summary, Symbol, asked_for, claiming, summarize
 
 if TYPE_CHECKING:
     from btq_lang.workspace.references import Mention
@@ -40,6 +40,11 @@ class Facts:
     @cached_property
     def asked_for(self) -> frozenset[str]:
         return asked_for(self.item)
+
+    @cached_property
+    def claiming(self) -> frozenset[str]:
+        """The requirements that it defines whose claims may name their own subjects."""
+        return claiming(self.summary)
 
     @cached_property
     def mentions(self) -> tuple[Mention, ...]:

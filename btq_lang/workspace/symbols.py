@@ -14,6 +14,7 @@ from btq_lang.catalog.name_kinds import Kind
 from btq_lang.syntax.tokens import NAME
 from btq_lang.syntax.tree import (
     Apply,
+    Claim,
     Context,
     Item,
     Model,
@@ -113,6 +114,18 @@ def asked_for(item: Item) -> frozenset[str]:
     return frozenset().union(
         *(_asked_by(each) if isinstance(each, Requirement) else _words_in(each.arguments) for each in attached)
     )
+
+
+def claiming(summary: Summary) -> frozenset[str]:
+    """The requirements that an item defines whose claims may name their own subjects: in clauses, or in a text."""
+    found = [(symbol.name, symbol.target) for symbol in summary.symbols if symbol.kind is Kind.REQUIREMENT]
+    return frozenset([name for name, target in found if isinstance(target, Requirement) and _may_claim(target)])
+
+
+def _may_claim(requirement: Requirement) -> bool:
+    if not requirement.clauses:
+        return requirement.text is not None and "if" in requirement.text.text.lower()
+    return any(isinstance(clause, Claim) and clause.subject is not None for clause in requirement.clauses)
 
 
 def same_requirement(first: Requirement, second: Requirement) -> bool:

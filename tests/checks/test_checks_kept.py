@@ -12,11 +12,10 @@ import missions
 import pytest
 from kept_checks import Kept
 
-from btq_lang.checks import CHECKS, Check, check, let_go
-from btq_lang.checks.demanded import Demanded
+from btq_lang.checks import CHECKS, Check, check
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic
-from btq_lang.requirements.budgets import Budgets
+from btq_lang.requirements.trees import TreeNodes
 from btq_lang.syntax.tree import Entry, Tree
 from btq_lang.workspace.workspace import Workspace
 
@@ -254,18 +253,17 @@ def test_every_check_says_what_it_asks_for(monkeypatch: pytest.MonkeyPatch, text
     assert set(Counter(asked).values()) <= {1}
 
 
-def test_what_an_edit_replaces_goes_without_the_garbage_collector() -> None:
-    """What is found out of a workspace holds the whole of it: in a ring, all of the last thousand keys would stay."""
+def test_what_an_edit_replaces_goes_when_it_is_swept() -> None:
+    """What is found out of a workspace holds the whole of it."""
     workspace, answers = Workspace.of(FILES), Kept()
     gc.collect()
-    gc.disable()
-    try:
-        for letter in "abc":
-            workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
-            answers.check(workspace, "/p/main.btq")
-            assert answers.store is not None
-            let_go(answers.store)
-        kinds = [type(each) for each in gc.get_objects()]
-        assert (kinds.count(Demanded), kinds.count(Budgets)) == (0, 1)  # those of now
-    finally:
-        gc.enable()
+    before = Counter(type(each) for each in gc.get_objects())
+    for letter in "abc":
+        workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
+        answers.check(workspace, "/p/main.btq")
+    assert answers.store is not None
+    answers.store.sweep(always=True)
+    gc.collect()  # nodes and their parents hold each other
+    after = Counter(type(each) for each in gc.get_objects())
+    trees = sum(len(file.of_type(Tree)) for file in workspace.files.values())
+    assert after[TreeNodes] - before[TreeNodes] == trees

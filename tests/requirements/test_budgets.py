@@ -51,7 +51,7 @@ def assert_within_budgets(text: str, seed: int) -> set[str]:
     """Some runs of a mission; how its root ended."""
     found = resolved(text)
     ended: set[str] = set()
-    budgets = Budgets(found)
+    budgets = Budgets(found.store, found.viewpoint)
 
     def report(node: SourceNode, status: str, seconds: float) -> None:
         budget = budgets.of(node)
@@ -95,7 +95,7 @@ def budget(tree: str, requirements: str = LEAVES) -> tuple[Budgets, SourceNode]:
     found = resolved(f"{requirements}BehaviorTree Main\n{lines}{everyone}")
     root = found.nodes.root("Main")
     assert root is not None
-    return Budgets(found), root
+    return Budgets(found.store, found.viewpoint), root
 
 
 def said(tree: str, requirements: str = LEAVES) -> tuple[object, object, object]:

@@ -447,7 +447,10 @@ def test_contexts_in_contexts() -> None:
     assert found.contexts["c30"] is not None
     assert found.contexts["c0"] is None
     found = resolved("context a : b or true\ncontext b : a\ncontext c : b or true\n")
-    assert [problem.diagnostic.message for problem in found.problems] == ["the context `b` refers to itself"]
+    assert [problem.diagnostic.message for problem in found.problems] == [
+        "the context `a` refers to itself",
+        "the context `b` refers to itself",
+    ]
 
 
 def test_more_than_any_number() -> None:

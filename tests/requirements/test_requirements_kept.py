@@ -11,13 +11,15 @@ import pytest
 from kept_checks import Kept
 
 from btq_lang.checks import check
+from btq_lang.checks.lookups import advanced
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements.budgets import Budget, Budgets, Range, Success
-from btq_lang.requirements.memory import Memory
+from btq_lang.requirements import inputs
+from btq_lang.requirements.attach import applied_in
+from btq_lang.requirements.budgets import Budget, Budgets, Range, Success, tree_budgets
 from btq_lang.requirements.model import SourceNode
-from btq_lang.requirements.nodes import Nodes
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 MAIN = """include "skills.btq"
@@ -177,15 +179,16 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
     chance = random.Random(seed)
     workspace = Workspace.of(files)
     answers = {path: Kept() for path in files}
-    memories = {path: Memory() for path in files}
+    store = Store(workspace)
     for step in range(40):
         path = chance.choice(sorted(files))
         text = edited(workspace.files[path].text, chance) if chance.random() > 0.15 else files[path]
         workspace = workspace.with_file(path, text)
+        store = advanced(store, workspace)
         texts = {each: file.text for each, file in workspace.files.items()}
         fresh = Workspace.of(texts)
-        for each in files:
-            now = list(said(workspace, requirements(workspace, each, memories[each]), memories[each]))
+        for each in chance.sample(sorted(files), len(files)):
+            now = list(said(workspace, requirements(workspace, each, store)))
             assert now == list(said(fresh, requirements(fresh, each))), (step, each, texts)
             assert answers[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, texts)
 
@@ -217,7 +220,7 @@ def edited(text: str, chance: random.Random) -> str:
     return "\n".join(lines)
 
 
-def said(workspace: Workspace, found: Requirements, memory: Memory | None = None) -> Iterator[object]:
+def said(workspace: Workspace, found: Requirements) -> Iterator[object]:
     """All that requirements and budgets say, with places as they stand in the texts."""
 
     def at(place: Place) -> tuple[str | None, int]:
@@ -241,9 +244,9 @@ def said(workspace: Workspace, found: Requirements, memory: Memory | None = None
         yield applied.requirement.name, claims, arguments, [*map(named, applied.nodes)], at(applied.place), applied.how
     yield [(trace.requirement, named(trace.node)) for trace in found.traces]
     yield found.attached
-    yield [(each.path, each.diagnostic.rule, each.diagnostic.message) for each in found.problems]
+    yield [(at(each.place), each.diagnostic.rule, each.diagnostic.message) for each in found.problems]
     yield [[at(related.place) for related in each.diagnostic.related] for each in found.problems]
-    budgets = Budgets(found, memory)
+    budgets = Budgets(found.store, found.viewpoint)
     for node in found.nodes.all:
         yield shown(budgets.of(node), named), shown(budgets.composed(node), named), likely(budgets.success(node), named)
         yield [(named(gap.node), gap.reason) for gap in budgets.gaps(node)]
@@ -263,25 +266,25 @@ def likely(found: Success | None, named: Callable[[SourceNode], object]) -> obje
 
 def test_an_edit_in_one_tree_leaves_the_others() -> None:
     workspace = Workspace.of(FILES)
-    memory = Memory()
-    before = requirements(workspace, "/p/main.btq", memory)
-    trees = held(before)
-    changed = workspace.with_file("/p/main.btq", MAIN.replace("Sleep (msec = 2 s)", "Sleep (msec = 3 s)"))
-    after = requirements(changed, "/p/main.btq", memory)
-    same = {tree for tree, applied in held(after).items() if all(map(is_one_of(trees[tree]), applied))}
-    assert same == {"Carry", "Deeper"}  # `path` speaks of nodes of both other trees
-    assert [after.all[name] is before.all[name] for name in ("quick", "slow", "steps", "path", "rq5", "rq6")] == [
-        *(True, True, True),  # the nodes of `every` are no part of a requirement, but those of paths are
-        *(False, True, False),
-    ]
+    store = Store(workspace)
+    before, trees = requirements(workspace, "/p/main.btq", store), held(store)
+    workspace = workspace.with_file("/p/main.btq", MAIN.replace("Sleep (msec = 2 s)", "Sleep (msec = 3 s)"))
+    store = advanced(store, workspace)
+    after, trees_after = requirements(workspace, "/p/main.btq", store), held(store)
+    assert [name for name, applied in trees_after.items() if applied is trees[name]] == ["Carry", "Deeper"]
+    # These name nodes of the tree `Help`, or are defined in it; what `every` means is no part of `steps`.
+    assert {name for name, each in after.all.items() if each is not before.all[name]} == {"path", "often", "rq6"}
 
 
-def is_one_of(objects: tuple[object, ...]) -> Callable[[object], bool]:
-    return lambda each: any(each is other for other in objects)
+def held(store: Store[Workspace]) -> dict[str, object]:
+    """What holds for nodes of each tree in scope of the main file."""
+    return in_trees(store, applied_in, "/p/main.btq")
 
 
-def held(found: Requirements) -> dict[str | None, tuple[object, ...]]:
-    return {tree.name: found.in_tree(tree) for tree in found.nodes.trees}
+def in_trees(store: Store[Workspace], query: Callable[..., object], viewpoint: str) -> dict[str, object]:
+    """What a query says of each tree in scope, by the tree's name."""
+    trees = inputs.trees(store, viewpoint)
+    return {facts.summary.symbols[0].name: store.ask(query, viewpoint, path, facts) for path, facts in trees}
 
 
 def test_a_budget_is_made_again_where_one_that_it_rests_on_is_another() -> None:
@@ -295,44 +298,54 @@ BehaviorTree Fast
     Sleep (msec = 1 s)
 signal s : m
 """
-    workspace = Workspace.of({"/a.btq": text})
-    memory = Memory()
-    kept = in_trees(workspace, memory)
-    workspace = workspace.with_file("/a.btq", text.replace("msec = 1 s", "msec = 1000"))
-    assert changed_since(kept, kept := in_trees(workspace, memory)) == {"Fast"}
-    workspace = workspace.with_file("/a.btq", text.replace("msec = 1 s", "msec = 1500"))
-    assert changed_since(kept, kept := in_trees(workspace, memory)) == {"Fast", "Main"}
-    workspace = workspace.with_file("/a.btq", text.replace("1 s", "1500").replace("SubTree Fast", "SubTree Main"))
-    assert changed_since(kept, in_trees(workspace, memory)) == {"Main"}
+    store = Store(Workspace.of({"/a.btq": text}))
+    kept = in_trees(store, tree_budgets, "/a.btq")
+
+    def made_again(edited: str) -> set[str]:
+        nonlocal kept, store
+        store = advanced(store, store.state.with_file("/a.btq", edited))
+        before, kept = kept, in_trees(store, tree_budgets, "/a.btq")
+        return {name for name, one in kept.items() if one is not before[name]}
+
+    assert made_again(text.replace("msec = 1 s", "msec = 1000")) == {"Fast"}
+    assert made_again(text.replace("msec = 1 s", "msec = 1500")) == {"Fast", "Main"}
+    assert made_again(text.replace("1 s", "1500").replace("SubTree Fast", "SubTree Main")) == {"Main"}
 
 
-def in_trees(workspace: Workspace, memory: Memory) -> dict[str | None, object]:
-    """What the budgets of each tree are taken from, after all of them were asked for."""
-    found = requirements(workspace, "/a.btq", memory)
-    budgets = Budgets(found, memory)
-    for node in found.nodes.all:
-        budgets.of(node)
-    return {tree.name: budgets.in_tree(tree) for tree in found.nodes.trees}
-
-
-def changed_since(before: dict[str | None, object], after: dict[str | None, object]) -> set[str | None]:
-    return {name for name, one in after.items() if one is not before[name]}
-
-
-def test_trees_are_in_order_however_they_call_each_other() -> None:
-    text = """BehaviorTree A
+CIRCLE = """BehaviorTree A
     ->
         SubTree B
-        SubTree C
-BehaviorTree B
-    SubTree C
-BehaviorTree C
-    ->
-        SubTree A
         SubTree D
+BehaviorTree B
+    SubTree A
+BehaviorTree C
+    SubTree A
 BehaviorTree D
-    Sleep (msec = 1)
+    Sleep (msec = 1 s)
 """
-    workspace = Workspace.of({"/a.btq": text})
-    nodes = Nodes(workspace, workspace.scope("/a.btq"))
-    assert [tree.name for tree in nodes.in_order] == ["D", "C", "B", "A"]
+
+
+def test_a_tree_that_contains_itself_has_no_budget_whoever_is_asked_first() -> None:
+    workspace = Workspace.of({"/a.btq": CIRCLE})
+    for first in ("A", "B", "C", "D"):
+        found = requirements(workspace, "/a.btq")
+        budgets = Budgets(found.store, "/a.btq")
+        tops = {tree.name: tree.root for tree in found.nodes.trees if tree.root is not None}
+        budgets.of(tops[first])
+        assert [name for name, root in tops.items() if budgets.of(root).is_bounded] == ["D"]
+        gaps = budgets.gaps(tops["C"])
+        assert [(gap.node.shown, gap.reason) for gap in gaps] == [("`A`", "is a tree that contains itself")]
+
+
+@pytest.mark.parametrize("is_circle", [False, True])
+def test_no_chain_of_trees_is_too_long(is_circle: bool) -> None:
+    count = 3_000
+    chain = "".join(f"BehaviorTree T{at}\n    SubTree T{at + 1} satisfies quick\n" for at in range(count))
+    last = f"BehaviorTree T{count}\n    {'SubTree T7' if is_circle else 'Sleep (msec = 2 s)'}\n"
+    text = f"Root T0\nQualityReq quick takes at most 1 s\n{chain}{last}"
+    workspace, kept = Workspace.of({"/a.btq": text}), Kept()
+    found = kept.check(workspace, "/a.btq").diagnostics
+    exceeded = [each.message for each in found if each.rule == "budget-exceeded"]
+    assert exceeded == ([] if is_circle else ["`T3000` takes at least 2 s, so it always violates `1 s`"])
+    shorter = workspace.with_file("/a.btq", text.replace("2 s", "1 s").replace("SubTree T7", "Sleep (msec = 1 s)"))
+    assert "budget-exceeded" not in {each.rule for each in kept.check(shorter, "/a.btq").diagnostics}

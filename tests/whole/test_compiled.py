@@ -145,7 +145,7 @@ def test_keys_and_questions_leave_nothing_to_the_garbage_collector(compiled: Pat
         command = [sys.executable, "-c", LEFT_BEHIND]
         env = os.environ | {"PYTHONPATH": str(package)}
         done = subprocess.run(
-            command, input=mission(100, 2, "short"), cwd=package, env=env, capture_output=True, text=True, check=True
+            command, input=mission(100, 2, "classic"), cwd=package, env=env, capture_output=True, text=True, check=True
         )
         assert done.stdout == "0\n", package
 

@@ -1,0 +1,58 @@
+"""The definitions of requirements, each a query by its name."""
+
+from __future__ import annotations
+
+from btq_lang.catalog.name_kinds import Kind
+from btq_lang.requirements import inputs
+from btq_lang.requirements.clauses import parameter_of, with_clauses
+from btq_lang.requirements.model import Parameter, Requirement
+from btq_lang.requirements.reader import Problems, Reader
+from btq_lang.requirements.trees import tree_nodes
+from btq_lang.syntax.tree import Requirement as WrittenRequirement
+from btq_lang.syntax.tree import Tree
+from btq_lang.workspace.item_index import Facts
+from btq_lang.workspace.queries import Store
+from btq_lang.workspace.workspace import Workspace
+
+
+def requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple[Requirement | None, Problems]:
+    """The requirement of a name, with its parameters in it, and what is wrong with its definition; None where none is
+    defined."""
+    found = inputs.definition(store, viewpoint, Kind.REQUIREMENT, name)
+    if found is None:
+        return None, ()
+    symbol = inputs.symbol(found[1], Kind.REQUIREMENT, name)
+    written = symbol.target
+    assert isinstance(written, WrittenRequirement), "its kind says so"
+    reader = Reader(store, viewpoint, *found)
+    parameters: dict[str, Parameter] = {}
+    for each in written.parameters:
+        parameter = parameter_of(reader, each)
+        parameters.setdefault(parameter.name, parameter)
+    reader.parameters = parameters
+    read = Requirement(
+        name,
+        reader.place(symbol.span),
+        _quality(store, viewpoint, *found, written),
+        written.text.text if written.text is not None else None,
+        False,
+        tuple(parameters.values()),
+        (),
+    )
+    read = with_clauses(reader, read, written.clauses)
+    if not written.clauses and written.text is not None:
+        from btq_lang.requirements.classic import with_constraints  # a requirement that has clauses needs none of it
+
+        read = with_constraints(reader, read, written.text)
+    return read, reader.problems
+
+
+def _quality(
+    store: Store[Workspace], viewpoint: str, path: str, facts: Facts, written: WrittenRequirement
+) -> str | None:
+    """The quality that a requirement names, or that encloses it."""
+    if written.quality is not None:
+        return ".".join(name.text for name in written.quality.names)
+    if not isinstance(facts.item, Tree):
+        return None
+    return store.ask(tree_nodes, viewpoint, path, facts).qualities.get(id(written))

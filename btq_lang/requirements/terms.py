@@ -1,0 +1,165 @@
+"""Values in expressions, with what must be known to compare them: sorts, dimensions, levels of temperature.
+
+It does not know names: `reader` looks them up.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+from btq_lang.catalog.units import Dimension, Unit, a_dimension, parse_unit
+from btq_lang.requirements.model import (
+    NO_DIMENSION,
+    Aggregate,
+    Bounded,
+    Flag,
+    Number,
+    Parameter,
+    Read,
+    Simple,
+    Table,
+    Text,
+    Value,
+)
+from btq_lang.syntax.tokens import NUMBER
+from btq_lang.syntax.tree import Amount, Word
+from btq_lang.syntax.tree import Bounded as WrittenBounded
+from btq_lang.syntax.tree import Table as WrittenTable
+from btq_lang.util.record import Record
+from btq_lang.util.text import Span
+
+if TYPE_CHECKING:
+    from btq_lang.requirements.model import Sort
+
+    # Of a temperature: 25 degC is a level, a difference of two levels is a difference, and K may be either.
+    Level: TypeAlias = Literal["level", "difference", "either"]
+
+
+class Wanted(Record):
+    """What a verb asks for in a place.
+
+    Attributes:
+        what: in words, to follow "expected ".
+        dimensions: any of these.
+        unit: what a number without a unit may have meant; None: it needs no unit.
+        level: of temperatures, whether a difference is asked for.
+    """
+
+    what: str
+    dimensions: tuple[Dimension, ...]
+    unit: str | None
+    level: Level = "either"
+
+
+class Term(Record):
+    """A value in an expression, with what must be known to compare it.
+
+    Attributes:
+        dimension: of a number; None where it is unknown.
+        unit: how a number beside it would be written.
+        span: its place, counted from the entry.
+        word: where it is a literal.
+    """
+
+    value: Number
+    sort: Sort
+    dimension: Dimension | None
+    unit: str | None
+    span: Span
+    level: Level = "either"
+    word: Word | None = None
+
+    @property
+    def is_bare(self) -> bool:
+        """A number without a unit."""
+        return self.word is not None and self.word.kind == NUMBER
+
+
+def amounts(found: Bounded | None, written: WrittenBounded) -> tuple[tuple[Simple, Span], ...]:
+    """Each value with its place."""
+    if found is None:
+        return ()
+    if isinstance(found, Table) and isinstance(written, WrittenTable):
+        amounts = (*(case.value for case in written.cases), written.otherwise)
+        pairs = zip(found.cases, amounts, strict=True)
+        return tuple((case.value, amount.word.span) for case, amount in pairs if amount is not None)
+    assert not isinstance(found, Table), "a table is read from a table"
+    assert isinstance(written, Amount), "a table is read from a table"
+    return ((found, written.word.span),)
+
+
+def sort_of_value(value: Simple) -> Sort:
+    if isinstance(value, Read):
+        return value.signal.sort
+    if isinstance(value, Parameter):
+        return value.sort
+    return "number" if isinstance(value, Value) else "bool" if isinstance(value, Flag) else "text"
+
+
+def simple(value: Number) -> Simple | None:
+    return value if isinstance(value, Value | Flag | Text | Read | Parameter) else None
+
+
+def term_of(value: Read | Parameter, word: Word) -> Term:
+    kind = value.signal if isinstance(value, Read) else value
+    unit = kind.unit
+    if kind.sort != "number" or unit is None:
+        return Term(value, kind.sort, None, None, word.span)
+    level: Level = "level" if unit.offset else "either"
+    return Term(value, "number", unit.dimension, unit_symbol(unit), word.span, level)
+
+
+def unit_beside(term: Term | None) -> str:
+    """What a signal would be declared in that is compared with this."""
+    if term is None or (term.sort == "number" and term.unit is None):
+        return "m" if term is None or not term.is_bare else "1"
+    return term.unit or term.sort
+
+
+def unit_symbol(unit: Unit) -> str | None:
+    return unit.symbol if unit.dimension != NO_DIMENSION else None
+
+
+def sum_level(operator: str, left: Level, right: Level) -> Level | None:
+    """What a sum or a difference of temperatures is; None: there is no such thing."""
+    if left != "level" and right != "level":
+        return "difference" if "difference" in (left, right) else "either"
+    if operator == "-":
+        return None if left != "level" else "difference" if right == "level" else "level"
+    return None if left == right else "level"
+
+
+def is_count_of(term: Term, other: Term) -> bool:
+    """`count(…)` is a plain number and a count, as one likes."""
+    is_count = isinstance(term.value, Aggregate) and term.value.function == "count"
+    return is_count and other.dimension in (NO_DIMENSION, COUNT)
+
+
+def in_words(term: Term) -> str:
+    if term.sort != "number":
+        return SORTS[term.sort]
+    return a_dimension(Unit("", term.dimension, 1.0)) if term.dimension is not None else "a number"
+
+
+def sort_of(written: Word | None) -> tuple[Sort, Unit | None]:
+    """What the word after the `:` of a signal or a parameter says."""
+    if written is not None and written.text in ("bool", "text"):
+        return ("bool" if written.text == "bool" else "text"), None
+    return "number", parse_unit(written.text) if written is not None else None
+
+
+OF_PYTHON: Final = ("True", "False")
+SORTS: Final = {"bool": "true or false", "text": "a text"}
+ONE: Final = Unit("1", NO_DIMENSION, 1.0)
+
+
+def _dimension_of(symbol: str) -> Dimension:
+    unit = parse_unit(symbol)
+    assert unit is not None, "a symbol of the table"
+    return unit.dimension
+
+
+COUNT: Final = _dimension_of("times")
+TIME: Final = _dimension_of("s")
+PERCENT: Final = _dimension_of("%")
+DURATION: Final = Wanted("a time", (TIME,), "s")
