@@ -13,7 +13,7 @@ from xml_elements import elements
 
 from btq_lang.btcpp.document import Attribute, Comment, Document, Element, Text, escape, write
 from btq_lang.btcpp.reader import MAX_DEPTH, Read, read
-from btq_lang.util.text import LineIndex
+from btq_lang.util.text import LineIndex, Span
 
 STRICT = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, encoding="utf-8")
 
@@ -125,6 +125,12 @@ def test_a_closing_tag_of_another_element(text: str, note: str) -> None:
     (problem,) = read(text).problems
     assert problem.notes == (note,)
     assert [(each.place.span.start, each.message) for each in problem.related] == [(3, "<b> opens here")]
+
+
+def test_an_attribute_again_leads_to_the_first_of_its_name() -> None:
+    (problem,) = read('<a b="1" c="2" b="3"/>').problems
+    assert problem.span == Span(15, 16)
+    assert [(each.place.span, each.message) for each in problem.related] == [(Span(3, 4), "its first value is here")]
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,14 @@ def test_a_child_that_could_not_be_read_is_not_missed() -> None:
     )
 
 
+def test_children_too_many_are_told_where_something_before_them_could_not_be_read() -> None:
+    assert_problems(
+        tree("Inverter", "    = X", "    Y", "    Z"),
+        "2:5 error child-count «Inverter» `Inverter` requires exactly 1 child, found 2",
+        "3:9 error syntax-error «=» expected a node: its kind, or a symbol: -> ? || …, found `=`",
+    )
+
+
 # ---- Switch ----------------------------------------------------------------------------------------------------------
 
 CASES = "variable = {x} case_1 = a case_2 = b"

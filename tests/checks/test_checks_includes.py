@@ -36,6 +36,13 @@ def test_what_may_be_meant() -> None:
     assert_fix(misspelt, "Replace it with `skills.btq`", misspelt.replace("skils", "skills"))
 
 
+def test_three_files_of_its_name_may_be_meant() -> None:
+    folders = "".join(f"//- {folder}/skills.btq\n" for folder in "abcd")
+    workspace = workspace_of(split_files(f'//- main.btq\ninclude "skills.btq"\n{folders}'))
+    (found,) = check(workspace, "main.btq")
+    assert [fix.title for fix in found.fixes] == [f"Replace it with `{folder}/skills.btq`" for folder in "abc"]
+
+
 def test_an_empty_path() -> None:
     assert_problems('include ""\n', '1:9 error missing-include «""» missing file name after `include`')
 

@@ -604,6 +604,17 @@ def test_a_bound_as_others_write_it(sign: str, words: str) -> None:
     assert_fix(text.format(sign), f"Write `{words}`", text.format(words), safe=True)
 
 
+@pytest.mark.parametrize("words", ["no more than", "up to", "=<", "max"])
+def test_a_bound_in_other_words_is_the_bound_all_the_same(words: str) -> None:
+    tree = """
+        requirement a
+          takes <= 3s
+    """
+    assert_parse(
+        f"QualityReq a\n    takes {words} 3 s", tree, f"2:11 syntax-error «{words}» this bound is written `at most`"
+    )
+
+
 def test_a_word_of_few_that_is_misspelt() -> None:
     text = "QualityReq a\n    {}"
     for wrong, right in (("fails", "fail"), ("failure", "fail"), ("halts", "halt"), ("warning", "warn")):
