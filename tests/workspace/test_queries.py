@@ -100,7 +100,7 @@ def test_circles_and_edits(seed: int) -> None:
             assert store.ask(total, node) == truth[node]
         if random.random() < 0.2:
             store.pin(total, random.randrange(len(truth)))
-            store.sweep()
+            store.sweep(always=True)
         graph, touched = edited(random, graph, circles=True)
         store.advance(graph, touched)
 
