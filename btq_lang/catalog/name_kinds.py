@@ -14,3 +14,5 @@ class Kind(Enum):
     SIGNAL = "signal"
     CONTEXT = "context"
     QUALITY = "quality"
+
+    __hash__ = object.__hash__  # that of `Enum` is a function in Python, and every name is looked up with its kind

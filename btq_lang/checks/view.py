@@ -42,14 +42,16 @@ class View:
         store: where answers are kept.
         viewpoint: from where names are looked up.
         facts: of the item that is checked.
+        seen: the nodes of a tree, and those among them that only some checks look for; none for any other item.
     """
 
-    __slots__ = ("facts", "store", "viewpoint")
+    __slots__ = ("facts", "seen", "store", "viewpoint")
 
     def __init__(self, store: Store[Workspace], viewpoint: str, facts: Facts | None = None) -> None:
         self.store = store
         self.viewpoint = viewpoint
         self.facts: Facts = facts  # type: ignore[assignment]  # who looks at no item asks for none
+        self.seen = self.seen_in(facts) if facts is not None and isinstance(facts.item, Tree) else NO_NODES
 
     def ask(self, query: Callable[..., T], *key: Any) -> T:
         """What a query says from this viewpoint."""
@@ -79,11 +81,6 @@ class View:
     def nodes(self) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
         return self.seen.all
-
-    @property
-    def seen(self) -> SeenNodes:
-        """The same, and those among them that only some checks look for."""
-        return self.seen_in(self.facts) if isinstance(self.facts.item, Tree) else NO_NODES
 
     @property
     def mentions(self) -> tuple[Mention, ...]:
@@ -370,7 +367,8 @@ def _seen_node(view: View, node: Node, tree: Tree, parent: SeenNode | None, inde
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
     """Where in an item something begins that could not be read."""
-    return sorted([problem.span.start for problem in View(store, viewpoint, facts).entry.diagnostics])
+    entry = store.read(facts, lookups.entry, viewpoint, facts)
+    return sorted([problem.span.start for problem in entry.diagnostics])
 
 
 def _has_trees(store: Store[Workspace], viewpoint: str) -> bool:
