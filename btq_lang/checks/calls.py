@@ -44,7 +44,7 @@ def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
-    """Whether a SubTree names a tree that nobody knows, so that what is reached cannot be told."""
+    """Whether a SubTree names a tree that nobody knows, so that nobody knows what is reached."""
     return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
 
 
@@ -61,7 +61,7 @@ class Calls:
     """The trees of a scope, by name, with the trees that each of them runs as SubTree.
 
     Attributes:
-        has_gaps: a SubTree names a tree that nobody knows, so that what is reached cannot be told.
+        has_gaps: a SubTree names a tree that nobody knows, so that nobody knows what is reached.
     """
 
     def __init__(self, runs: Mapping[str, Runs]) -> None:
@@ -137,7 +137,7 @@ class Calls:
 
     @cached_property
     def callees_first(self) -> tuple[str, ...]:
-        """The trees, each behind those that it runs, but for circles."""
+        """The trees, each after those that it runs, but for circles."""
         called = self._called
         finished: dict[str, None] = {}
         begun: set[str] = set()
@@ -158,8 +158,8 @@ class Calls:
     def knots(self) -> dict[str, frozenset[str]]:
         """The strongly connected components that hold a circle, each under the first of its trees (Kosaraju)."""
         finished = self.callees_first
-        behind = {name: number for number, name in enumerate(finished)}
-        if all(behind.get(called, -1) < behind[name] for name in finished for called in self._called[name]):
+        place_of = {name: number for number, name in enumerate(finished)}
+        if all(place_of.get(called, -1) < place_of[name] for name in finished for called in self._called[name]):
             return {}  # as in nearly all files
         knots: dict[str, frozenset[str]] = {}
         place = {name: number for number, name in enumerate(self._called)}

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
-# A name in a tree; an empty tree stands for the root blackboard.
+# A name in a tree; an empty tree means the root blackboard.
 Name: TypeAlias = tuple[str, str]
 
 
@@ -37,7 +37,7 @@ class Mention(Record):
         span: the name itself.
         reads, writes: what may happen to it there; of a SubTree neither, for that is what happens in its tree.
         creates: it need not exist before.
-        in_script: it stands in a script.
+        in_script: it is in a script.
     """
 
     name: str
@@ -142,7 +142,7 @@ class Blackboards:
         return self._first(self.place(tree, name)) == self._first(self.place(tree, other))
 
     def place(self, tree: str, name: str) -> Name:
-        """Where an entry stands: in the tree's own blackboard or in that of the root."""
+        """Where an entry is: in the tree's own blackboard or in that of the root."""
         if name[:1] == "@":
             return "", name[1:]
         return ("", name) if self.is_root(tree) else (tree, name)

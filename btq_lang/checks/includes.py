@@ -90,8 +90,8 @@ def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
         return
 
 
-def is_told_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
-    """Whether a diagnostic says of an included file no more than what is told of it, as it is checked, too."""
+def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
+    """Whether a diagnostic says of an included file no more than what is reported of it, as it is checked, too."""
     return diagnostic.rule == "include-with-errors" and diagnostic.related[0].place.path in checked
 
 
@@ -117,7 +117,7 @@ def _errors(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str],
 
 
 def include_fix(view: View, path: str) -> Fix:
-    """Include another file, behind the includes that are there."""
+    """Include another file, after the includes that are there."""
     at, line = include_line(view.look_up(lookups.head), view.path, path)
     shown = posixpath.relpath(path, posixpath.dirname(view.path) or ".")
     return Fix(f"Include `{shown}`", (Change(Place(Span(at, at), view.path), line),))

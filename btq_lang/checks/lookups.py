@@ -240,7 +240,7 @@ def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
 
 
 def has_neighbours(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether more stands in the file that the engine reads than one tree."""
+    """Whether the engine reads more in the file than one tree."""
     items = [each.item for each in workspace.files[viewpoint].facts.values()]
     return len([item for item in items if isinstance(item, Tree | Model | Models | Include)]) > 1
 
@@ -327,7 +327,7 @@ def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 def root(workspace: Workspace, viewpoint: str) -> tuple[int, str] | None:
-    """Where a name may be put in behind the word Root, if there is one: an offset in the file."""
+    """Where a name may be inserted after the word Root, if there is one: an offset in the file."""
     first = next((each for each in workspace.files[viewpoint].parsed.entries if isinstance(each.item, Root)), None)
     return (first.start + first.item.start + len("Root"), "") if first is not None else None
 
@@ -411,7 +411,7 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
 
 
 def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
-    """What the file stands for, if it is written in another language."""
+    """The file on the disk, if it is written in another language."""
     return workspace.files[viewpoint].origin
 
 
@@ -433,7 +433,7 @@ def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, st
 
 
 def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
-    """Where a line may be put in that belongs to the head of the file, behind its includes, and what it is indented
+    """Where a line may be inserted that belongs to the head of the file, after its includes, and what it is indented
     with: an offset in the file."""
     text = workspace.files[viewpoint].text
     includes = [entry for entry in workspace.files[viewpoint].parsed.entries if isinstance(entry.item, Include)]

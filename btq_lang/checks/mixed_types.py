@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class _Port(Record):
-    """A port of a node: the tree it stands in, the number of the node in it, and that of the attribute at the node."""
+    """A port of a node: the tree it is in, the number of the node in it, and that of the attribute at the node."""
 
     tree: str
     node: int
@@ -165,15 +165,15 @@ def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Itera
     if not all(_is_strong(each.type) for each in meetings if each.node == first.node):
         return
     nodes = _nodes(view, tree)
-    told = {first.type}
+    reported = {first.type}
     for later in meetings:
         is_one = (later.node, later.given) == (first.node, first.given) and later.given is not None
-        if later.type in told or not later.type or is_one:
+        if later.type in reported or not later.type or is_one:
             continue
         severity = _severity(first.type, later.type)
         if severity is None or not _is_first(view, tree, key):
             continue
-        told.add(later.type)
+        reported.add(later.type)
         span = nodes[later.node].node.head.span
         if later.given is not None and (value := nodes[later.node].node.attributes[later.given].value) is not None:
             span = value.span

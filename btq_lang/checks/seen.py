@@ -26,9 +26,9 @@ class SeenNode:
         is_defined: a model of it is in scope.
         model: that model.
         category: as written, or as the built-in or the model has it; None where nobody says.
-        id, name: those of the node, which are looked for in its attributes where they stand nowhere else.
+        id, name: those of the node, which are looked for in its attributes if they are nowhere else.
         is_subtree: whether the category is SubTree.
-        is_placeholder: it stands for a skill, see placeholders.py.
+        is_placeholder: it represents a skill, see placeholders.py.
         asked: the name that a model was looked for by; nothing where none was.
     """
 
@@ -99,7 +99,7 @@ class SeenNodes:
         categorized: those whose category is written.
         subtrees: those that run another tree.
         named: those with an instance name.
-        placeholders: those that stand for a skill.
+        placeholders: those that represent a skill.
         strangers: those that are neither a built-in nor a SubTree, and have no model.
         by_tag: the built-ins, by their tag.
     """

@@ -12,7 +12,7 @@ from btq_lang.btcpp.outputs import Places, missions, outputs, sources, without_t
 from btq_lang.btcpp.side_file import side_path
 from btq_lang.btcpp.source import Remark
 from btq_lang.checks import check
-from btq_lang.checks.includes import is_told_beside
+from btq_lang.checks.includes import is_reported_beside
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.util.record import Record, replace
@@ -120,7 +120,7 @@ def errors(
     reported = {*built, *included}
     for path in (*built, *(each for each in included if each not in replaced)):
         for each in _as_written(workspace.files[path]) if verbatim else check(workspace, path):
-            if each.effective_severity is Severity.ERROR and not is_told_beside(each, reported):
+            if each.effective_severity is Severity.ERROR and not is_reported_beside(each, reported):
                 yield path, each
 
 

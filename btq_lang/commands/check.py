@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from btq_lang.checks import check, check_each
-from btq_lang.checks.includes import is_told_beside
+from btq_lang.checks.includes import is_reported_beside
 from btq_lang.commands.files import STDIN, Files, Group, nothing_below, usage_problem, write_stdout
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
 from btq_lang.render import Finding, Report, Trouble, render, with_paths
@@ -67,7 +67,7 @@ def _check(options: CheckOptions, files: Files) -> tuple[int, tuple[str, ...]]:
     for group in groups:
         for path, found in _found(group, options.jobs):
             text = group.workspace.files[path].source
-            found = tuple(each for each in found if not is_told_beside(each, is_checked))
+            found = tuple(each for each in found if not is_reported_beside(each, is_checked))
             if path in group.damaged:  # what cannot be read there is told already: the bytes
                 found = tuple(diagnostic for diagnostic in found if diagnostic.rule not in UNREADABLE)
             findings += [Finding(path, text, diagnostic) for diagnostic in found if _is_wanted(diagnostic, options)]

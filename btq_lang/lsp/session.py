@@ -134,7 +134,7 @@ class Session:
             if is_project_file(problem.path):
                 by_path.setdefault(problem.path, {})[problem] = None
         texts = {path: self.open[path] if path in self.open else read(path)[0] or "" for path in by_path}
-        self.projects = {path: (texts[path], tuple(told)) for path, told in by_path.items()}
+        self.projects = {path: (texts[path], tuple(found)) for path, found in by_path.items()}
 
     @property
     def has_read(self) -> bool:
@@ -253,7 +253,7 @@ class Session:
 
 
 def _misses(workspace: Workspace, path: str, names: Set[Name]) -> bool:
-    """Whether a file uses one of the names and does not find it: then it is told where else it is defined."""
+    """Whether a file uses one of the names and does not find it: then where else it is defined is reported."""
     missed = names & workspace.files[path].used_names
     return bool(missed) and not missed <= _names_in_scope(workspace, path)
 

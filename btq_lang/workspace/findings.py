@@ -20,9 +20,9 @@ class Reported:
 
     Attributes:
         diagnostics: in the order of the text, counted from where the item begins.
-        items: first the item, then the others that places in them count from, each behind its file; none where all of
+        items: first the item, then the others that places in them count from, each after its file; none where all of
             it counts from the start of a file.
-        fixed: the related places that do, behind their files.
+        fixed: the related places that do, after their files.
         written: for who writes it down: what that rests on besides, and how it reads.
     """
 
@@ -86,7 +86,7 @@ class Findings:
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """In the order of the text, and where several stand at one place, of their rules."""
+    """In the order of the text, and of several at one place in that of their rules."""
     return tuple(sorted(diagnostics, key=lambda each: (each.span, each.rule)))
 
 
