@@ -6,11 +6,11 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from in_process import run_btq
 
 from btq_lang.diff import as_json, as_markdown, as_text
 from btq_lang.diff.comparison import Comparison, Side, compared
@@ -240,14 +240,7 @@ def test_longest_common_subsequences() -> None:
 
 
 def btq(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
-    return run("diff", *arguments, cwd=cwd, stdin=stdin)
-
-
-def run(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
-    command = [sys.executable, "-m", "btq_lang", *arguments]
-    done = subprocess.run(command, cwd=cwd, env=environment, input=stdin, capture_output=True, text=True)
-    return done.returncode, done.stdout, done.stderr
+    return run_btq("diff", *arguments, cwd=cwd, stdin=stdin)
 
 
 def test_two_files(tmp_path: Path) -> None:
@@ -319,10 +312,10 @@ def test_what_a_build_guesses_is_no_change(tmp_path: Path) -> None:
         'include "lib.btq"\nRoot Main\nCondition DoorOpen\nBehaviorTree Main\n'
         "    ->\n        SubTree Lib\n        Go (y = {y})\n        DoorOpen\n"
     )
-    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
     for name in ("main", "lib"):
         assert btq(f"{name}.btq", f"{name}.xml", cwd=tmp_path) == (0, "", "")
-    imported = run("import", "lib.xml", "-o", "back", cwd=tmp_path)
+    imported = run_btq("import", "lib.xml", "-o", "back", cwd=tmp_path)
     assert imported == (0, "", "1 file imported\nNext: btq check back/lib.btq\n")
 
 
@@ -333,7 +326,7 @@ def test_a_mission_and_what_was_built_of_it(tmp_path: Path) -> None:
         'include "skills.btq"\nQualityReq rq1\n    takes at most 30 s\n'
         "Root Main\nBehaviorTree Main\n    SubTree Enough satisfies rq1\n"
     )
-    assert run("build", "mission.btq", cwd=tmp_path)[0] == 0
+    assert run_btq("build", "mission.btq", cwd=tmp_path)[0] == 0
     assert btq("mission.xml", "mission.btq", cwd=tmp_path) == (0, "", "")
     assert btq("skills.xml", "skills.btq", cwd=tmp_path) == (0, "", "")
     built = mission.read_text()
@@ -363,7 +356,7 @@ def test_a_mission_and_what_was_built_of_it_in_another_folder(tmp_path: Path) ->
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
     mission, built = "robot/missions/main.btq", "out/missions/main.xml"
-    assert run("build", mission, "-o", "out", cwd=tmp_path)[0] == 0
+    assert run_btq("build", mission, "-o", "out", cwd=tmp_path)[0] == 0
     assert btq(mission, built, cwd=tmp_path) == (0, "", "")
     reqs = tmp_path / "robot" / "common" / "reqs.btq"
     reqs.write_text(reqs.read_text().replace("30 s", "20 s"))
@@ -376,7 +369,7 @@ def test_guards_that_were_changed_by_hand(tmp_path: Path) -> None:
     requirement = "QualityReq rq1\n    takes at most 30 s\n    on violation fail\n"
     tree = "BehaviorTree M\n    Sequence\n        Go satisfies rq1\nTreeNodesModel\n    Action Go\n"
     (tmp_path / "main.btq").write_text(requirement + tree)
-    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
     xml = tmp_path / "main.xml"
     assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
     xml.write_text(xml.read_text().replace('"30000"', '"40000"'))
@@ -394,7 +387,7 @@ def test_models_that_a_build_made_are_no_change(tmp_path: Path) -> None:
         "Root Main\nBehaviorTree Main\n    ->\n        Wave (arm = left)\n        Condition Free\n"
         "        Wave (arm = {arm} times = 3)\n"
     )
-    assert run("build", "main.btq", cwd=tmp_path)[0] == 0
+    assert run_btq("build", "main.btq", cwd=tmp_path)[0] == 0
     assert not (tmp_path / "main.qreq.json").exists()
     assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
     assert btq("main.xml", "main.btq", cwd=tmp_path) == (0, "", "")
@@ -530,9 +523,7 @@ def test_the_side_file_of_a_revision_is_read(repository: Path) -> None:
     mission = repository / "m.btq"
     for limit in (30, 20):
         mission.write_text(f"QualityReq rq1\n    takes at most {limit} s\nBehaviorTree Main\n    Go satisfies rq1\n")
-        subprocess.run(
-            [sys.executable, "-m", "btq_lang", "build", "m.btq"], cwd=repository, check=True, capture_output=True
-        )
+        assert run_btq("build", "m.btq", cwd=repository)[0] == 0
         if limit == 30:
             subprocess.run([*git, "add", "m.btq", "m.xml", "m.qreq.json"], cwd=repository, check=True)
             subprocess.run([*git, "commit", "-q", "-m", "built"], cwd=repository, check=True)
@@ -559,7 +550,7 @@ def test_built_xml_whose_mission_is_in_another_repository(repository: Path) -> N
     def build(unit: str, name: str) -> None:
         (repository / "m.btq").write_text(main)
         (repository / "lib.btq").write_text(lib.format(unit, name))
-        assert run("build", "m.btq", "-o", "built", cwd=repository)[0] == 0
+        assert run_btq("build", "m.btq", "-o", "built", cwd=repository)[0] == 0
         (repository / "m.btq").unlink()
         (repository / "lib.btq").unlink()
 
@@ -627,8 +618,7 @@ def test_built_xml_is_no_change_of_a_folder(tmp_path: Path) -> None:
     for folder, node in (("old", "Go"), ("new", "Stop")):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "m.btq").write_text(f"BehaviorTree Main\n    {node}\n")
-        command = [sys.executable, "-m", "btq_lang", "build", "m.btq"]
-        subprocess.run(command, cwd=tmp_path / folder, check=True, capture_output=True)
+        assert run_btq("build", "m.btq", cwd=tmp_path / folder)[0] == 0
     code, out, told = btq("old", "new", cwd=tmp_path)
     assert (code, titles(out), told) == (1, ["old/m.btq -> new/m.btq"], "")
 
@@ -645,7 +635,7 @@ def test_two_folders_of_built_xml(tmp_path: Path) -> None:
         }
         for name, text in texts.items():
             (tmp_path / folder / "source" / f"{name}.btq").write_text(text)
-        assert run("build", "source", "-o", ".", cwd=tmp_path / folder)[0] == 0
+        assert run_btq("build", "source", "-o", ".", cwd=tmp_path / folder)[0] == 0
         (tmp_path / folder / "source").rename(tmp_path / f"{folder}.source")
     code, out, told = btq("old", "new", cwd=tmp_path)
     assert (code, titles(out), told) == (1, ["old/m.xml -> new/m.xml", "old/n.xml -> new/n.xml"], "")
@@ -660,7 +650,7 @@ def test_xml_and_what_was_imported_in_another_folder(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     for name in ("x", "y"):
         (tmp_path / "old" / f"{name}.xml").write_text(INCLUDED.format("Go"))
-    assert run("import", "old/x.xml", "old/y.xml", "-o", "new", cwd=tmp_path)[0] == 0
+    assert run_btq("import", "old/x.xml", "old/y.xml", "-o", "new", cwd=tmp_path)[0] == 0
     assert btq("old", "new", cwd=tmp_path) == (0, "", "")
     (tmp_path / "old" / "y.xml").write_text(INCLUDED.format("Stop"))
     (tmp_path / "new" / "y.xml").write_text(INCLUDED.format("Go"))
@@ -676,8 +666,7 @@ def test_includes_of_xml_and_of_what_was_imported(tmp_path: Path) -> None:
     includes = "".join(f'<include path="{path}"/>' for path in paths)
     tree = '<BehaviorTree ID="Main"><Go/></BehaviorTree>'
     (tmp_path / "main.xml").write_text(f'<root BTCPP_format="4">{includes}{tree}</root>\n')
-    command = [sys.executable, "-m", "btq_lang", "import", "main.xml", *paths]
-    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    assert run_btq("import", "main.xml", *paths, cwd=tmp_path)[0] == 0
     assert btq("main.xml", "main.btq", cwd=tmp_path) == (0, "", "")
     assert btq("main.btq", "main.xml", cwd=tmp_path) == (0, "", "")
 
@@ -687,16 +676,14 @@ def test_of_files_that_become_one_none_is_imported(tmp_path: Path) -> None:
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "x.xml").write_text(INCLUDED.format("Go"))
     (tmp_path / "main.xml").write_text('<root BTCPP_format="4"><include path="a/x.xml"/></root>\n')
-    command = [sys.executable, "-m", "btq_lang", "import", "main.xml", "a/x.xml", "b/x.xml", "-o", "fl"]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = run_btq("import", "main.xml", "a/x.xml", "b/x.xml", "-o", "fl", cwd=tmp_path)
     told = "btq: b/x.xml: not imported: a/x.xml would also become fl/x.btq\n0 files imported\n"
-    assert (run.returncode, run.stdout, run.stderr) == (2, "", told)
+    assert done == (2, "", told)
     assert not (tmp_path / "fl").exists()
 
 
 def test_a_btq_file_is_not_imported(tmp_path: Path) -> None:
     (tmp_path / "x.btq").write_text("BehaviorTree Main\n    Go\n")
-    command = [sys.executable, "-m", "btq_lang", "import", "x.btq", "--force"]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = run_btq("import", "x.btq", "--force", cwd=tmp_path)
     told = "btq: x.btq: not imported: its name does not end with .xml\n0 files imported\n"
-    assert (run.returncode, run.stdout, run.stderr) == (2, "", told)
+    assert done == (2, "", told)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
-import sys
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
 import pytest
+from in_process import run_btq
 from json_schema import violations
 
 HERE = Path(__file__).parent
@@ -34,11 +33,8 @@ def lab(shared: Path, tmp_path: Path) -> Path:
 
 
 def btq(folder: Path, *arguments: str) -> tuple[int, str, str]:
-    """How a process of btq ends, and what it prints."""
-    run = subprocess.run(
-        [sys.executable, "-m", "btq_lang", *arguments], cwd=folder, capture_output=True, text=True, encoding="utf-8"
-    )
-    return run.returncode, run.stdout, run.stderr
+    """How btq ends, and what it prints."""
+    return run_btq(*arguments, cwd=folder)
 
 
 def verdicts(folder: Path, log: str, *more: str) -> dict[str, Any]:

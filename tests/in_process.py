@@ -1,0 +1,36 @@
+"""`btq` run in this process: what a process of its own would print and return, without its start.
+
+That a process does so, `commands/test_cli.py` and `freeze/` say.
+"""
+
+from __future__ import annotations
+
+import gc
+import io
+import sys
+from pathlib import Path
+
+import pytest
+
+from btq_lang.cli import main
+
+
+def run_btq(*arguments: str, cwd: Path, stdin: str = "") -> tuple[int, str, str]:
+    """The exit code, the output and the messages of a command that is run in a folder."""
+    given, out, err = (io.TextIOWrapper(io.BytesIO(text.encode()), encoding="utf-8") for text in (stdin, "", ""))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(cwd)
+        for name, stream in (("stdin", given), ("stdout", out), ("stderr", err)):
+            patch.setattr(sys, name, stream)
+        try:
+            code = main(arguments)
+        except SystemExit as end:  # so argparse ends
+            code = int(end.code or 0)
+    gc.unfreeze()  # `btq check` freezes what it has imported, and here all that is there
+    return code, *map(_written, (out, err))
+
+
+def _written(stream: io.TextIOWrapper) -> str:
+    stream.flush()
+    stream.seek(0)
+    return stream.read()
