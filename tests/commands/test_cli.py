@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from in_process import run_btq
 
 from btq_lang import __version__
 from btq_lang.catalog.language import SIGNS
@@ -44,6 +45,12 @@ def btq(tmp_path: Path) -> Run:
     return run
 
 
+@pytest.fixture
+def called(tmp_path: Path) -> Run:
+    """The same in this process, for tests of many arguments."""
+    return lambda *arguments: subprocess.CompletedProcess(arguments, *run_btq(*arguments, cwd=tmp_path))
+
+
 WRONG = "BehaviorTree Main\n    ->\n        Sequnce\n            Dock\n        Timeout (msec = -5)\n            Dock\n"
 
 
@@ -71,8 +78,8 @@ def test_help_says_what_there_is(btq: Run) -> None:
         (("format", ""), "format: empty path; `.` is this folder"),
     ],
 )
-def test_usage_errors(btq: Run, arguments: tuple[str, ...], message: str) -> None:
-    done = btq(*arguments)
+def test_usage_errors(called: Run, arguments: tuple[str, ...], message: str) -> None:
+    done = called(*arguments)
     assert (done.stdout, done.stderr, done.returncode) == ("", f"btq {message}\n", 2)
 
 
@@ -100,8 +107,8 @@ def test_no_command_and_unknown_words_are_usage_errors(btq: Run) -> None:
         ("out.btq", "expected a folder; each file keeps its name there"),
     ],
 )
-def test_a_folder_is_asked_for(btq: Run, command: str, output: str, message: str) -> None:
-    done = btq(command, "mission.btq", "-o", output)
+def test_a_folder_is_asked_for(called: Run, command: str, output: str, message: str) -> None:
+    done = called(command, "mission.btq", "-o", output)
     told = done.stderr.endswith(f"error: argument -o/--output: {message}\n")
     assert (done.returncode, done.stdout, told) == (2, "", True)
 
@@ -574,8 +581,8 @@ def test_format_of_standard_input(btq: Run) -> None:
         ("btq: ignore[unused-tree]", "# btq: ignore (sign)"),
     ],
 )
-def test_explain(btq: Run, name: str, first_line: str) -> None:
-    done = btq("explain", name)
+def test_explain(called: Run, name: str, first_line: str) -> None:
+    done = called("explain", name)
     assert (done.returncode, done.stdout.splitlines()[0]) == (0, first_line)
 
 
@@ -594,25 +601,25 @@ def test_explain_of_several_names(btq: Run) -> None:
     assert done.returncode == 2
 
 
-def test_explain_of_something_unknown(btq: Run) -> None:
-    done = btq("explain", "unknown-nod")
+def test_explain_of_something_unknown(called: Run) -> None:
+    done = called("explain", "unknown-nod")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "btq explain: unknown name `unknown-nod`; did you mean unknown-node?\n"
     meant_by = (("kwh", "kWh"), ("_skipif", "_skipIf"), ("msecs_", "msec"), ("sek", "s"), ("skip", "_skipIf, "))
     for name, meant in meant_by:
-        assert f"did you mean {meant}" in btq("explain", name).stderr
+        assert f"did you mean {meant}" in called("explain", name).stderr
 
 
-def test_explain_of_units(btq: Run) -> None:
-    assert btq("explain", "30 min").stdout == "# 30 min (quantity)\n\nMeasures time. It is 1800 s.\n"
-    assert btq("explain", "msec", "deg").stdout.endswith(
+def test_explain_of_units(called: Run) -> None:
+    assert called("explain", "30 min").stdout == "# 30 min (quantity)\n\nMeasures time. It is 1800 s.\n"
+    assert called("explain", "msec", "deg").stdout.endswith(
         "# deg (unit)\n\nMeasures angle. 1 deg is 0.01745329252 rad.\n\ncompares with: rad, urad, mrad, rev\n"
     )
 
 
 @pytest.mark.parametrize("sign", [sign for sign, _, _ in SIGNS])
-def test_explain_knows_every_sign(btq: Run, sign: str) -> None:
-    assert f"# {sign} (sign)" in btq("explain", sign).stdout
+def test_explain_knows_every_sign(called: Run, sign: str) -> None:
+    assert f"# {sign} (sign)" in called("explain", sign).stdout
 
 
 def test_init_makes_a_project_that_checks_clean_and_is_formatted(btq: Run, tmp_path: Path) -> None:
@@ -638,14 +645,14 @@ def test_init_offers_a_table_for_logs(btq: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", WORST_FIRST)
-def test_explain_knows_every_verdict(btq: Run, name: str) -> None:
+def test_explain_knows_every_verdict(called: Run, name: str) -> None:
     verdict = VERDICTS[name]
     for words in ([name], name.split()):
-        done = btq("explain", *words)
+        done = called("explain", *words)
         assert (done.returncode, done.stdout.partition("\n")[0]) == (0, f"# {name}")
     assert verdict.brief in done.stdout
     assert verdict.then in done.stdout
-    assert f"{name:<20} {verdict.brief}\n" in btq("explain", "verdict").stdout
+    assert f"{name:<20} {verdict.brief}\n" in called("explain", "verdict").stdout
     assert [*VERDICTS] == [*WORST_FIRST]
 
 
