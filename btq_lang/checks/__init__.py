@@ -55,7 +55,7 @@ from btq_lang.checks import (
     unused,
 )
 from btq_lang.checks.view import View
-from btq_lang.diagnostics.model import Diagnostic
+from btq_lang.diagnostics.model import Diagnostic, Place
 from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.scan import line_start
 from btq_lang.syntax.tree import (
@@ -87,7 +87,6 @@ CHECKS: dict[type, tuple[Check, ...]] = {
     Include: (
         includes.missing_include,
         includes.cyclic_include,
-        includes.include_with_errors,
         trees.duplicate_tree,
         kinds.duplicate_definition,
         requirements.conflicting_requirement,
@@ -325,15 +324,30 @@ def _reported(store: Store[Workspace], viewpoint: str, facts: Facts, is_alone: b
     view = View(store, viewpoint, facts)
     entry = view.entry
     checks = checks_of(entry)
-    if is_alone:
-        checks = tuple([each for each in checks if each is not includes.include_with_errors])
     found: Iterable[Diagnostic] = [diagnostic for each in checks for diagnostic in each(view, entry)]
+    if type(facts.item) is Include and not is_alone:
+        found = [*found, *includes.include_with_errors(view, entry, _errors_in)]
     if entry.diagnostics:
         found = (*entry.diagnostics, *_on_sound_lines(found, entry, view.text))
     elif not found:
         return None
     wanted = tuple(configured(view.project, found))
     return Reported(wanted, (viewpoint, facts.item)) if wanted else None
+
+
+def _errors_in(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str], ...]:
+    """What keeps a file from being read, without what a check of its own would find; of XML, which no build writes and
+    which is seldom checked itself, all that is wrong with it."""
+    view = View(store, viewpoint)
+    if not view.is_xml:
+        return view.look_up(lookups.syntax_errors)
+    return tuple(
+        [
+            (Place(each.span, viewpoint), each.message)
+            for each in findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
+            if each.effective_severity is Severity.ERROR
+        ]
+    )
 
 
 def checks_of(entry: Entry) -> tuple[Check, ...]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Container, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Container, Iterator
+from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.checks import lookups
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.diagnostics.rules import Severity
 from btq_lang.syntax.tree import Entry, Include, quote
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import is_btq
@@ -17,6 +16,8 @@ from btq_lang.workspace.file import is_btq
 if TYPE_CHECKING:
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
+
+    ErrorsIn: TypeAlias = Callable[[Store[Workspace], str], tuple[tuple[Place, str], ...]]
 
 NOWHERE = "; neither this file nor its includes define it"
 
@@ -64,14 +65,18 @@ def cyclic_include(view: View, entry: Entry) -> Iterator[Diagnostic]:
     )
 
 
-def include_with_errors(view: View, entry: Entry) -> Iterator[Diagnostic]:
-    """An included file that cannot be read or loaded as it stands, or one that includes such a file."""
+def include_with_errors(view: View, entry: Entry, errors_in: ErrorsIn) -> Iterator[Diagnostic]:
+    """An included file that cannot be read or loaded as it stands, or one that includes such a file.
+
+    Args:
+        errors_in: the query for what keeps a file from being read.
+    """
     include = entry.item
     target = view.look_up(lookups.included, view.facts)
     if target is None or not isinstance(include, Include) or include.path is None:
         return
     for path in reversed(_closure(view, target)):
-        errors = view.store.ask(_errors, path) if path != view.path else ()
+        errors = view.store.ask(errors_in, path) if path != view.path else ()
         if not errors:
             continue
         place, message = errors[0]
@@ -97,23 +102,6 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
 
 def _closure(view: View, path: str) -> tuple[str, ...]:
     return view.store.read(path, lookups.closure, path)
-
-
-def _errors(store: Store[Workspace], viewpoint: str) -> tuple[tuple[Place, str], ...]:
-    """What keeps a file from being read, without what a check of its own would find; of XML, which no build writes and
-    which is seldom checked itself, all that is wrong with it."""
-    view = View(store, viewpoint)
-    if not view.is_xml:
-        return view.look_up(lookups.syntax_errors)
-    from btq_lang.checks import findings_of, reported_in_file  # they are what calls this
-
-    return tuple(
-        [
-            (Place(each.span, viewpoint), each.message)
-            for each in findings_of(view.workspace, viewpoint, view.ask(reported_in_file, True)).diagnostics
-            if each.effective_severity is Severity.ERROR
-        ]
-    )
 
 
 def include_fix(view: View, path: str) -> Fix:

@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from btq_lang.checks.entries import Mention, blackboards
+from btq_lang.checks.entries import mentions as mentions_in
 from btq_lang.diagnostics.model import Diagnostic, Place, Related, replace_fix
 from btq_lang.syntax.tree import Entry, Tree, Verbatim
 from btq_lang.util.spelling import distance
@@ -26,7 +27,7 @@ def misspelt_entry(view: View, entry: Entry) -> Iterator[Diagnostic]:
     """An entry that is named once, and read though nothing writes it, or written though nothing reads it, where
     another entry has nearly the same name."""
     tree = entry.item
-    mentions = view.mentions
+    mentions = view.ask(mentions_in, view.facts)
     if not isinstance(tree, Tree) or tree.name is None or not mentions:
         return
     if any(isinstance(child, Verbatim) for node in view.nodes for child in node.node.children):

@@ -22,7 +22,6 @@ from btq_lang.syntax.tree import Entry, Include, Model, Node, Port, Requirement,
 from btq_lang.util.spelling import near
 
 if TYPE_CHECKING:
-    from btq_lang.checks.entries import Mention
     from btq_lang.checks.lookups import Declaration, Meaning
     from btq_lang.requirements.constraints import Constraint
     from btq_lang.syntax.script import Script
@@ -81,13 +80,6 @@ class View:
     def nodes(self) -> tuple[SeenNode, ...]:
         """The nodes of a tree, depth first, in document order; none for any other item."""
         return self.seen.all
-
-    @property
-    def mentions(self) -> tuple[Mention, ...]:
-        """The blackboard entries that a tree names, in document order."""
-        from btq_lang.checks.entries import mentions  # it uses views, too
-
-        return self.ask(mentions, self.facts)
 
     def uses(self, kind: Kind) -> list[Use]:
         """What the item refers to, of one kind."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btq_lang.render import Report
 from btq_lang.render.cells import printable
 from btq_lang.render.colour import painter
 from btq_lang.render.location import location
+from btq_lang.render.report import Report
 from btq_lang.render.summary import summary
 
 

@@ -24,7 +24,7 @@ from btq_lang.render.summary import summary
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Place
-    from btq_lang.render import Finding, Report
+    from btq_lang.render.report import Finding, Report
 
 _LEAST_ROOM = 20  # a terminal narrower than this is not worth cutting for
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.render import Finding, Report, Trouble
 from btq_lang.render.cells import printable
 from btq_lang.render.location import location
+from btq_lang.render.report import Finding, Report, Trouble
 from btq_lang.render.summary import counted
 
 _FAILURES = (Severity.ERROR, Severity.WARNING)

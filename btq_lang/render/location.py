@@ -13,7 +13,7 @@ from btq_lang.util.text import LineIndex, Span
 
 if TYPE_CHECKING:
     from btq_lang.diagnostics.model import Place
-    from btq_lang.render import Finding, Report
+    from btq_lang.render.report import Finding, Report
 
 
 class Location(Record):

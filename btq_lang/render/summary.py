@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from btq_lang.diagnostics.rules import Severity
 
 if TYPE_CHECKING:
-    from btq_lang.render import Finding, Report
+    from btq_lang.render.report import Finding, Report
 
 _WORDS = {
     Severity.ERROR: ("error", "errors"),

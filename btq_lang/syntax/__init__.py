@@ -4,8 +4,8 @@ One invariant: every span counts from the start of its item (a tree, a requireme
 wherever an edit elsewhere moves it.  Text comes in and these values go out; how they are found is the work of the lexer
 and the parser.  Not known here: whether a name exists, or what it means.
 
-    tree.py          the tree: entries, items, nodes, attributes, requirements, clauses
-    words.py, node_clauses.py   words with their place, and what is written on a node
+    tree.py          the tree: entries and items, with all classes below
+    words.py, clauses.py, node_clauses.py, nodes.py   words with their place, what is made of them, and nodes
     tokens.py        the kinds of tokens
     scan.py          runs of characters: names, numbers, blanks
     indentation.py   the blocks that are open around a line

@@ -1,19 +1,19 @@
 """What stands at nodes about quality: satisfices, satisfies and tags, and what they list.
 
-One invariant: as in `words`, they are plain classes without decorators, so that they may be compiled, and `syntax` has
-them too.  What a requirement demands, its clauses, is rarer and stands there.
+One invariant: as in `words`, they are plain classes without decorators, so that they may be compiled.  What a
+requirement demands is in `clauses`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final, TypeAlias
 
 from btq_lang.util.text import Span
 
 if TYPE_CHECKING:
     from mypy_extensions import i64
 
-    from btq_lang.syntax.tree import Argument, Clause, Parameter
+    from btq_lang.syntax.clauses import Argument, Clause, Parameter
     from btq_lang.syntax.words import Word
 
 
@@ -145,3 +145,6 @@ class Requirement(_Part):
     def is_reference(self) -> bool:
         """`QualityReq ID = "rq3"` alone names a requirement that is defined elsewhere."""
         return self.text is None and self.quality is None and not self.clauses and not self.parameters
+
+
+NodeClause: TypeAlias = Satisfices | Satisfies | Tags

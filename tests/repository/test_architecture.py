@@ -54,18 +54,14 @@ def module_name(path: Path) -> str:
 MODULES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
 
 
-def imports(tree: ast.AST, is_loaded: bool = True) -> Iterator[tuple[str, bool]]:
-    """What a module imports, and whether it does so when it is loaded: not in a function, nor for type checkers."""
-    for node in ast.iter_child_nodes(tree):
+def imports(tree: ast.AST) -> Iterator[str]:
+    """What a module imports, in functions and for type checkers, too."""
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            yield from ((name.name, is_loaded) for name in node.names)
+            yield from (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0
-            yield from ((f"{node.module}.{name.name}", is_loaded) for name in node.names)
-        else:
-            is_for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-            is_function = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
-            yield from imports(node, is_loaded and not is_for_types and not is_function)
+            yield from (f"{node.module}.{name.name}" for name in node.names)
 
 
 IMPORTS = {name: list(imports(ast.parse(path.read_text(encoding="utf-8")))) for name, path in MODULES.items()}
@@ -84,7 +80,7 @@ def room(module: str) -> str:
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name != "btq_lang"])
 def test_a_module_imports_from_rooms_above_its_own(module: str) -> None:
-    for name, _ in IMPORTS[module]:
+    for name in IMPORTS[module]:
         first = name.partition(".")[0]
         if first in ONLY_IN:
             assert room(module) in ONLY_IN[first], f"{module} imports {name}"
@@ -95,11 +91,10 @@ def test_a_module_imports_from_rooms_above_its_own(module: str) -> None:
             assert is_above or room(target) == room(module), f"{module} imports {name}"
 
 
-def test_no_circle_exists_among_modules_as_they_are_loaded() -> None:
+def test_no_circle_exists() -> None:
     order = TopologicalSorter(
         {
-            module: {imported_module(name) for name, is_loaded in found if is_loaded and name.startswith("btq_lang.")}
-            - {module}
+            module: {imported_module(name) for name in found if name.startswith("btq_lang.")} - {module}
             for module, found in IMPORTS.items()
         }
     )

@@ -10,42 +10,9 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from btq_lang.util.record import Record
+from btq_lang.commands.shell.command_line import Command, Option
 
 SHELLS = ("bash", "zsh", "fish", "powershell")
-
-
-class Option(Record):
-    """An option of a command.
-
-    Attributes:
-        names: all its spellings, `-q` and `--quiet`.
-        help: its help, in one line.
-        takes_value: the word behind it belongs to it.
-        choices: the values to offer; empty where they are files, or anything.
-    """
-
-    names: tuple[str, ...]
-    help: str
-    takes_value: bool
-    choices: tuple[str, ...]
-
-
-class Command(Record):
-    """The program itself, or a command of it.
-
-    Attributes:
-        line: what is typed to get to it: `btq`, `btq check`.
-        commands: the names of the commands below it, with their help.
-        choices: the arguments to offer, where they are not files.
-        takes_files: an argument may be a file.
-    """
-
-    line: str
-    options: tuple[Option, ...]
-    commands: tuple[tuple[str, str], ...]
-    choices: tuple[str, ...]
-    takes_files: bool
 
 
 def completion_script(
@@ -77,14 +44,6 @@ def completion_script(
 
         return powershell.script(commands)
     raise ValueError(f"no completion for {shell!r}; expected one of {', '.join(SHELLS)}")
-
-
-def valued_options(commands: tuple[Command, ...]) -> Iterator[tuple[list[str], tuple[str, ...]]]:
-    """The command lines that end with one option that takes a value, and the values to offer there."""
-    for command in commands:
-        for option in command.options:
-            if option.takes_value:
-                yield [f"{command.line} {name}" for name in option.names], option.choices
 
 
 def _commands(parser: argparse.ArgumentParser, line: str, choices: Mapping[str, Iterable[str]]) -> Iterator[Command]:
