@@ -40,12 +40,17 @@ def is_missed(store: Store[Workspace], viewpoint: str, tree: str) -> bool:
 def circle(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[str, ...] | None:
     """The shortest way from a tree back to itself, both ends included; of trees that reach each other only the first
     has one: there it is reported."""
-    return store.ask(calls, viewpoint).circles.get(tree)
+    return store.ask(_circles, viewpoint).get(tree)
 
 
 def has_gaps(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether a SubTree names a tree that nobody knows, so that nobody knows what is reached."""
     return not View(store, viewpoint).is_complete or store.ask(calls, viewpoint).has_gaps
+
+
+def _circles(store: Store[Workspace], viewpoint: str) -> dict[str, tuple[str, ...]]:
+    """All of them: hardly any mission has one, so that after an edit no tree looks for its own again."""
+    return store.ask(calls, viewpoint).circles
 
 
 def _missed(store: Store[Workspace], viewpoint: str) -> Set[str]:

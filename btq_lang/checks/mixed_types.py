@@ -63,13 +63,14 @@ def entry_with_two_types(view: View, entry: Entry) -> Iterator[Diagnostic]:
     if not isinstance(tree, Tree) or tree.name is None or not view.look_up(lookups.has_pointers):
         return
     if view.defines_here(Kind.TREE, tree.name.text):
-        yield from view.ask(_found_in, tree.name.text, view.is_main)
+        yield from view.ask(_found_in, tree.name.text)
 
 
-def _found_in(store: Store[Workspace], viewpoint: str, tree: str, is_main: bool) -> tuple[Diagnostic, ...]:
+def _found_in(store: Store[Workspace], viewpoint: str, tree: str) -> tuple[Diagnostic, ...]:
     view = View(store, viewpoint)
     found: list[Diagnostic] = []
     known = view.ask(_types, tree)
+    is_main = any(name[:1] == "@" for name in known) and view.main_tree == tree
     for key in dict.fromkeys(name.removeprefix("@") for name in known):
         meetings = known.get(key, [])
         if is_main and (shared := known.get(f"@{key}")):  # the same entry
