@@ -50,12 +50,13 @@ def requirement_without_subject(view: View, entry: Entry) -> Iterator[Diagnostic
     requirement is unused, and reported for that.  And what only a node can do, of a time between events or of a sum."""
     if not isinstance(entry.item, Requirement) or not view.ask(is_measured):
         return
-    for symbol in view.facts.summary.symbols:
-        if view.defines_here(Kind.REQUIREMENT, symbol.name) and view.is_read and not view.is_included:
-            yield from _without_subject(view, symbol.name)
+    names = [symbol.name for symbol in view.facts.summary.symbols]
+    found = [each for name in names if view.defines_here(Kind.REQUIREMENT, name) for each in _found_in(view, name)]
+    if found and view.is_read and not view.is_included:  # looked at last: both differ with a letter elsewhere
+        yield from found
 
 
-def _without_subject(view: View, name: str) -> Iterator[Diagnostic]:
+def _found_in(view: View, name: str) -> Iterator[Diagnostic]:
     from btq_lang.requirements.definitions import requirement  # as above
     from btq_lang.requirements.model import Span, Total
     from btq_lang.requirements.nodes import has_nodes
