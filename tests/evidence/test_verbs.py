@@ -555,7 +555,7 @@ def test_the_example_of_a_verb_is_a_clause_with_it(word: str) -> None:
 
 TOO_SHORT = "the run ended before the time was over"
 SIGNALS = (
-    "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\n"
+    "signal battery : % from {battery}\nsignal energy : Wh from {energy} counter\nsignal speed : m/s from {speed}\n"
     "signal rear_is_clear : bool from {rear_is_clear}\nsignal lamp_on : bool from {lamp_on}\n"
     "signal humans_near : bool from {humans_near}\n"
 )
