@@ -88,8 +88,7 @@ driver() {
     cd "$root"
     local python=.venv/bin/python
     [ -x "$python" ] || python3 -m venv .venv
-    # Not while .ci/run installs btq there.
-    "$python" -c 'import playwright' 2>/dev/null || flock .venv "$python" -m pip install -q 'playwright>=1.49,<2'
+    "$python" -c 'import playwright' 2>/dev/null || "$python" -m pip install -q 'playwright>=1.49,<2'
 }
 
 neovim() { # suite: its packages are unpacked, and run with the C library that comes with them
