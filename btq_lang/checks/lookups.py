@@ -14,7 +14,6 @@ for as long as the item does.
 from __future__ import annotations
 
 import posixpath
-from bisect import bisect_right
 from collections.abc import Hashable, Iterator
 from math import inf
 from typing import TYPE_CHECKING
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from btq_lang.workspace.config import Project
     from btq_lang.workspace.custom_nodes import LikelyPort
     from btq_lang.workspace.file import Definition, File, Origin
-    from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.symbols import Symbol
     from btq_lang.workspace.workspace import Workspace
 
@@ -110,10 +108,7 @@ def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
 
 def text(workspace: Workspace, path: str, facts: Facts) -> str:
     """The text of an item, up to the next one."""
-    file = workspace.files[path]
-    entries, start = file.parsed.entries, file.start_of(facts.item)
-    after = bisect_right(entries, start, key=lambda each: each.start)
-    return file.text[start : entries[after].start if after < len(entries) else len(file.text)]
+    return workspace.files[path].text_of(facts.item)
 
 
 # ---- a name: what these say depends on nothing but the items that define it ----

@@ -7,7 +7,6 @@ themselves, and no offsets in files.  Every function answers for files that are 
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -93,9 +92,7 @@ def text(workspace: Workspace, path: str, facts: Facts) -> str:
     file = workspace.files.get(path)
     if file is None or id(facts.item) not in file.facts:
         return ""
-    entries, start = file.parsed.entries, file.start_of(facts.item)
-    after = bisect_right(entries, start, key=lambda each: each.start)
-    return file.text[start : entries[after].start if after < len(entries) else len(file.text)]
+    return file.text_of(facts.item)
 
 
 @_of_item

@@ -281,6 +281,12 @@ class File:
         """The entry of one of the file's items."""
         return self._entries[id(item)]
 
+    def text_of(self, item: Item) -> str:
+        """The text of one of the file's items, up to the next one."""
+        entries, start = self.parsed.entries, self.start_of(item)
+        after = bisect_right(entries, start, key=_start_of)
+        return self.text[start : entries[after].start if after < len(entries) else len(self.text)]
+
     def summary_of(self, entry: Entry) -> Summary:
         """The summary of one of the file's entries."""
         return self.facts[id(entry.item)].summary
