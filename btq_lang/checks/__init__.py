@@ -293,20 +293,20 @@ def findings_of(workspace: Workspace, path: str, reported: Iterable[Reported]) -
     return Findings.placed(configured(workspace.project, diagnostics))
 
 
-def keep(store: Store[Workspace], path: str) -> None:
+def keep(workspace: Workspace, path: str) -> None:
     """Keep what is found in a file from one edit to the next."""
-    store.pin(reported_in_file, path, False)
+    workspace.store.pin(reported_in_file, path, False)
 
 
-def forget(store: Store[Workspace], path: str) -> None:
+def forget(workspace: Workspace, path: str) -> None:
     """Nobody asks for a file any more."""
-    store.unpin(reported_in_file, path, False)
-    store.sweep(always=True)
+    workspace.store.unpin(reported_in_file, path, False)
+    workspace.store.sweep(always=True)
 
 
-def let_go(store: Store[Workspace]) -> None:
+def let_go(workspace: Workspace) -> None:
     """Nobody waits: let go of what edits have replaced."""
-    store.sweep()
+    workspace.store.sweep()
 
 
 def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) -> tuple[Reported, ...]:

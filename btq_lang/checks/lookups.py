@@ -28,7 +28,6 @@ from btq_lang.syntax.tree import Apply, Entry, Include, Model, Models, Qualities
 from btq_lang.util.record import Record
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
-from btq_lang.workspace.queries import Store
 
 if TYPE_CHECKING:
     from btq_lang.syntax.tree import Port
@@ -39,17 +38,16 @@ if TYPE_CHECKING:
     from btq_lang.workspace.workspace import Workspace
 
 
-def advanced(store: Store[Workspace], after: Workspace) -> Store[Workspace]:
-    """The store after an edit: the same one, or an empty one where there are other files, or another project."""
-    before = store.state
+def advance(before: Workspace, after: Workspace) -> None:
+    """Leave to a workspace what was asked about the one before it; nothing where there are other files, or another
+    project."""
     if before.project != after.project or [*before.files] != [*after.files]:
-        return Store(after)
+        return
     edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
     if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
-        store.advance(after, [topic for topic in store.topics if not isinstance(topic, Facts)])
+        before.pass_on(after, [topic for topic in before.store.topics if not isinstance(topic, Facts)])
     else:
-        store.advance(after, {topic for old, new in edited for topic in _touched(after, old, new)})
-    return store
+        before.pass_on(after, {topic for old, new in edited for topic in _touched(after, old, new)})
 
 
 def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:

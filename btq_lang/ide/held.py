@@ -5,12 +5,12 @@ One invariant: it says what the build itself plans, in its words; nothing is jud
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from btq_lang.btcpp.enforcement import Held, how_held, unasked
+from btq_lang.checks.lookups import everything
 from btq_lang.requirements.constraints import constraints
 from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
 from btq_lang.workspace.file import Definition, is_btq
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 _MOST_MISSIONS = 4  # planning one takes as long as checking it
@@ -38,7 +38,7 @@ def held(workspace: Workspace, path: str, found: Definition, *, is_attached: boo
                 ways[" ".join(typed.split())] = {known: {}}
         return _lines(ways)
     for mission in _missions(workspace, path, found):
-        for each in _plan(workspace, mission):
+        for each in workspace.store.ask(_plan, mission):
             if (each.requirement, each.place.path) == (found.symbol.name, found.path):
                 nodes = ways.setdefault(each.clause, {}).setdefault((_way(each), each.why), {})
                 if each.subject:
@@ -71,9 +71,9 @@ def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
     return tuple(one for one in missions if path in workspace.closure(one))
 
 
-@lru_cache(_MOST_MISSIONS)  # who looks at one requirement looks at the next one
-def _plan(workspace: Workspace, mission: str) -> tuple[Held, ...]:
-    return tuple(each for clauses in how_held(workspace, mission) for each in clauses)
+def _plan(store: Store[Workspace], mission: str) -> tuple[Held, ...]:
+    workspace = store.read(mission, everything, mission)
+    return tuple([each for clauses in how_held(workspace, mission) for each in clauses])
 
 
 def _way(held: Held) -> str:

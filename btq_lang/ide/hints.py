@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from btq_lang.catalog.name_kinds import Kind
+from btq_lang.checks.lookups import everything
 from btq_lang.ide import describe
 from btq_lang.ide.held import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
@@ -15,6 +14,7 @@ from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import Definition
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
 
@@ -120,11 +120,12 @@ def _names_its_subject(found: Definition) -> bool:
 
 def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[str, Span], ...]:
     """The nodes that the claims of a requirement name themselves."""
-    return _by_subject(workspace, mission).get((found.symbol.name, found.path), ())
+    return workspace.store.ask(_by_subject, mission).get((found.symbol.name, found.path), ())
 
 
-@lru_cache(_MOST_MISSIONS)  # a file has many requirements, and they are resolved together
-def _by_subject(workspace: Workspace, mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
+def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
+    """The same for all requirements of a mission, which are resolved together."""
+    workspace = store.read(mission, everything, mission)
     held: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":

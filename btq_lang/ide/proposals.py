@@ -28,7 +28,6 @@ from btq_lang.syntax.tokens import CATEGORIES
 from btq_lang.syntax.tree import Context, Entry, Model, QualityDecl, Requirement, Signal, Tree, is_name, quote, shape
 from btq_lang.util.record import Record, replace
 from btq_lang.workspace.file import Definition
-from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import Mention, What
 from btq_lang.workspace.workspace import Workspace
 
@@ -235,7 +234,7 @@ def node_names(workspace: Workspace, path: str) -> Iterator[Proposal]:
 
 def kinds(workspace: Workspace, path: str) -> Iterator[Proposal]:
     """What may stand behind `every`: kinds of nodes, be they only declared; a tree where its name is one."""
-    known = Store(workspace).ask(nodes_in_scope, path)
+    known = workspace.store.ask(nodes_in_scope, path)
     names = [one for one in node_names(workspace, path) if one.kind == "node" or known.every(one.label)]
     yield from (one for one in names if one.kind != "tree")
     used = {node.kind.tag: node.kind for node in known.all if node.kind is not None}

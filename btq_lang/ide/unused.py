@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
-from btq_lang.checks.lookups import is_read
+from btq_lang.checks.lookups import everything, is_read
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.refactor import names_of_nodes
 from btq_lang.requirements.resolve import requirements
@@ -22,6 +21,7 @@ from btq_lang.syntax.tree import Context, Entry, Include, Model, Models, Root, S
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
 from btq_lang.workspace.file import File
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 UNUSED = {
@@ -59,12 +59,16 @@ def removal(file: File, entry: Entry) -> tuple[Edit, ...]:
     return _without(file, [Span(start, end)])
 
 
-@lru_cache(4)  # an editor asks whenever the cursor moves
 def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude, ...]:
     """The includes of a file that repeat an earlier one, or that bring nothing the mission uses.
 
     Only a mission has unused ones: a file that includes a library may use what the library includes.
     """
+    return workspace.store.ask(_needless_includes, path)  # an editor asks whenever the cursor moves
+
+
+def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessInclude, ...]:
+    workspace = store.read(path, everything, path)
     file = workspace.files[path]
     includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
     if file.origin is not None or not includes:

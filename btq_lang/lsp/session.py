@@ -22,7 +22,6 @@ if TYPE_CHECKING:  # imported when they are needed, for an editor waits for the 
     from btq_lang.diagnostics.model import Diagnostic
     from btq_lang.workspace.item_index import Name
     from btq_lang.workspace.loader import LoadProblem
-    from btq_lang.workspace.queries import Store
     from btq_lang.workspace.workspace import Workspace
 
 
@@ -45,7 +44,7 @@ class Session:
         self.took: dict[str, float] = {}
         self._files: Files | None = None
         self._read_for: tuple[tuple[str, ...], dict[str, object]] | None = None  # which folders and settings
-        self._stores: list[Store[Workspace]] = []  # one for each workspace; what they keep is of open files
+        self._workspaces: list[Workspace] = []  # what their stores keep is of open files
         self._home: dict[str, int] = {}
         # Weak, for what the others said when a file was checked is not to stay until it is checked again.
         self._checked: dict[str, tuple[ReferenceType[Workspace], Findings]] = {}
@@ -56,17 +55,18 @@ class Session:
         """An open file says something else: the files to check again, those first that matter most."""
         self.open[path] = text
         home = self._home.get(path)
-        if home is None or self._stores[home].state.files[path].origin is not None:
+        if home is None or self._workspaces[home].files[path].origin is not None:
             return (path, *self.reload())
-        before = self._stores[home].state
+        before = self._workspaces[home]
         if before.files[path].text == text:  # opened, and as it is on the disk
             return (path,)
-        from btq_lang.checks.lookups import advanced
+        from btq_lang.checks.lookups import advance
 
-        for index, store in enumerate(self._stores):
-            if path in store.state.files:
-                self._stores[index] = advanced(store, store.state.with_file(path, text))
-        after = self._stores[home].state
+        for index, workspace in enumerate(self._workspaces):
+            if path in workspace.files:
+                self._workspaces[index] = workspace.with_file(path, text)
+                advance(workspace, self._workspaces[index])
+        after = self._workspaces[home]
         old, new = before.files[path], after.files[path]
         if old.included_paths != new.included_paths:
             return (path, *self.reload())
@@ -80,10 +80,10 @@ class Session:
         from btq_lang.workspace.loader import read
 
         text = self.open.pop(path, None)
-        if (store := self._store_of(path)) is not None:
+        if (workspace := self.workspace_of(path)) is not None:
             from btq_lang.checks import forget
 
-            forget(store, path)
+            forget(workspace, path)
         self.took.pop(path, None)
         self._checked.pop(path, None)  # it counts from items, which nobody holds any more
         is_of_folder = any(path.startswith(f"{folder}/") for folder in self.folders)
@@ -93,10 +93,9 @@ class Session:
 
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; all files that there are."""
-        from btq_lang.checks.lookups import advanced
+        from btq_lang.checks.lookups import advance
         from btq_lang.commands.files import Files
         from btq_lang.workspace.loader import is_project_file
-        from btq_lang.workspace.queries import Store
 
         self._read_for = self.folders, {**self.settings}
         if self._files is None:
@@ -108,16 +107,18 @@ class Session:
         missions = (path for path in self.open if not is_project_file(path))
         groups, problems = self._files.groups((*self.folders, *missions))
         self._read_projects(problems)
-        before = {tuple(store.state.files): store for store in self._stores}
-        self._stores = []
+        before = {tuple(workspace.files): workspace for workspace in self._workspaces}
+        self._workspaces = []
         self._home = {}
         for index, group in enumerate(groups):
             workspace = group.workspace
             if severities:
                 project = workspace.project
                 workspace = workspace.with_project(replace(project, severities=(*project.severities, *severities)))
-            store = before.pop(tuple(workspace.files), None)
-            self._stores.append(Store(workspace) if store is None else advanced(store, workspace))
+            known = before.pop(tuple(workspace.files), None)
+            if known is not None and known is not workspace:
+                advance(known, workspace)
+            self._workspaces.append(workspace)
             for path in workspace.files:
                 if path in group.given or path not in self._home:
                     self._home[path] = index
@@ -163,8 +164,8 @@ class Session:
         may ask for something else."""
         from btq_lang.checks import let_go
 
-        for store in self._stores:
-            let_go(store)
+        for workspace in self._workspaces:
+            let_go(workspace)
         worked_in = self._worked_in()
         for workspace in self.workspaces():
             held = [path for path, file in workspace.files.items() if file.is_parsed]
@@ -190,19 +191,15 @@ class Session:
 
     def workspace_of(self, path: str) -> Workspace | None:
         """The workspace of a file; None for a file that is not known, as one that was closed meanwhile."""
-        store = self._store_of(path)
-        return None if store is None else store.state
-
-    def _store_of(self, path: str) -> Store[Workspace] | None:
         home = self._home.get(path)
-        return None if home is None else self._stores[home]
+        return None if home is None else self._workspaces[home]
 
     def knows(self, path: str) -> bool:
         """Whether a path is a mission's, or a project file's of which something is to be said."""
         return path in self._home or path in self.projects
 
     def workspaces(self) -> tuple[Workspace, ...]:
-        return tuple([store.state for store in self._stores])
+        return tuple(self._workspaces)
 
     def paths(self) -> tuple[str, ...]:
         """Every file that is known, those that are open first."""
@@ -219,10 +216,9 @@ class Session:
 
     def findings(self, path: str) -> Findings:
         """All that is wrong with a file now."""
-        store = self._store_of(path)
-        if store is None:
+        workspace = self.workspace_of(path)
+        if workspace is None:
             return Findings([])
-        workspace = store.state
         known = self._checked.get(path)
         if known is not None and known[0]() is workspace:
             return known[1]
@@ -230,8 +226,8 @@ class Session:
 
         if path in self.open:
             begin = perf_counter()
-            keep(store, path)
-            found = findings(store, path)
+            keep(workspace, path)
+            found = findings(workspace.store, path)
             self.took[path] = perf_counter() - begin
         else:  # placed, for what counts from items would hold them
             found = Findings.placed(check(workspace, path))

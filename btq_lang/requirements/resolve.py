@@ -19,18 +19,15 @@ from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
 
-def requirements(workspace: Workspace, path: str, store: Store[Workspace] | None = None) -> Requirements:
+def requirements(workspace: Workspace, path: str) -> Requirements:
     """The requirements of a file and what it includes, resolved.
-
-    Args:
-        store: what was asked about this workspace so far, if anything was.
 
     Raises:
         KeyError: there is no such file.
     """
     if path not in workspace.files:
         raise KeyError(path)
-    store = store or Store(workspace)
+    store = workspace.store
     problems: list[Problem] = []
     signals: dict[str, Signal] = {}
     for name in inputs.names(store, path, Kind.SIGNAL):

@@ -10,7 +10,7 @@ only to say where a name could have come from.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ from btq_lang.syntax.tree import Entry, Include, Root, Word
 from btq_lang.util.record import Record
 from btq_lang.workspace.config import Project, include_candidates
 from btq_lang.workspace.file import Definition, File, is_of_package
+from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Use
 
 if TYPE_CHECKING:
@@ -81,6 +82,20 @@ class Workspace:
                 self.__dict__[known] = before.__dict__[known]
         self._closures = before._closures
         self._scopes = {path: scope for path, scope in before._scopes.items() if edited not in scope.paths}
+
+    @cached_property
+    def store(self) -> Store[Workspace]:
+        """The answers to what was asked about it."""
+        return Store(self)
+
+    def pass_on(self, after: Workspace, topics: Iterable[Hashable]) -> None:
+        """Leave to the workspace after an edit what was asked about this one.
+
+        Args:
+            topics: those in which the two may differ.
+        """
+        store = after.__dict__["store"] = self.__dict__.pop("store", None) or Store(self)
+        store.advance(after, topics)
 
     def without_file(self, path: str) -> Workspace:
         return Workspace({other: file for other, file in self.files.items() if other != path}, self.project)

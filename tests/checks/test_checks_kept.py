@@ -261,8 +261,8 @@ def test_what_an_edit_replaces_goes_when_it_is_swept() -> None:
     for letter in "abc":
         workspace = workspace.with_file("/p/main.btq", MAIN.replace("Place it", f"Place {letter}"))
         answers.check(workspace, "/p/main.btq")
-    assert answers.store is not None
-    answers.store.sweep(always=True)
+    assert answers.workspace is not None
+    answers.workspace.store.sweep(always=True)
     gc.collect()  # nodes and their parents hold each other
     after = Counter(type(each) for each in gc.get_objects())
     trees = sum(len(file.of_type(Tree)) for file in workspace.files.values())

@@ -312,8 +312,8 @@ def test_what_edits_replace_goes_when_it_is_swept(folder: Path) -> None:
                 for path in session.edit(main, text):
                     session.diagnostics(path)
                 session.let_go()
-        for store in session._stores:
-            store.sweep(always=True)
+        for workspace in session.workspaces():
+            workspace.store.sweep(always=True)
         gc.collect()  # written nodes and their parents hold each other
         kinds = Counter(type(each).__name__ for each in gc.get_objects())
         return Counter({name: kinds[name] for name in ("File", "Workspace", "TreeNodes", "View", "set")})

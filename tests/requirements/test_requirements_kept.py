@@ -11,7 +11,7 @@ import pytest
 from kept_checks import Kept
 
 from btq_lang.checks import check
-from btq_lang.checks.lookups import advanced
+from btq_lang.checks.lookups import advance
 from btq_lang.diagnostics.model import Place
 from btq_lang.requirements import inputs
 from btq_lang.requirements.attach import applied_in
@@ -179,16 +179,14 @@ def test_what_is_kept_is_what_would_be_found(files: dict[str, str], seed: int) -
     chance = random.Random(seed)
     workspace = Workspace.of(files)
     answers = {path: Kept() for path in files}
-    store = Store(workspace)
     for step in range(40):
         path = chance.choice(sorted(files))
         text = edited(workspace.files[path].text, chance) if chance.random() > 0.15 else files[path]
-        workspace = workspace.with_file(path, text)
-        store = advanced(store, workspace)
+        workspace = after_edit(workspace, path, text)
         texts = {each: file.text for each, file in workspace.files.items()}
         fresh = Workspace.of(texts)
         for each in chance.sample(sorted(files), len(files)):
-            now = list(said(workspace, requirements(workspace, each, store)))
+            now = list(said(workspace, requirements(workspace, each)))
             assert now == list(said(fresh, requirements(fresh, each))), (step, each, texts)
             assert answers[each].check(workspace, each).diagnostics == check(fresh, each), (step, each, texts)
 
@@ -266,14 +264,20 @@ def likely(found: Success | None, named: Callable[[SourceNode], object]) -> obje
 
 def test_an_edit_in_one_tree_leaves_the_others() -> None:
     workspace = Workspace.of(FILES)
-    store = Store(workspace)
-    before, trees = requirements(workspace, "/p/main.btq", store), held(store)
-    workspace = workspace.with_file("/p/main.btq", MAIN.replace("Sleep (msec = 2 s)", "Sleep (msec = 3 s)"))
-    store = advanced(store, workspace)
-    after, trees_after = requirements(workspace, "/p/main.btq", store), held(store)
+    before, trees = requirements(workspace, "/p/main.btq"), held(workspace.store)
+    text = MAIN.replace("Sleep (msec = 2 s)", "Sleep (msec = 3 s)")
+    workspace = after_edit(workspace, "/p/main.btq", text)
+    after, trees_after = requirements(workspace, "/p/main.btq"), held(workspace.store)
     assert [name for name, applied in trees_after.items() if applied is trees[name]] == ["Carry", "Deeper"]
     # These name nodes of the tree `Help`, or are defined in it; what `every` means is no part of `steps`.
     assert {name for name, each in after.all.items() if each is not before.all[name]} == {"path", "often", "rq6"}
+
+
+def after_edit(before: Workspace, path: str, text: str) -> Workspace:
+    """The workspace after an edit, with what was asked about the one before it."""
+    after = before.with_file(path, text)
+    advance(before, after)
+    return after
 
 
 def held(store: Store[Workspace]) -> dict[str, object]:
@@ -298,13 +302,13 @@ BehaviorTree Fast
     Sleep (msec = 1 s)
 signal s : m
 """
-    store = Store(Workspace.of({"/a.btq": text}))
-    kept = in_trees(store, tree_budgets, "/a.btq")
+    workspace = Workspace.of({"/a.btq": text})
+    kept = in_trees(workspace.store, tree_budgets, "/a.btq")
 
     def made_again(edited: str) -> set[str]:
-        nonlocal kept, store
-        store = advanced(store, store.state.with_file("/a.btq", edited))
-        before, kept = kept, in_trees(store, tree_budgets, "/a.btq")
+        nonlocal kept, workspace
+        workspace = after_edit(workspace, "/a.btq", edited)
+        before, kept = kept, in_trees(workspace.store, tree_budgets, "/a.btq")
         return {name for name, one in kept.items() if one is not before[name]}
 
     assert made_again(text.replace("msec = 1 s", "msec = 1000")) == {"Fast"}
