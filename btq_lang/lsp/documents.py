@@ -49,7 +49,7 @@ def _diagnostics(server: Server) -> None:
     )
     async def document_diagnostic(params: types.DocumentDiagnosticParams) -> Json:
         path = convert.path(params.text_document.uri)
-        await server.rest(path)
+        await server.check(path)
         return server.report(path, params.previous_result_id)
 
     @server.feature(types.WORKSPACE_DIAGNOSTIC)

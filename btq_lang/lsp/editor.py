@@ -30,6 +30,7 @@ from btq_lang.lsp.protocol import Json, Messages, Protocol
 from btq_lang.lsp.session import Session
 from btq_lang.util.version import __version__
 from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.queries import Cancelled
 
 if TYPE_CHECKING:
     from btq_lang.ide import Colours
@@ -98,12 +99,14 @@ class Server(LanguageServer):
         self._failures: set[object] = set()  # the places of those that are logged
         self.protocol.log_failure = self.log_failure
         self._watching: asyncio.Task[None] | None = None
+        self.is_outdated: Callable[[], bool] = lambda: False  # an edit waits to be handled
 
     def start_io(self, stdin: BinaryIO | None = None, stdout: BinaryIO | None = None) -> None:
         """As in pygls, but for how messages are read."""
         self._stop_event = Event()
         self.protocol.set_writer(StdoutWriter(stdout or sys.stdout.buffer))
         reader = Messages(stdin or sys.stdin.buffer)
+        self.is_outdated = lambda: reader.bring_edit
         report = self.report_server_error
         try:
             asyncio.run(run_async(self._stop_event, reader, self.protocol, error_handler=report))
@@ -306,6 +309,16 @@ class Server(LanguageServer):
                 break
             await asyncio.sleep(rest)
 
+    async def check(self, path: str) -> None:
+        """Check a file that an editor asks about, and begin anew if it is edited meanwhile."""
+        while True:
+            await self.rest(path)
+            try:
+                self.session.check(path, self.is_outdated)
+                return
+            except Cancelled:
+                await asyncio.sleep(0)
+
     async def _check(self) -> None:
         """Check file by file, and listen between two: an edit that comes meanwhile is checked first, and what is asked
         meanwhile is answered before any file that is not open."""
@@ -328,7 +341,12 @@ class Server(LanguageServer):
                 continue
             del self.waiting[path]
             try:
+                self.session.check(path, self.is_outdated)
                 self.publish(path)
+            except Cancelled:
+                self.waiting = {path: None, **self.waiting}
+                await asyncio.sleep(0)
+                continue
             except Exception as error:  # one file that cannot be checked must not silence the others
                 self.log_failure(error)
             self.session.let_go()

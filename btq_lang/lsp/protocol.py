@@ -160,6 +160,7 @@ class Messages:
         self._stream = stream
         self._head: list[bytes] = []
         self._body = b""
+        self._is_taken = True
 
     async def readline(self) -> bytes:
         if not self._head:
@@ -167,7 +168,13 @@ class Messages:
         return self._head.pop(0) if self._head else b""
 
     async def readexactly(self, _: int) -> bytes:
+        self._is_taken = True
         return self._body
+
+    @property
+    def bring_edit(self) -> bool:
+        """Whether an edit has come in that is not yet handled."""
+        return not self._is_taken and _CHANGE in self._body
 
     def _read(self) -> None:
         """One message; nothing at the end of all."""
@@ -178,6 +185,7 @@ class Messages:
         if length:
             self._head = [b"Content-Length: %d\r\n" % length, b"\r\n"]
             self._body = self._stream.read(length)
+            self._is_taken = False
 
 
 def _failure(future: Future[Any]) -> BaseException | None:
@@ -192,4 +200,5 @@ _USUAL = (
     types.TEXT_DOCUMENT_DEFINITION,
     types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT,
 )
+_CHANGE = f'"{types.TEXT_DOCUMENT_DID_CHANGE}"'.encode()
 _LENGTH = re.compile(rb"Content-Length: *(\d+)", re.IGNORECASE)

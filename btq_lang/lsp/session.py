@@ -7,7 +7,7 @@ is known here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Callable, Iterable, Set
 from time import perf_counter
 from typing import TYPE_CHECKING
 from weakref import ReferenceType, ref
@@ -213,6 +213,25 @@ class Session:
                 found.add(place)
                 place = place.rpartition("/")[0]
         return found
+
+    def check(self, path: str, is_outdated: Callable[[], bool]) -> None:
+        """Find out what is wrong with an open file, unless it is edited meanwhile.
+
+        Args:
+            is_outdated: whether an edit waits to be handled.
+
+        Raises:
+            Cancelled: one does; what was found out so far is kept.
+        """
+        workspace = self.workspace_of(path)
+        if workspace is None or path not in self.open:
+            return
+        store = workspace.store
+        before, store.is_cancelled = store.is_cancelled, is_outdated
+        try:
+            self.findings(path)
+        finally:
+            store.is_cancelled = before
 
     def findings(self, path: str) -> Findings:
         """All that is wrong with a file now."""

@@ -1,0 +1,72 @@
+"""A check ends when a newer edit arrives: the next one uses what it has found out."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable
+from io import BytesIO
+
+import pytest
+
+from btq_lang.lsp.editor import Server
+from btq_lang.lsp.protocol import Messages
+from btq_lang.workspace.queries import Cancelled
+
+
+@pytest.mark.parametrize("pulls", [False, True])
+def test_a_check_ends_when_a_newer_edit_waits(pulls: bool) -> None:
+    class Checking(Server):
+        pulls = False
+
+    async def edit() -> Counter[str]:
+        server, path = Checking(), "/p/main.btq"
+        server.session.edit(path, "BehaviorTree Main\n    Sequnce\n        Dock\n")
+        looks = 0
+
+        def is_outdated() -> bool:
+            nonlocal looks
+            looks += 1
+            if looks == 5:  # in the middle of the check
+                edited = "BehaviorTree Main\n    Fallbck\n        Dock\n"
+                asyncio.get_running_loop().call_soon(lambda: server.session.edit(path, edited))
+            return looks == 5
+
+        server.is_outdated = is_outdated
+        messages: Counter[str] = Counter()
+        check = server.session.check
+
+        def checked(path: str, is_outdated: Callable[[], bool]) -> None:
+            try:
+                check(path, is_outdated)
+                messages.update(each.message for each in server.session.diagnostics(path))
+            except Cancelled:
+                messages["cancelled"] += 1
+                raise
+
+        server.session.check = checked  # type: ignore[method-assign]  # to see what each check says
+        if pulls:
+            await server.check(path)
+        else:
+            server.check_soon((path,))
+            assert server.task is not None
+            await server.task
+        return messages
+
+    assert asyncio.run(edit()) == {"cancelled": 1, "unknown node `Fallbck`; did you mean `Fallback`?": 1}
+
+
+def test_messages_tell_of_an_edit_that_is_not_yet_handled() -> None:
+    async def read() -> list[bool]:
+        bodies = [f'{{"method": "textDocument/{method}"}}'.encode() for method in ("hover", "didChange")]
+        reader = Messages(BytesIO(b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(each), each) for each in bodies)))
+        said = []
+        for _ in bodies:
+            await reader.readline()
+            said.append(reader.bring_edit)
+            await reader.readline()
+            await reader.readexactly(0)
+            said.append(reader.bring_edit)
+        return said
+
+    assert asyncio.run(read()) == [False, False, True, False]
