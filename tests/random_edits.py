@@ -148,7 +148,7 @@ class Drift:
         completed = self.editor.request("textDocument/completion", **self.editor.at(name, line, column))
         here = lines.offset(lines.position(offset, "utf-16"), "utf-16")
         assert [one["label"] for one in completed["items"]] == [
-            one.label for one in complete(workspace, path, here).proposals
+            one.label for one in complete(workspace, path, here, snippets=False).proposals
         ]
         for method in ("hover", "definition", "documentHighlight"):
             self.editor.request(f"textDocument/{method}", **self.editor.at(name, line, column))
