@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from btq_lang.checks import findings, keep
-from btq_lang.checks.lookups import advance
 from btq_lang.workspace.findings import Findings
+from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.workspace import Workspace
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from btq_lang.checks import lookups
+from btq_lang.workspace import inputs
 from btq_lang.workspace.file import File
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Scope, Workspace
@@ -15,7 +15,7 @@ from btq_lang.workspace.workspace import Scope, Workspace
 
 @pytest.fixture
 def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a query reads otherwise raises; only one that has read `lookups.everything` may read what it likes."""
+    """What a query reads otherwise raises; only one that has read `inputs.everything` may read what it likes."""
     may_read: list[bool] = []  # each query that is open, and each input that is read
     compute: Callable[..., object] = Store._compute
     read: Callable[..., object] = Store.read
@@ -33,7 +33,7 @@ def strict_queries(monkeypatch: pytest.MonkeyPatch) -> None:
             return read(store, topic, of, *key)
         finally:
             may_read.pop()
-            if of is lookups.everything and may_read:
+            if of.__name__ == inputs.everything.__name__ and may_read:
                 may_read[-1] = True
 
     def attribute(owner: object, name: str) -> Any:

@@ -7,7 +7,7 @@ which function looks at which items.  What a check asks, it asks its view, and s
 how findings are printed.
 
     view.py, seen.py   what a check sees: its item, and the nodes of a tree sorted by what checks look for
-    lookups.py   what it looks up in the files
+    lookups.py   what only checks look up in the files, beside workspace/inputs.py
     kinds.py, names.py, ports.py, children.py, trees.py, includes.py   what the engine would refuse
     literals.py, constants.py, strings.py, scripts.py, counts.py, empty.py, outputs.py   values
     entries.py, pointers.py, writers.py, misspelt.py, mixed_types.py   blackboard entries
@@ -315,7 +315,7 @@ def reported_in_file(store: Store[Workspace], viewpoint: str, is_alone: bool) ->
     Args:
         is_alone: nothing of what is wrong in the files that it includes.
     """
-    items = store.read(viewpoint, lookups.items, viewpoint)
+    items = lookups.items(store, viewpoint)
     found = [store.ask(_reported, viewpoint, facts, is_alone and type(facts.item) is Include) for facts in items]
     return tuple([each for each in found if each is not None])
 

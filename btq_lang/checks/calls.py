@@ -194,9 +194,10 @@ def _turned(graph: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
 
 def _runs(store: Store[Workspace], viewpoint: str, tree: str) -> Runs:
     view = View(store, viewpoint)
-    facts = view.owner(Kind.TREE, tree)
-    if facts is None:
+    found = view.definition(Kind.TREE, tree)
+    if found is None:
         return (), ()
+    facts = found[1]
     uses = facts.summary.uses
     called = dict.fromkeys([use.name for use in uses if use.kind is Kind.TREE])
     declared = {seen.id.text for seen in view.seen_in(facts).subtrees if seen.id is not None}  # by a model, perhaps

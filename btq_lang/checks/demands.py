@@ -37,7 +37,7 @@ def _in_item(store: Store[Workspace], viewpoint: str, facts: Facts) -> Sequence[
 
 def _by_item(store: Store[Workspace], viewpoint: str) -> ByItem:
     """What the rules find in the file, by the item that it is in."""
-    from btq_lang.requirements import inputs  # few files need it
+    from btq_lang.workspace import inputs  # few files need it
 
     found: list[Found] = []
     for tree in inputs.trees(store, viewpoint):
@@ -83,7 +83,7 @@ def _of_tree(
 
 
 def _of_requirements(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
-    from btq_lang.requirements import inputs  # as above
+    from btq_lang.workspace import inputs  # as above
 
     names = inputs.names(store, viewpoint, Kind.REQUIREMENT)
     return tuple([each for name in names for each in store.ask(_of_requirement, viewpoint, name)])
@@ -107,7 +107,7 @@ def _of_requirement(store: Store[Workspace], viewpoint: str, name: str) -> tuple
 def _of_signals(store: Store[Workspace], viewpoint: str) -> tuple[Found, ...]:
     """What is wrong with signals, and with the guards that read them."""
     from btq_lang.checks.signals import of_signals  # as above
-    from btq_lang.requirements import inputs
+    from btq_lang.workspace import inputs
 
     trees = inputs.trees(store, viewpoint)
     guards = [guard for tree in trees for guard in store.ask(_of_tree, viewpoint, *tree)[1]]

@@ -180,14 +180,15 @@ class Blackboards:
 
 def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
     view = View(store, viewpoint)
-    facts = view.owner(Kind.TREE, tree)
-    if facts is None or not isinstance(facts.item, Tree):
+    found = view.definition(Kind.TREE, tree)
+    item = found[1].item if found is not None else None
+    if found is None or not isinstance(item, Tree):
         return Handling((), (), (), ())
     model = view.find(Kind.MODEL, tree)
     declared = model.ports if model is not None else ()
     gives: list[tuple[str, str, str]] = []
     shares: list[tuple[str, frozenset[str]]] = []
-    for seen in view.seen_in(facts).subtrees:
+    for seen in view.seen_in(found[1]).subtrees:
         if seen.id is None:
             continue
         below = seen.id.text
@@ -198,8 +199,8 @@ def _handling(store: Store[Workspace], viewpoint: str, tree: str) -> Handling:
         if remaps_all(seen):
             shares.append((below, frozenset([pair.key.text for pair in seen.node.attributes])))
     return Handling(
-        tuple([port.name.text for port in (*facts.item.ports, *declared) if port.name is not None]),
-        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, facts)]),
+        tuple([port.name.text for port in (*item.ports, *declared) if port.name is not None]),
+        tuple([Touch(each.name, each.reads, each.writes, each.creates) for each in view.ask(mentions, found[1])]),
         tuple(gives),
         tuple(shares),
     )

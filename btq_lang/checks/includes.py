@@ -101,7 +101,7 @@ def is_reported_beside(diagnostic: Diagnostic, checked: Container[str]) -> bool:
 
 
 def _closure(view: View, path: str) -> tuple[str, ...]:
-    return view.store.read(path, lookups.closure, path)
+    return lookups.closure(view.store, path)
 
 
 def include_fix(view: View, path: str) -> Fix:

@@ -11,12 +11,12 @@ from btq_lang.catalog.verbs import VERBS
 from btq_lang.checks.demanded import Demanded, Found, highest, is_enforced, lowest, seconds
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements import inputs
 from btq_lang.requirements.composition import port_count, port_seconds
 from btq_lang.requirements.model import Claim, Compare, Read, Requirement, SourceNode, Table, Target, Value
 from btq_lang.syntax.tree import Goal
 from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
     from btq_lang.catalog.units import Dimension

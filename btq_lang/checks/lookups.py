@@ -1,20 +1,10 @@
-"""What checks look up in the files: the inputs of the query store (workspace/queries.py), one function a question.
-
-An input reads the workspace from a *viewpoint*: a file, in whose scope names are looked up.  Its topic is one of
-
-* the viewpoint: an edit of any file that is linked with it by includes may change the answer;
-* a kind and a name: the answer depends on nothing but the items that define this name, in whatever file;
-* the facts of an item: the answer never changes, for an item that is edited is another one.
-
-One invariant: an answer holds no offsets that an edit elsewhere would move, and two that compare as equal are as good
-as each other, for queries keep what they made of the first.  An item is known by its facts, which stay the same object
-for as long as the item does.
+"""What only checks look up in the files: more inputs of the query store, as in workspace/inputs.py and by the same
+invariant.
 """
 
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Hashable, Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -24,38 +14,18 @@ from btq_lang.catalog.nodes import BUILTINS, lookup
 from btq_lang.catalog.qualities import EDITIONS
 from btq_lang.diagnostics.model import Place
 from btq_lang.diagnostics.rules import UNREADABLE, Severity
-from btq_lang.syntax.tree import Apply, Entry, Include, Model, Models, Qualities, Root, Tree
+from btq_lang.syntax.tree import Apply, Include, Model, Models, Qualities, Root, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace.inputs import of_name, of_viewpoint
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.port_types import is_text, meetings
 
 if TYPE_CHECKING:
     from btq_lang.syntax.tree import Port
-    from btq_lang.workspace.config import Project
     from btq_lang.workspace.custom_nodes import LikelyPort
-    from btq_lang.workspace.file import Definition, File, Origin
+    from btq_lang.workspace.file import Definition, Origin
     from btq_lang.workspace.symbols import Symbol
     from btq_lang.workspace.workspace import Workspace
-
-
-def advance(before: Workspace, after: Workspace) -> None:
-    """Leave to a workspace what was asked about the one before it; nothing where there are other files, or another
-    project."""
-    if before.project != after.project or [*before.files] != [*after.files]:
-        return
-    edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
-    if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
-        before.pass_on(after, [topic for topic in before.store.topics if not isinstance(topic, Facts)])
-    else:
-        before.pass_on(after, {topic for old, new in edited for topic in _touched(after, old, new)})
-
-
-def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
-    """The topics in which an edit of one file may change something."""
-    yield from after.linked(new.path)
-    for item in old.facts.keys() ^ new.facts.keys():
-        for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
-            yield symbol.kind, symbol.name
 
 
 class Meaning(Record):
@@ -85,38 +55,16 @@ class Declaration(Record):
         return Place(self.symbol.span, self.path, self.owner.item)
 
 
-def project(workspace: Workspace) -> Project:
-    """What holds for all files."""
-    return workspace.project
-
-
-def everything(workspace: Workspace, viewpoint: str) -> Workspace:
-    """The workspace itself: who reads it runs again after every edit of a linked file."""
-    return workspace
-
-
-# ---- an item ----
-
-
-def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
-    """An item of a file and what is wrong with its syntax, as it would be at the start of the file."""
-    found = workspace.files[path].entry_of(facts.item)
-    return Entry(0, found.item, found.in_root, found.diagnostics)
-
-
-def text(workspace: Workspace, path: str, facts: Facts) -> str:
-    """The text of an item, up to the next one."""
-    return workspace.files[path].text_of(facts.item)
-
-
 # ---- a name: what these say depends on nothing but the items that define it ----
 
 
+@of_name
 def is_defined(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name means something."""
     return workspace.scope(viewpoint).defines(kind, name)
 
 
+@of_name
 def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Meaning | None:
     """What a name means."""
     found = workspace.scope(viewpoint).find(kind, name)
@@ -130,18 +78,14 @@ def meaning(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Mean
     return Meaning(_declaration(workspace, found).owner, target, ())
 
 
+@of_name
 def declaration(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Declaration | None:
     """Where a name is defined."""
     found = workspace.scope(viewpoint).find(kind, name)
     return _declaration(workspace, found) if found is not None else None
 
 
-def owner(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Facts | None:
-    """The item that defines what a name means."""
-    found = workspace.scope(viewpoint).find(kind, name)
-    return _declaration(workspace, found).owner if found is not None else None
-
-
+@of_name
 def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether something could not be read in the tree or model that a name means, which may be a port."""
     found = workspace.scope(viewpoint).find(kind, name)
@@ -155,6 +99,7 @@ def is_torn(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool
     return any(each.rule in UNREADABLE and target.start <= each.span.start < end for each in found.entry.diagnostics)
 
 
+@of_name
 def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> bool:
     """Whether a name has several definitions."""
     return len(workspace.scope(viewpoint).all(kind, name)) > 1
@@ -163,16 +108,7 @@ def is_repeated(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> 
 # ---- the scope ----
 
 
-def is_complete(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether a name that is not in scope is nowhere."""
-    return workspace.scope(viewpoint).complete
-
-
-def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
-    """All names of a kind, in the order of their definitions."""
-    return workspace.scope(viewpoint).names(kind)
-
-
+@of_viewpoint
 def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the models in scope are meant to be all there are."""
     for each in workspace.scope(viewpoint).paths:
@@ -184,6 +120,7 @@ def has_palette(workspace: Workspace, viewpoint: str) -> bool:
     return False
 
 
+@of_viewpoint
 def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declaration, Declaration], ...]:
     """The names that an included file and one included before it both define: the include, the definition that counts
     and the other one.  Neither file can see the other, so no check of theirs reports it."""
@@ -203,6 +140,7 @@ def clashes(workspace: Workspace, viewpoint: str) -> tuple[tuple[Facts, Declarat
     return tuple(found)
 
 
+@of_viewpoint
 def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tuple[Place, str, str] | None:
     """The first port of texts that a port of a tree meets in that tree or below: its place, its name, its node."""
     for met in meetings(workspace.scope(viewpoint), workspace.project.target, tree, port):
@@ -212,6 +150,7 @@ def text_below(workspace: Workspace, viewpoint: str, tree: str, port: str) -> tu
     return None
 
 
+@of_viewpoint
 def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place, ...]:
     """Where the tree that a name means is referred to, in whatever file."""
     found = workspace.scope(viewpoint).find(Kind.TREE, name)
@@ -222,45 +161,38 @@ def uses_of_tree(workspace: Workspace, viewpoint: str, name: str) -> tuple[Place
 # ---- the file ----
 
 
+@of_viewpoint
 def items(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's items, in order."""
     return tuple(workspace.files[viewpoint].facts.values())
 
 
+@of_viewpoint
 def first_tree(workspace: Workspace, viewpoint: str) -> Facts | None:
     """The file's first tree."""
     return next((each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)), None)
 
 
+@of_viewpoint
 def has_neighbours(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the engine reads more in the file than one tree."""
     items = [each.item for each in workspace.files[viewpoint].facts.values()]
     return len([item for item in items if isinstance(item, Tree | Model | Models | Include)]) > 1
 
 
+@of_viewpoint
 def trees(workspace: Workspace, viewpoint: str) -> tuple[Facts, ...]:
     """The file's trees, in order."""
     return tuple([each for each in workspace.files[viewpoint].facts.values() if isinstance(each.item, Tree)])
 
 
-def trees_in_scope(workspace: Workspace, viewpoint: str) -> tuple[tuple[str, Facts], ...]:
-    """All trees in scope and their files, in order."""
-    return tuple([(each, tree) for each in workspace.scope(viewpoint).paths for tree in trees(workspace, each)])
-
-
+@of_viewpoint
 def is_tree_of_mission(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a file that is linked with this one by includes, in whatever direction, has a tree of the name."""
-    return name in trees_of_mission(workspace, viewpoint)
+    return any((Kind.TREE, name) in workspace.files[each].defined_names for each in workspace.linked(viewpoint))
 
 
-def trees_of_mission(workspace: Workspace, viewpoint: str) -> frozenset[str]:
-    """The names of the trees in all files that are linked with this one by includes."""
-    linked = workspace.linked(viewpoint)
-    return frozenset(
-        [name for each in linked for kind, name in workspace.files[each].defined_names if kind is Kind.TREE]
-    )
-
-
+@of_viewpoint
 def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str]:
     """The names that a tree of the mission cannot have in XML, as its other trees and its nodes have them: by what is
     written, what has it.
@@ -281,16 +213,19 @@ def taken_names(workspace: Workspace, viewpoint: str, but: str) -> dict[str, str
     return taken | trees
 
 
+@of_viewpoint
 def is_node_name(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a path can name a node so."""
     return any(name in workspace.files[each].node_names for each in workspace.scope(viewpoint).paths)
 
 
+@of_viewpoint
 def is_asked_for(workspace: Workspace, viewpoint: str, name: str) -> bool:
     """Whether a condition, a bound or an argument in the file names it."""
     return name in workspace.files[viewpoint].asked_for
 
 
+@of_viewpoint
 def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in the file's conditions, bounds and arguments that are neither signals nor contexts."""
     find = workspace.scope(viewpoint).find
@@ -303,33 +238,39 @@ def asked_for_in_vain(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     )
 
 
+@of_viewpoint
 def own_trees(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The names of the file's trees, in order."""
     return workspace.files[viewpoint].names.by_kind[Kind.TREE]
 
 
+@of_viewpoint
 def has_apply(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file attaches requirements to nodes from outside."""
     return bool(workspace.files[viewpoint].of_type(Apply))
 
 
+@of_viewpoint
 def has_root_of_tree(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file says which tree is the main one, even if there is none of that name."""
     facts = workspace.files[viewpoint].facts.values()
     return any(Kind.TREE in each.used for each in facts if isinstance(each.item, Root))
 
 
+@of_viewpoint
 def root(workspace: Workspace, viewpoint: str) -> tuple[int, str] | None:
     """Where a name may be inserted after the word Root, if there is one: an offset in the file."""
     first = next((each for each in workspace.files[viewpoint].parsed.entries if isinstance(each.item, Root)), None)
     return (first.start + first.item.start + len("Root"), "") if first is not None else None
 
 
+@of_viewpoint
 def has_pointers(workspace: Workspace, viewpoint: str) -> bool:
     """Whether any entry of a blackboard may be named in the file."""
     return "{" in workspace.files[viewpoint].text
 
 
+@of_viewpoint
 def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
     """The name of the tree that runs when the engine loads the file, and whether only this file's own can be it."""
     main = workspace.main_tree(viewpoint)
@@ -339,22 +280,26 @@ def main_tree(workspace: Workspace, viewpoint: str) -> tuple[str, bool] | None:
     return main.symbol.name, main.path == viewpoint and len(workspace.files[viewpoint].names.found[name]) == 1
 
 
+@of_viewpoint
 def used(workspace: Workspace, viewpoint: str, kind: Kind) -> frozenset[str]:
     """The names of a kind that the file refers to."""
     return workspace.files[viewpoint].used(kind)
 
 
+@of_viewpoint
 def first_user(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Facts | None:
     """The first of the file's items that refers to a name."""
     return workspace.files[viewpoint].first_users(kind).get(name)
 
 
+@of_viewpoint
 def names_unknown_requirements(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file refers to a requirement that is defined nowhere."""
     used = workspace.files[viewpoint].used(Kind.REQUIREMENT)
     return not used.issubset(workspace.scope(viewpoint).names(Kind.REQUIREMENT))
 
 
+@of_viewpoint
 def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, tuple[LikelyPort, ...]]:
     """What the uses of a custom node suggest that it is: its category and its ports."""
     from btq_lang.workspace.custom_nodes import custom_node as found_in_uses  # few files have an unknown node
@@ -363,6 +308,7 @@ def custom_node(workspace: Workspace, viewpoint: str, name: str) -> tuple[str, t
     return found.category, found.ports
 
 
+@of_viewpoint
 def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     """Whether of the custom nodes that a file knows or uses few have no model: a third at most."""
     known = workspace.scope(viewpoint).names(Kind.MODEL)
@@ -370,6 +316,7 @@ def most_have_models(workspace: Workspace, viewpoint: str) -> bool:
     return len(known) >= 2 and 2 * sum(lookup(name) is None for name in unknown) <= len(known)
 
 
+@of_viewpoint
 def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     """Whether so many of the names of a kind are unknown that nobody reads what each of them may mean."""
     known = workspace.scope(viewpoint).names(kind)
@@ -379,6 +326,7 @@ def is_crowded(workspace: Workspace, viewpoint: str, kind: Kind) -> bool:
     return len(unknown) * (len(known) + len(BUILTINS)) > _MOST_COMPARED
 
 
+@of_viewpoint
 def edition(workspace: Workspace, viewpoint: str) -> str:
     """The edition of the quality model that holds for the file."""
     for each in workspace.files[viewpoint].of_type(Qualities):
@@ -388,11 +336,13 @@ def edition(workspace: Workspace, viewpoint: str) -> str:
     return workspace.project.qualities
 
 
+@of_viewpoint
 def is_read(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the whole file could be read."""
     return all(problem.effective_severity is not Severity.ERROR for problem in workspace.files[viewpoint].problems)
 
 
+@of_viewpoint
 def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the name of one of the file's trees may be what could not be read."""
     return bool(workspace.files[viewpoint].problems) and any(
@@ -403,16 +353,19 @@ def has_torn_tree(workspace: Workspace, viewpoint: str) -> bool:
     )
 
 
+@of_viewpoint
 def origin(workspace: Workspace, viewpoint: str) -> Origin | None:
     """The file on the disk, if it is written in another language."""
     return workspace.files[viewpoint].origin
 
 
+@of_viewpoint
 def is_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether the file is XML that the engine loads as it is: no build comes between."""
     return workspace.files[viewpoint].origin is not None
 
 
+@of_viewpoint
 def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, str], ...]:
     """What keeps the file from being read."""
     return tuple(
@@ -425,6 +378,7 @@ def syntax_errors(workspace: Workspace, viewpoint: str) -> tuple[tuple[Place, st
     )
 
 
+@of_viewpoint
 def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
     """Where a line may be inserted that belongs to the head of the file, after its includes, and what it is indented
     with: an offset in the file."""
@@ -441,26 +395,25 @@ def head(workspace: Workspace, viewpoint: str) -> tuple[int, str]:
 # ---- the project ----
 
 
+@of_viewpoint
 def included(workspace: Workspace, viewpoint: str, include: Facts) -> str | None:
     """The file that an include brings, if it is there."""
     return workspace.included_by(viewpoint, include.item) if isinstance(include.item, Include) else None
 
 
+@of_viewpoint
 def closure(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """A file and all that it includes, included ones first."""
     return workspace.closure(viewpoint)
 
 
-def is_included(workspace: Workspace, viewpoint: str) -> bool:
-    """Whether another file includes this one."""
-    return viewpoint in workspace.included_files
-
-
+@of_name
 def elsewhere(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> tuple[str, ...]:
     """The files that define a name, whether they are in scope or not."""
     return workspace.files_defining(kind, name)
 
 
+@of_viewpoint
 def other_files(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The project's other files, as an include in this one names them."""
     folder = posixpath.dirname(viewpoint) or "."

@@ -156,8 +156,8 @@ def _given(view: View, caller: str, tree: str, key: str) -> Iterator[str | None]
 
 
 def _nodes(view: View, tree: str) -> tuple[SeenNode, ...]:
-    facts = view.owner(Kind.TREE, tree)
-    return view.seen_in(facts).all if facts is not None else ()
+    found = view.definition(Kind.TREE, tree)
+    return view.seen_in(found[1]).all if found is not None else ()
 
 
 def _clashes(view: View, tree: str, key: str, meetings: list[_Meeting]) -> Iterator[Diagnostic]:

@@ -74,7 +74,7 @@ def _outputs_in(view: View, nodes: Iterable[SeenNode]) -> Iterator[tuple[SeenNod
 
 def _is_custom(store: Store[Workspace], viewpoint: str) -> bool:
     """Whether the file gives values to outputs as a rule."""
-    counts = [store.ask(_counts, viewpoint, tree) for tree in store.read(viewpoint, lookups.trees, viewpoint)]
+    counts = [store.ask(_counts, viewpoint, tree) for tree in lookups.trees(store, viewpoint)]
     given, values = sum(each[0] for each in counts), sum(each[1] for each in counts)
     return values > 2 and (values > given / 2 or values > 9)
 
@@ -86,7 +86,7 @@ def _is_first_value(view: View, entry: Entry, pair: Pair) -> bool:
 
 
 def _first_with_value(store: Store[Workspace], viewpoint: str) -> Facts | None:
-    trees = store.read(viewpoint, lookups.trees, viewpoint)
+    trees = lookups.trees(store, viewpoint)
     return next((tree for tree in trees if store.ask(_counts, viewpoint, tree)[1]), None)
 
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.names import legal_name
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, lookup, spellings
-from btq_lang.checks import lookups
 from btq_lang.diagnostics.model import Change, Diagnostic, Fix, Place, Related
 from btq_lang.grammar.claims import VERB_WORDS
 from btq_lang.grammar.conditions import HEADS
@@ -17,6 +16,7 @@ from btq_lang.syntax.tokens import CATEGORIES, DIRECTIONS, NODE_CLAUSES
 from btq_lang.syntax.tree import Entry, Node, Pair, Tree, Word, is_name, quote
 from btq_lang.util.spelling import near
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.placeholders import is_placeholder
 
 if TYPE_CHECKING:
@@ -77,14 +77,14 @@ def _first_name(store: Store[Workspace], viewpoint: str, legal: str) -> str | No
 
 def _first_names(store: Store[Workspace], viewpoint: str) -> dict[str, str]:
     found: dict[str, str] = {}
-    for _, tree in reversed(store.read(viewpoint, lookups.trees_in_scope, viewpoint)):
+    for _, tree in reversed(inputs.trees(store, viewpoint)):
         found.update(store.ask(_names_in, tree))
     return found
 
 
 def _first_place(store: Store[Workspace], viewpoint: str, legal: str) -> Place | None:
     """The place of that placeholder's name."""
-    for path, tree in store.read(viewpoint, lookups.trees_in_scope, viewpoint):
+    for path, tree in inputs.trees(store, viewpoint):
         if legal in store.ask(_names_in, tree):
             name = next(name for name in _placeholders(tree) if _id_of(name.text) == legal)
             return Place(name.span, path, tree.item)

@@ -227,7 +227,7 @@ def _may_have_more(view: View, seen: SeenNode) -> bool:
     if name is None or not (seen.is_subtree or seen.model):
         return False
     kinds = (Kind.TREE, Kind.MODEL) if seen.is_subtree else (Kind.MODEL,)
-    return any(view.look_up_name(lookups.is_torn, kind, name.text) for kind in kinds)
+    return any(view.look_up(lookups.is_torn, kind, name.text) for kind in kinds)
 
 
 def _model_ports(store: Store[Workspace], viewpoint: str, name: str) -> KnownPorts | None:

@@ -16,9 +16,10 @@ from btq_lang.checks.demanded import Demanded, Found
 from btq_lang.checks.view import View
 from btq_lang.checks.writers import all_entries, declared_ports, isolated, key_of
 from btq_lang.diagnostics.model import Diagnostic, Related
-from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements import nodes
 from btq_lang.requirements.reading import signals_in
 from btq_lang.requirements.trees import tree_nodes, trees_called
+from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Claim, Requirement, Signal, SourceNode

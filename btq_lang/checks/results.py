@@ -15,6 +15,7 @@ from btq_lang.checks.statuses import ANYTHING, FAILURE, RUNNING, SKIPPED, SUCCES
 from btq_lang.checks.view import View
 from btq_lang.syntax.tree import Node, Tree
 from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
 
 if TYPE_CHECKING:
@@ -54,11 +55,12 @@ def results(view: View) -> Mapping[int, Results]:
 @on_circle(UNKNOWN)
 def _of_tree(store: Store[Workspace], viewpoint: str, tree: str) -> Results:
     """What the tree of a name can return; one that runs itself, anything."""
-    facts = View(store, viewpoint).owner(Kind.TREE, tree)
-    if facts is None or not isinstance(facts.item, Tree):
+    found = inputs.definition(store, viewpoint, Kind.TREE, tree)
+    item = found[1].item if found is not None else None
+    if found is None or not isinstance(item, Tree):
         return UNKNOWN
-    roots = [child for child in facts.item.children if isinstance(child, Node)]
-    return _of_nodes(store, viewpoint, facts)[id(roots[0])] if len(roots) == 1 else UNKNOWN
+    roots = [child for child in item.children if isinstance(child, Node)]
+    return _of_nodes(store, viewpoint, found[1])[id(roots[0])] if len(roots) == 1 else UNKNOWN
 
 
 def _of_nodes(store: Store[Workspace], viewpoint: str, facts: Facts) -> dict[int, Results]:

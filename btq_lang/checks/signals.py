@@ -12,9 +12,10 @@ from btq_lang.checks.view import View
 from btq_lang.checks.writers import all_entries, declared_port, isolated, written_keys
 from btq_lang.diagnostics.model import Diagnostic, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements import inputs, reader
+from btq_lang.requirements import reader
 from btq_lang.requirements.nodes import has_nodes, mission
 from btq_lang.util.spelling import near
+from btq_lang.workspace import inputs
 from btq_lang.workspace.port_types import is_text
 
 if TYPE_CHECKING:

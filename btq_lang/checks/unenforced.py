@@ -11,9 +11,9 @@ from btq_lang.checks.demanded import Demanded, Found, highest, judge_of, reporte
 from btq_lang.checks.view import View
 from btq_lang.diagnostics.model import Diagnostic, Place, Related
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements import inputs
 from btq_lang.requirements.attach import claimed_of_no_tree, uses_of_nodes
 from btq_lang.requirements.model import Target
+from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import Applied, Claim, SourceNode
@@ -35,7 +35,7 @@ def not_enforced(demanded: Demanded) -> Iterator[Found]:
             from btq_lang.btcpp.judging import where_else  # few missions ask for what is in other files
 
             path = elsewhere.path
-            why = where_else(elsewhere, is_xml=demanded.view.store.read(path, lookups.is_xml, path))
+            why = where_else(elsewhere, is_xml=lookups.is_xml(demanded.view.store, path))
             yield place, _found(applied, place, why, related, is_bundled=True)
 
 

@@ -20,12 +20,14 @@ from btq_lang.diagnostics.model import Related
 from btq_lang.grammar.attributes import meant_clause
 from btq_lang.syntax.tree import Entry, Include, Model, Node, Port, Requirement, Tree, is_name
 from btq_lang.util.spelling import near
+from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
     from btq_lang.checks.lookups import Declaration, Meaning
     from btq_lang.requirements.constraints import Constraint
     from btq_lang.syntax.script import Script
     from btq_lang.workspace.config import Project
+    from btq_lang.workspace.inputs import Placed
     from btq_lang.workspace.item_index import Facts
     from btq_lang.workspace.queries import Store
     from btq_lang.workspace.symbols import Use
@@ -58,23 +60,19 @@ class View:
 
     def look_up(self, read: Callable[..., T], *key: Any) -> T:
         """What the files say from this viewpoint."""
-        return self.store.read(self.viewpoint, read, self.viewpoint, *key)
-
-    def look_up_name(self, read: Callable[..., T], kind: Kind, name: str) -> T:
-        """The same, of what depends on nothing but the items that define a name."""
-        return self.store.read((kind, name), read, self.viewpoint, kind, name)
+        return read(self.store, self.viewpoint, *key)
 
     # ---- the item ----
 
     @property
     def entry(self) -> Entry:
         """The item and what is wrong with its syntax; it begins at 0."""
-        return self.store.read(self.facts, lookups.entry, self.viewpoint, self.facts)
+        return inputs.entry(self.store, self.viewpoint, self.facts)
 
     @property
     def text(self) -> str:
         """The text of the item, up to the next one."""
-        return self.store.read(self.facts, lookups.text, self.viewpoint, self.facts)
+        return inputs.text(self.store, self.viewpoint, self.facts)
 
     @property
     def nodes(self) -> tuple[SeenNode, ...]:
@@ -115,19 +113,19 @@ class View:
 
     def defines(self, kind: Kind, name: str) -> bool:
         """Whether a name in scope means something."""
-        return self.look_up_name(lookups.is_defined, kind, name)
+        return self.look_up(lookups.is_defined, kind, name)
 
     def find(self, kind: Kind, name: str) -> Meaning | None:
         """What a name in scope means."""
-        return self.look_up_name(lookups.meaning, kind, name)
+        return self.look_up(lookups.meaning, kind, name)
 
-    def owner(self, kind: Kind, name: str) -> Facts | None:
-        """The item that defines what a name means."""
-        return self.look_up_name(lookups.owner, kind, name)
+    def definition(self, kind: Kind, name: str) -> Placed | None:
+        """The item that defines what a name means, and the path of its file."""
+        return self.look_up(inputs.definition, kind, name)
 
     def declaration(self, kind: Kind, name: str) -> Declaration | None:
         """Where a name is defined; an edit of that item changes it."""
-        return self.look_up_name(lookups.declaration, kind, name)
+        return self.look_up(lookups.declaration, kind, name)
 
     def declared_at(self, kind: Kind, name: str, message: str) -> tuple[Related, ...]:
         """The place where a name is defined, to be shown beside a diagnostic."""
@@ -136,15 +134,16 @@ class View:
 
     def defines_here(self, kind: Kind, name: str) -> bool:
         """Whether the item defines what a name means, and no other one does."""
-        return self.owner(kind, name) is self.facts
+        found = self.definition(kind, name)
+        return found is not None and found[1] is self.facts
 
     def is_repeated(self, kind: Kind, name: str) -> bool:
         """Whether a name has several definitions."""
-        return self.look_up_name(lookups.is_repeated, kind, name)
+        return self.look_up(lookups.is_repeated, kind, name)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """All names of a kind, in the order of their definitions."""
-        return self.look_up(lookups.names, kind)
+        return self.look_up(inputs.names, kind)
 
     def has_names(self, kind: Kind) -> bool:
         """Whether there is any name of a kind in scope."""
@@ -153,11 +152,11 @@ class View:
     @property
     def is_complete(self) -> bool:
         """Whether a name that is not in scope is nowhere."""
-        return self.look_up(lookups.is_complete)
+        return self.look_up(inputs.is_complete)
 
     def elsewhere(self, kind: Kind, name: str) -> tuple[str, ...]:
         """The files that define a name, whether they are in scope or not."""
-        return self.look_up_name(lookups.elsewhere, kind, name)
+        return self.look_up(lookups.elsewhere, kind, name)
 
     def clashes(self, *kinds: Kind) -> list[tuple[Declaration, Declaration]]:
         """The names that the file of this include and one included before it both define, each with the definition
@@ -192,7 +191,7 @@ class View:
     @property
     def project(self) -> Project:
         """What holds for all files."""
-        return self.store.read("project", lookups.project)
+        return inputs.project(self.store)
 
     @property
     def is_xml(self) -> bool:
@@ -207,7 +206,7 @@ class View:
     @property
     def is_included(self) -> bool:
         """Whether another file includes this one."""
-        return self.look_up(lookups.is_included)
+        return self.look_up(inputs.is_included)
 
     @property
     def main_tree(self) -> str | None:
@@ -266,7 +265,7 @@ class View:
     @property
     def workspace(self) -> Workspace:
         """Everything."""
-        return self.look_up(lookups.everything)
+        return self.look_up(inputs.everything)
 
     def constraints(self, requirement: Requirement) -> tuple[tuple[Constraint, bool], ...]:
         """What follows SuccessIf and FailureIf in a description, and whether it is more than prose."""
@@ -359,7 +358,7 @@ def _seen_node(view: View, node: Node, tree: Tree, parent: SeenNode | None, inde
 
 def _torn_places(store: Store[Workspace], viewpoint: str, facts: Facts) -> list[int]:
     """Where in an item something begins that could not be read."""
-    entry = store.read(facts, lookups.entry, viewpoint, facts)
+    entry = inputs.entry(store, viewpoint, facts)
     return sorted([problem.span.start for problem in entry.diagnostics])
 
 

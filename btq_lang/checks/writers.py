@@ -13,10 +13,11 @@ from btq_lang.catalog.attributes import RESERVED_ATTRIBUTES
 from btq_lang.catalog.literals import is_pointer
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks.view import View
-from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements import nodes
 from btq_lang.requirements.trees import tree_nodes
 from btq_lang.syntax.tree import Pair, Port, Verbatim
 from btq_lang.util.record import Record
+from btq_lang.workspace import inputs
 
 if TYPE_CHECKING:
     from btq_lang.requirements.model import SourceNode

@@ -58,7 +58,7 @@ def include_edits(workspace: Workspace, path: str, other: str) -> tuple[Edit, ..
     """
     if other not in workspace.files:
         return ()
-    at, line = include_line(head(workspace, path), path, other)
+    at, line = include_line(head(workspace.store, path), path, other)
     return (Edit(Span(at, at), line),)
 
 

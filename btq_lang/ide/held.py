@@ -6,10 +6,10 @@ One invariant: it says what the build itself plans, in its words; nothing is jud
 from __future__ import annotations
 
 from btq_lang.btcpp.enforcement import Held, how_held, unasked
-from btq_lang.checks.lookups import everything
 from btq_lang.requirements.constraints import constraints
 from btq_lang.syntax.tree import Claim, How, OnViolation, Requirement
 from btq_lang.workspace.file import Definition, is_btq
+from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
@@ -72,7 +72,7 @@ def missions_of(workspace: Workspace, path: str) -> tuple[str, ...]:
 
 
 def _plan(store: Store[Workspace], mission: str) -> tuple[Held, ...]:
-    workspace = store.read(mission, everything, mission)
+    workspace = everything(store, mission)
     return tuple([each for clauses in how_held(workspace, mission) for each in clauses])
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.checks.lookups import everything
 from btq_lang.ide import describe
 from btq_lang.ide.held import missions_of
 from btq_lang.ide.meaning import Found, Subject, definition, everywhere, home_of, is_main, quality_of, subject
@@ -14,6 +13,7 @@ from btq_lang.syntax.tree import Claim, Entry, Requirement, Root
 from btq_lang.util.record import Record
 from btq_lang.util.text import Span
 from btq_lang.workspace.file import Definition
+from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.references import What
 from btq_lang.workspace.workspace import Workspace
@@ -125,7 +125,7 @@ def _held(workspace: Workspace, mission: str, found: Definition) -> tuple[tuple[
 
 def _by_subject(store: Store[Workspace], mission: str) -> dict[tuple[str, str], tuple[tuple[str, Span], ...]]:
     """The same for all requirements of a mission, which are resolved together."""
-    workspace = store.read(mission, everything, mission)
+    workspace = everything(store, mission)
     held: dict[tuple[str, str], dict[tuple[str, Span], None]] = {}
     for applied in requirements(workspace, mission).applied:
         if applied.how == "subject":

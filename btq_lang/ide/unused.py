@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.checks import check
-from btq_lang.checks.lookups import everything, is_read
+from btq_lang.checks.lookups import is_read
 from btq_lang.diagnostics.model import Diagnostic
 from btq_lang.ide.refactor import names_of_nodes
 from btq_lang.requirements.resolve import requirements
@@ -21,6 +21,7 @@ from btq_lang.syntax.tree import Context, Entry, Include, Model, Models, Root, S
 from btq_lang.util.record import Record
 from btq_lang.util.text import Edit, LineIndex, Position, Span, apply_edits
 from btq_lang.workspace.file import File
+from btq_lang.workspace.inputs import everything
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 
@@ -68,14 +69,15 @@ def needless_includes(workspace: Workspace, path: str) -> tuple[NeedlessInclude,
 
 
 def _needless_includes(store: Store[Workspace], path: str) -> tuple[NeedlessInclude, ...]:
-    workspace = store.read(path, everything, path)
+    workspace = everything(store, path)
     file = workspace.files[path]
     includes = [one for one in file.includes if one.path is not None and not file.entry_of(one).diagnostics]
     if file.origin is not None or not includes:
         return ()
     duplicates = _duplicates(workspace, path, includes)
     found = [*duplicates]
-    if path not in workspace.included_files and workspace.main_tree(path) is not None and is_read(workspace, path):
+    is_mission = path not in workspace.included_files and workspace.main_tree(path) is not None
+    if is_mission and is_read(workspace.store, path):
         for include in reversed(includes):
             rest = [other for other in includes if other is not include and not _is_among(other, found)]
             gone = _brought_by(workspace, path, include, rest) if not _is_among(include, found) else set()
@@ -133,7 +135,7 @@ def _uses(workspace: Workspace, path: str, gone: set[str]) -> bool:
 def _is_plain(workspace: Workspace, path: str) -> bool:
     """Whether a file has no syntax errors and nothing that affects other files by itself, as `apply` does."""
     file = workspace.files[path]
-    return is_read(workspace, path) and all(isinstance(entry.item, _PLAIN) for entry in file.parsed.entries)
+    return is_read(workspace.store, path) and all(isinstance(entry.item, _PLAIN) for entry in file.parsed.entries)
 
 
 def _changes_nothing(workspace: Workspace, path: str, removed: Sequence[Include]) -> bool:

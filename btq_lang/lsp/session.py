@@ -60,7 +60,7 @@ class Session:
         before = self._workspaces[home]
         if before.files[path].text == text:  # opened, and as it is on the disk
             return (path,)
-        from btq_lang.checks.lookups import advance
+        from btq_lang.workspace.inputs import advance
 
         for index, workspace in enumerate(self._workspaces):
             if path in workspace.files:
@@ -93,8 +93,8 @@ class Session:
 
     def reload(self) -> tuple[str, ...]:
         """Read folders and projects again; all files that there are."""
-        from btq_lang.checks.lookups import advance
         from btq_lang.commands.files import Files
+        from btq_lang.workspace.inputs import advance
         from btq_lang.workspace.loader import is_project_file
 
         self._read_for = self.folders, {**self.settings}

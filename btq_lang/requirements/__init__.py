@@ -4,9 +4,8 @@ One invariant: the answer is a function of the workspace and of the viewpoint, t
 It does not know what the engine can enforce, nor what a run of the robot was like.
 
 What is asked here is asked of the query store (workspace/queries.py): each question a function of it, of a viewpoint,
-and of a name or of an item, which is known by its facts.
+and of a name or of an item, which is known by its facts.  What is read is in workspace/inputs.py.
 
-    inputs.py    what is read in the workspace
     trees.py, nodes.py   the nodes of one tree, and which nodes a path, a kind or a tag means; names.py, by which names
     model.py     what a requirement says once its words are resolved
     paths.py, terms.py, reader.py   reading paths, values and conditions; reading.py, which signals are read

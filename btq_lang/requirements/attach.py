@@ -12,7 +12,7 @@ from typing import Final, TypeVar
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Related, replace_fix
 from btq_lang.diagnostics.rules import Severity
-from btq_lang.requirements import inputs, model, nodes
+from btq_lang.requirements import model, nodes
 from btq_lang.requirements.definitions import requirement
 from btq_lang.requirements.model import (
     Applied,
@@ -39,6 +39,7 @@ from btq_lang.syntax.tree import Requirement as WrittenRequirement
 from btq_lang.util.record import Record, fields_of, replace
 from btq_lang.util.spelling import did_you_mean, near
 from btq_lang.util.text import Span as TextSpan
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import requirements_at

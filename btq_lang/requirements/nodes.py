@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from btq_lang.requirements import inputs
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.requirements.trees import TreeNodes, tree_named, tree_nodes
 from btq_lang.syntax.tree import Node, Tree
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 

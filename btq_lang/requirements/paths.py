@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.diagnostics.model import Diagnostic, Fix, Place, Related, replace_fix
-from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements import nodes
 from btq_lang.requirements.model import SourceNode, Target
 from btq_lang.syntax.tree import Path, Word, is_name, quote
 from btq_lang.util.record import Record
 from btq_lang.util.spelling import did_you_mean, near
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.units import Dimension, a_dimension, to_si
 from btq_lang.diagnostics.model import Fix, replace_fix
-from btq_lang.requirements import inputs
 from btq_lang.requirements.model import (
     NO_DIMENSION,
     Aggregate,
@@ -76,6 +75,7 @@ from btq_lang.syntax.tree import Not as WrittenNot
 from btq_lang.syntax.tree import Signal as WrittenSignal
 from btq_lang.util.spelling import did_you_mean
 from btq_lang.util.text import Span
+from btq_lang.workspace import inputs
 from btq_lang.workspace.queries import Store, on_circle
 from btq_lang.workspace.workspace import Workspace
 

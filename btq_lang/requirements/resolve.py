@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.requirements import inputs, nodes
+from btq_lang.requirements import nodes
 from btq_lang.requirements.attach import Attached, applied_in, attached_by, claimed, uses_in
 from btq_lang.requirements.definitions import requirement
 from btq_lang.requirements.model import Applied, Requirement, Signal, Trace, Use
@@ -14,6 +14,7 @@ from btq_lang.requirements.paths import Problem
 from btq_lang.requirements.reader import Problems, context, signal
 from btq_lang.requirements.resolved import Requirements
 from btq_lang.syntax.tree import Apply, Tree
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace

@@ -11,9 +11,9 @@ from typing import Final
 
 from btq_lang.catalog.name_kinds import Kind
 from btq_lang.catalog.nodes import BUILTINS, KNOWN_WORDS, PLACEHOLDERS, NodeKind, lookup
-from btq_lang.requirements import inputs
 from btq_lang.requirements.model import SourceNode
 from btq_lang.syntax.tree import Node, NodeClause, Satisfices, Tags, Tree
+from btq_lang.workspace import inputs
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.placeholders import is_placeholder
 from btq_lang.workspace.queries import Store

@@ -10,6 +10,7 @@ mission, and how it is written as XML.
     symbols.py       what a file declares, and what is in scope
     item_index.py    what is known of an item from itself
     references.py    every word that names something
+    queries.py, inputs.py   the one memory, and what queries read in the workspace
     comments.py      to which element a comment belongs
     placeholders.py, port_types.py, custom_nodes.py   what names, ports and undeclared nodes are taken for
     findings.py, fixes.py   diagnostics placed in a file, and fixes put into its text

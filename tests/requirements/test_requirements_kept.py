@@ -11,14 +11,14 @@ import pytest
 from kept_checks import Kept
 
 from btq_lang.checks import check
-from btq_lang.checks.lookups import advance
 from btq_lang.diagnostics.model import Place
-from btq_lang.requirements import inputs
 from btq_lang.requirements.attach import applied_in
 from btq_lang.requirements.budgets import Budget, Budgets, Range, Success, tree_budgets
 from btq_lang.requirements.model import SourceNode
 from btq_lang.requirements.resolve import requirements
 from btq_lang.requirements.resolved import Requirements
+from btq_lang.workspace import inputs
+from btq_lang.workspace.inputs import advance
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.workspace import Workspace
 

@@ -1,17 +1,20 @@
-"""What queries about requirements read in the workspace, each a function of the store and of a viewpoint: the path of
-the file from which names are looked up.
+"""What queries read in the workspace: the inputs of the store (queries.py) that several rooms ask for, each a function
+of the store and of a *viewpoint*, the path of the file in whose scope names are looked up.
 
 One invariant: an answer holds no syntax nodes but through the facts of their items, which are equal to nothing but
-themselves, and no offsets in files.  Every function answers for files that are gone, too.
+themselves, and no offsets that an edit elsewhere would move; two that compare as equal are as good as each other, for
+queries keep what they made of the first.  An item is known by its facts, which stay the same object for as long as it
+does.  What only checks look up is in checks/lookups.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
+from functools import wraps
 from typing import TYPE_CHECKING, TypeAlias
 
 from btq_lang.catalog.name_kinds import Kind
-from btq_lang.syntax.tree import Apply, Item, Model, Tree, Verbatim
+from btq_lang.syntax.tree import Apply, Entry, Item, Model, Tree, Verbatim
 from btq_lang.workspace.item_index import Facts
 from btq_lang.workspace.queries import Store
 from btq_lang.workspace.symbols import Symbol
@@ -20,6 +23,7 @@ from btq_lang.workspace.workspace import Workspace
 if TYPE_CHECKING:
     from typing import Concatenate, ParamSpec, TypeVar
 
+    from btq_lang.workspace.config import Project
     from btq_lang.workspace.file import File
 
     P = ParamSpec("P")
@@ -27,95 +31,160 @@ if TYPE_CHECKING:
 
 Placed: TypeAlias = tuple[str, Facts]  # an item, and the path of its file
 
+# ---- topics: what an edit has to touch before an input is read again ----
 
-def _of_viewpoint(
+
+def of_viewpoint(
     read: Callable[Concatenate[Workspace, str, P], T],
 ) -> Callable[Concatenate[Store[Workspace], str, P], T]:
     """An input that an edit of any file may change that the viewpoint is linked with by includes."""
 
+    @wraps(read)
     def ask(store: Store[Workspace], viewpoint: str, /, *key: P.args, **_: P.kwargs) -> T:
         return store.read(viewpoint, read, viewpoint, *key)
 
     return ask
 
 
-def _of_item(
-    read: Callable[Concatenate[Workspace, str, Facts, P], T],
-) -> Callable[Concatenate[Store[Workspace], str, Facts, P], T]:
-    """An input that never changes, for an item that is edited is another one."""
+def of_name(
+    read: Callable[[Workspace, str, Kind, str], T],
+) -> Callable[[Store[Workspace], str, Kind, str], T]:
+    """An input that depends on nothing but the items that define a name, in whatever file."""
 
-    def ask(store: Store[Workspace], path: str, facts: Facts, /, *key: P.args, **_: P.kwargs) -> T:
-        return store.read(facts, read, path, facts, *key)
+    @wraps(read)
+    def ask(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> T:
+        return store.read((kind, name), read, viewpoint, kind, name)
 
     return ask
+
+
+def of_item(
+    read: Callable[[Workspace, str, Facts], T],
+) -> Callable[[Store[Workspace], str, Facts], T]:
+    """An input that never changes, for an item that is edited is another one."""
+
+    @wraps(read)
+    def ask(store: Store[Workspace], path: str, facts: Facts) -> T:
+        return store.read(facts, read, path, facts)
+
+    return ask
+
+
+def advance(before: Workspace, after: Workspace) -> None:
+    """Leave to a workspace what was asked about the one before it; nothing where there are other files, or another
+    project."""
+    if before.project != after.project or [*before.files] != [*after.files]:
+        return
+    edited = [(file, after.files[path]) for path, file in before.files.items() if after.files[path] is not file]
+    if any(old.included_paths != new.included_paths or not old.is_parsed for old, new in edited):
+        before.pass_on(after, [topic for topic in before.store.topics if not isinstance(topic, Facts)])
+    else:
+        before.pass_on(after, {topic for old, new in edited for topic in _touched(after, old, new)})
+
+
+def _touched(after: Workspace, old: File, new: File) -> Iterator[Hashable]:
+    """The topics in which an edit of one file may change something."""
+    yield from after.linked(new.path)
+    for item in old.facts.keys() ^ new.facts.keys():
+        for symbol in (old.facts.get(item) or new.facts[item]).summary.symbols:
+            yield symbol.kind, symbol.name
+
+
+def project(store: Store[Workspace]) -> Project:
+    """What holds for all files."""
+    return store.read("project", _project)
+
+
+def _project(workspace: Workspace) -> Project:
+    return workspace.project
+
+
+@of_viewpoint
+def everything(workspace: Workspace, viewpoint: str) -> Workspace:
+    """The workspace itself: who reads it runs again after every edit of a linked file."""
+    return workspace
 
 
 # ---- items ----
 
 
-@_of_viewpoint
+@of_viewpoint
 def trees(workspace: Workspace, viewpoint: str) -> tuple[Placed, ...]:
     """The trees in scope, in the order of the files and of their text."""
     return _items(workspace, viewpoint, Tree)
 
 
-@_of_viewpoint
+@of_viewpoint
 def applies(workspace: Workspace, viewpoint: str) -> tuple[Placed, ...]:
     """The `apply` items in scope, in the same order."""
     return _items(workspace, viewpoint, Apply)
 
 
-@_of_viewpoint
+@of_viewpoint
 def attaching(workspace: Workspace, viewpoint: str) -> tuple[Placed, ...]:
     """Both, in the same order: all items that attach requirements."""
     return _items(workspace, viewpoint, Tree, Apply)
 
 
-@_of_viewpoint
+@of_viewpoint
 def has_xml(workspace: Workspace, viewpoint: str) -> bool:
     """Whether any file in scope has XML of its own among its items."""
     return bool(_items(workspace, viewpoint, Verbatim))
 
 
-@_of_viewpoint
+@of_viewpoint
 def main_tree(workspace: Workspace, viewpoint: str) -> Placed | None:
     """The tree that runs when the engine loads the file."""
-    main = workspace.main_tree(viewpoint) if viewpoint in workspace.files else None
+    main = workspace.main_tree(viewpoint)
     if main is None or not isinstance(main.entry.item, Tree):
         return None
     return main.path, workspace.files[main.path].facts[id(main.entry.item)]
 
 
-@_of_item
+@of_item
+def entry(workspace: Workspace, path: str, facts: Facts) -> Entry:
+    """An item of a file and what is wrong with its syntax, as it would be at the start of the file."""
+    found = workspace.files[path].entry_of(facts.item)
+    return Entry(0, found.item, found.in_root, found.diagnostics)
+
+
+@of_item
 def text(workspace: Workspace, path: str, facts: Facts) -> str:
     """The text from where the offsets of an item count up to the next item."""
-    file = workspace.files.get(path)
-    if file is None or id(facts.item) not in file.facts:
-        return ""
-    return file.text_of(facts.item)
+    return workspace.files[path].text_of(facts.item)
 
 
-@_of_item
+@of_item
 def unknown_units(workspace: Workspace, path: str, facts: Facts) -> tuple[int, ...]:
     """Where the words begin in an item that its diagnostics call unknown units."""
-    file = workspace.files.get(path)
-    if file is None or id(facts.item) not in file.facts:
-        return ()
-    problems = file.entry_of(facts.item).diagnostics
+    problems = workspace.files[path].entry_of(facts.item).diagnostics
     return tuple(sorted([problem.span.start for problem in problems if problem.rule == "unknown-unit"]))
 
 
 # ---- names ----
 
 
-def definition(store: Store[Workspace], viewpoint: str, kind: Kind, name: str) -> Placed | None:
+@of_name
+def definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
     """The item that defines what a name means."""
-    return store.read((kind, name), _definition, viewpoint, kind, name)
+    for file in _files(workspace, viewpoint):
+        if found := file.names.found.get((kind, name)):
+            return file.path, file.facts[id(found[0][0])]
+    return None
 
 
 def category(store: Store[Workspace], viewpoint: str, name: str) -> str | None:
-    """The category of a node, as its model has it."""
-    return store.read((Kind.MODEL, name), _category, viewpoint, name)
+    """The category of a custom node, as its model has it; None where it has no model."""
+    return _category(store, viewpoint, Kind.MODEL, name)
+
+
+@of_name
+def _category(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> str | None:
+    for file in _files(workspace, viewpoint):
+        if found := file.names.found.get((kind, name)):
+            model = found[0][1].target
+            return model.category.raw if isinstance(model, Model) else None
+    return None
 
 
 def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:
@@ -123,20 +192,21 @@ def symbol(facts: Facts, kind: Kind, name: str) -> Symbol:
     return next(each for each in facts.summary.symbols if each.kind is kind and each.name == name)
 
 
-@_of_viewpoint
+@of_viewpoint
 def names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
     """All names of a kind in scope, in the order of their definitions."""
-    return _names(workspace, viewpoint, kind)
+    return workspace.scope(viewpoint).names(kind)
 
 
-@_of_viewpoint
+@of_viewpoint
 def claiming(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The requirements in scope whose claims may name their own subjects, in the order of their definitions."""
     found: frozenset[str] = frozenset().union(*[file.claiming for file in _files(workspace, viewpoint)])
-    return tuple([name for name in _names(workspace, viewpoint, Kind.REQUIREMENT) if name in found]) if found else ()
+    names = workspace.scope(viewpoint).names(Kind.REQUIREMENT) if found else ()
+    return tuple([name for name in names if name in found])
 
 
-@_of_viewpoint
+@of_viewpoint
 def asked_for(workspace: Workspace, viewpoint: str) -> frozenset[str]:
     """The names in all clauses in scope, and those by which `apply` selects nodes."""
     asked: set[str] = set()
@@ -152,40 +222,32 @@ def asked_for(workspace: Workspace, viewpoint: str) -> frozenset[str]:
 # ---- the scope ----
 
 
-@_of_viewpoint
+@of_viewpoint
 def paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
     """The file and those that it includes, included ones first."""
-    return _paths(workspace, viewpoint)
+    return workspace.scope(viewpoint).paths
 
 
-@_of_viewpoint
+@of_viewpoint
 def is_complete(workspace: Workspace, viewpoint: str) -> bool:
     """Whether a name that is not in scope is nowhere."""
-    return viewpoint in workspace.files and workspace.scope(viewpoint).complete
+    return workspace.scope(viewpoint).complete
 
 
-@_of_viewpoint
+@of_viewpoint
 def is_included(workspace: Workspace, viewpoint: str) -> bool:
     """Whether another file includes this one."""
     return viewpoint in workspace.included_files
 
 
-@_of_viewpoint
+@of_viewpoint
 def is_well_formed(workspace: Workspace, viewpoint: str) -> bool:
     """Whether nothing is wrong with the syntax of the files in scope."""
     return not any(file.problems for file in _files(workspace, viewpoint))
 
 
 def _files(workspace: Workspace, viewpoint: str) -> Iterator[File]:
-    return (workspace.files[path] for path in _paths(workspace, viewpoint))
-
-
-def _paths(workspace: Workspace, viewpoint: str) -> tuple[str, ...]:
-    return workspace.scope(viewpoint).paths if viewpoint in workspace.files else ()
-
-
-def _names(workspace: Workspace, viewpoint: str, kind: Kind) -> tuple[str, ...]:
-    return workspace.scope(viewpoint).names(kind) if viewpoint in workspace.files else ()
+    return (workspace.files[path] for path in workspace.scope(viewpoint).paths)
 
 
 def _items(workspace: Workspace, viewpoint: str, *kinds: type[Item]) -> tuple[Placed, ...]:
@@ -194,16 +256,3 @@ def _items(workspace: Workspace, viewpoint: str, *kinds: type[Item]) -> tuple[Pl
         if any(map(file.of_type, kinds)):
             found += [(file.path, facts) for facts in file.facts.values() if type(facts.item) in kinds]
     return tuple(found)
-
-
-def _definition(workspace: Workspace, viewpoint: str, kind: Kind, name: str) -> Placed | None:
-    for file in _files(workspace, viewpoint):
-        if found := file.names.found.get((kind, name)):
-            return file.path, file.facts[id(found[0][0])]
-    return None
-
-
-def _category(workspace: Workspace, viewpoint: str, name: str) -> str | None:
-    found = _definition(workspace, viewpoint, Kind.MODEL, name)
-    model = symbol(found[1], Kind.MODEL, name).target if found is not None else None
-    return model.category.raw if isinstance(model, Model) else None
